@@ -2,6 +2,7 @@
 //! their remainders.
 
 pub mod angle;
+pub mod bound;
 pub mod circle;
 pub mod complex;
 pub mod exponential;
@@ -11,3 +12,5 @@ pub mod remainders;
 pub mod roots;
 pub mod series;
 pub mod two_word;
+#[cfg(feature = "affine")]
+pub mod wide;

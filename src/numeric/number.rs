@@ -3,6 +3,7 @@
 //! The formulas are written once and evaluated in f64, in double-double for the truth, and in any
 //! other arithmetic that wraps itself in this trait.
 
+pub use crate::numeric::bound::{Bound, ScaledF64};
 use crate::numeric::circle;
 use crate::numeric::exponential;
 use crate::numeric::two_word::TwoWord;
@@ -13,6 +14,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub trait Number:
     Copy
     + Debug
+    + Default
     + PartialOrd
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -23,6 +25,25 @@ pub trait Number:
     /// How many terms a Taylor series with factorials needs at argument 1 to reach the last digit:
     /// the least n with 1/(2 n + 1)! below half a unit (9 for f64, 14 for 106 bits).
     const TERMS: usize;
+
+    /// How many f64 are summed to a number that has all of its digits.
+    const WORDS: usize;
+
+    /// The numbers in which bounds of errors are kept: f64, unless it has too few exponents.
+    type Bound: Bound;
+
+    /// The unit roundoff: a bound of the relative error of each operation.
+    fn unit() -> Self::Bound;
+
+    /// The number, rounded to the digits of a bound.
+    fn bound(self) -> Self::Bound;
+
+    /// The number with the value of a bound, exactly.
+    fn of_bound(bound: Self::Bound) -> Self;
+
+    /// The number times a power of two.
+    #[must_use]
+    fn scaled(self, exponent: i64) -> Self;
 
     /// The number with this f64 value, exactly.
     fn exact(value: f64) -> Self;
@@ -82,6 +103,29 @@ const INVERSE_FACTORIALS: [f64; 21] = {
 
 impl Number for f64 {
     const TERMS: usize = 9;
+
+    const WORDS: usize = 1;
+
+    type Bound = Self;
+
+    #[inline]
+    fn unit() -> Self {
+        0.5 * Self::EPSILON
+    }
+
+    #[inline]
+    fn bound(self) -> Self {
+        self
+    }
+
+    #[inline]
+    fn of_bound(bound: Self) -> Self {
+        bound
+    }
+
+    fn scaled(self, exponent: i64) -> Self {
+        Bound::scaled(self, exponent)
+    }
 
     #[inline]
     fn exact(value: f64) -> Self {

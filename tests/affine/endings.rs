@@ -75,7 +75,7 @@ y = 1
 ";
 
 /// The last event before the ending, and the ending.
-fn last_two<T>(all: &[Event<T>]) -> [&Event<T>; 2] {
+fn last_two<T: Number>(all: &[Event<T>]) -> [&Event<T>; 2] {
     let [.., before, ending] = all else { panic!("a run of too few events") };
     [before, ending]
 }

@@ -46,7 +46,7 @@ fn enclosed<T: Number>(system: &System, until: f64) -> Vec<Event<T>> {
 }
 
 /// The name of an event.
-fn name<T>(system: &System, event: &Event<T>) -> String {
+fn name<T: Number>(system: &System, event: &Event<T>) -> String {
     match &event.what {
         What::Until(mode, index) => system.modes[*mode].until[*index].name.clone(),
         What::Watch(mode, index) => system.modes[*mode].watch[*index].name.clone(),
@@ -60,7 +60,7 @@ fn name<T>(system: &System, event: &Event<T>) -> String {
     }
 }
 
-fn names<T>(system: &System, events: &[Event<T>]) -> Vec<String> {
+fn names<T: Number>(system: &System, events: &[Event<T>]) -> Vec<String> {
     events.iter().map(|event| name(system, event)).collect()
 }
 

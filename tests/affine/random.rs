@@ -210,7 +210,7 @@ pub fn system(seed: u64) -> String {
 }
 
 /// The kind and the indices of an event, in any arithmetic.
-fn kind<T>(event: &Event<T>) -> (u8, usize, usize) {
+fn kind<T: Number>(event: &Event<T>) -> (u8, usize, usize) {
     match &event.what {
         What::Start => (0, 0, 0),
         What::Until(mode, index) => (1, *mode, *index),

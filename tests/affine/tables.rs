@@ -113,7 +113,7 @@ pub(super) fn printed(value: DoubleDouble) -> f64 {
 
 /// The events of a run that follows its errors, each of which is smaller than said; how many there
 /// are, and the largest error of a time.
-fn enclosed<T: Number>(
+fn enclosed<T: Number<Bound = f64>>(
     case: &str,
     system: &System,
     table: &Table,

@@ -1,9 +1,9 @@
 //! Time, and the angle of the forcing, as a sum of two numbers that is never rounded to one.
 
-use super::real::BigReal;
-use super::vector::{turned, unit};
+use super::real::{BigReal, bits_for};
+use super::vector::{is_f64, rounded, turned};
 use crate::affine::model::system::Forcing;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 use dashu_ratio::RBig;
 
 /// A time in two words of an arithmetic.
@@ -26,12 +26,12 @@ impl<T: Number> Time<T> {
     /// A rational time, rounded to two words.
     #[must_use]
     pub fn of(number: &RBig) -> Self {
-        let real = BigReal::of(number);
-        let (high, low) = real.words();
-        if unit::<T>() > 1e-20 {
+        let real = BigReal::of(number, bits_for::<T>());
+        if is_f64::<T>() {
+            let (high, low) = real.words();
             return Self { high: T::exact(high), low: T::exact(low) };
         }
-        Self { high: T::exact(high) + T::exact(low), low: T::zero() }
+        Self { high: rounded(&real), low: T::zero() }
     }
 
     /// A time later, or earlier.
@@ -71,11 +71,12 @@ impl<T: Number> Clock<T> {
     }
 
     /// A bound of the rounding error of theta at a time: omega, times and their sums are rounded to
-    /// 106 bits, whether those are one number or two.
+    /// 106 bits, whether those are one number or two, or to the bits of a wider arithmetic.
     #[inline]
-    pub fn rounding(&self, time: &Time<T>) -> f64 {
-        const UNIT: f64 = f64::EPSILON * f64::EPSILON;
-        UNIT * ((self.omega.high * time.high).to_f64().abs() + self.phi.high.to_f64().abs())
+    pub fn rounding(&self, time: &Time<T>) -> T::Bound {
+        let unit = T::unit().min(T::Bound::of(f64::EPSILON * f64::EPSILON));
+        let size = (self.omega.high * time.high).bound().abs() + self.phi.high.bound().abs();
+        unit * size
     }
 
     /// Sine and cosine of theta at a time.

@@ -1,18 +1,25 @@
 //! Real and complex numbers of several hundred bits, in which a mode's matrix is taken apart once.
 
+use crate::numeric::number::{Bound, Number};
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use dashu_ratio::RBig;
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Bits of every number. A projector loses what the gaps between eigenvalues take, at most some
-/// hundred bits for twelve eigenvalues that are not merged.
-pub const BITS: usize = 640;
+/// The fewest bits of a number. A projector loses what the gaps between eigenvalues take, at most
+/// some hundred bits for twelve eigenvalues that are not merged.
+const FEWEST_BITS: usize = 640;
+
+/// The bits in which a mode is taken apart for an arithmetic: twice its own, and room for what gaps
+/// between eigenvalues take.
+pub fn bits_for<T: Number>() -> usize {
+    if T::WORDS <= 2 { FEWEST_BITS } else { 106 * T::WORDS + 240 }
+}
 
 type BigFloat = FBig<HalfEven, 2>;
 
-/// A real number of [`BITS`] bits.
+/// A real number of at least [`FEWEST_BITS`] bits. A result has the bits of the longer operand.
 #[derive(Clone, Debug)]
 pub struct BigReal(BigFloat);
 
@@ -28,11 +35,30 @@ impl BigReal {
     /// A finite f64, exactly.
     pub fn exact(value: f64) -> Self {
         // Not a number, and infinity, do not come from a system that has been read.
-        Self(BigFloat::try_from(value).unwrap_or(BigFloat::ZERO).with_precision(BITS).value())
+        let value = BigFloat::try_from(value).unwrap_or(BigFloat::ZERO);
+        Self(value.with_precision(FEWEST_BITS).value())
     }
 
-    pub fn of(number: &RBig) -> Self {
-        Self(number.to_float::<HalfEven, 2>(BITS).value().with_precision(BITS).value())
+    /// A rational number, rounded to so many bits.
+    pub fn of(number: &RBig, bits: usize) -> Self {
+        Self(number.to_float::<HalfEven, 2>(bits).value().with_precision(bits).value())
+    }
+
+    /// The bits of the number.
+    pub fn bits(&self) -> usize {
+        self.0.precision()
+    }
+
+    /// The exponent of two by which the number is divided to be at least 1/2 and below 1 in size;
+    /// zero for zero.
+    pub fn exponent(&self) -> isize {
+        if self.is_zero() { 0 } else { self.0.repr().exponent() + self.0.repr().digits() as isize }
+    }
+
+    /// The number, rounded to the digits of a bound.
+    pub fn bound<B: Bound>(&self) -> B {
+        let exponent = self.exponent();
+        B::of(self.scaled(-exponent).to_f64()).scaled(exponent as i64)
     }
 
     pub fn to_f64(&self) -> f64 {
@@ -60,7 +86,7 @@ impl BigReal {
         if self.is_zero() {
             return Self::zero();
         }
-        Self(self.0.sqrt().with_precision(BITS).value())
+        Self(self.0.sqrt().with_precision(self.bits()).value())
     }
 
     /// `self * 2^exponent`, exactly.
@@ -97,7 +123,8 @@ macro_rules! operation {
         impl $trait for &BigReal {
             type Output = BigReal;
             fn $name(self, other: &BigReal) -> BigReal {
-                BigReal((&self.0 $symbol &other.0).with_precision(BITS).value())
+                let bits = self.bits().max(other.bits());
+                BigReal((&self.0 $symbol &other.0).with_precision(bits).value())
             }
         }
     };

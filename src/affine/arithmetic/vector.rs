@@ -2,40 +2,37 @@
 
 use super::real::BigReal;
 use crate::affine::model::system::LARGEST_DIMENSION;
-use crate::numeric::number::Number;
-
-/// A bound of the error that underflow makes in a few operations; nothing in f64 is smaller than
-/// one 64th of it.
-pub const UNDERFLOW: f64 = f64::from_bits(64);
-
-/// More than [`UNDERFLOW`] where it need not be sharp: sums and products of it are no subnormal
-/// numbers, with which processors are slow.
-pub const LOST: f64 = 1e-300;
+use crate::numeric::number::{Bound, Number};
+use std::ops::{Add, Mul};
 
 /// The entries of z, or of the modal co-ordinates; those beyond the dimension are zero.
 pub type Vector<T> = [T; LARGEST_DIMENSION];
 
-/// The unit roundoff of an arithmetic.
+/// A number of a vector or a matrix: of the arithmetic, or of its bounds.
+pub trait Entry: Copy + Default + Add<Output = Self> + Mul<Output = Self> {}
+
+impl<E: Copy + Default + Add<Output = E> + Mul<Output = E>> Entry for E {}
+
+/// Whether f64 is the arithmetic: only there times and rates have two words, because others do not
+/// resolve what is left beyond their digits.
 #[inline]
-pub fn unit<T: Number>() -> f64 {
-    const HALF: f64 = 0.5 * f64::EPSILON;
-    // Double-double arithmetic is good to a few units of 2^-106.
-    if T::TERMS <= <f64 as Number>::TERMS { HALF } else { HALF * HALF * 4.0 }
+pub fn is_f64<T: Number>() -> bool {
+    T::WORDS == 1
 }
 
 /// A bound of the rounding error of a sum of as many products as a mode has co-ordinates, relative
 /// to the sum of its terms' sizes: a rounding for each product and sum, one for the factors, five
 /// for the closed form of a co-ordinate, and one for the rest of the way to a crossing.
 #[inline]
-pub fn sum_rounding<T: Number>(dimension: usize) -> f64 {
-    (dimension + 7) as f64 * unit::<T>()
+pub fn sum_rounding<T: Number>(dimension: usize) -> T::Bound {
+    T::unit() * (dimension + 7) as f64
 }
 
 /// A bound of the rounding error of a sum of co-ordinates at an entry, where they are sums
 /// themselves, relative to the sum of its terms' sizes.
 #[inline]
-pub fn twice_summed_rounding<T: Number>(dimension: usize) -> f64 {
-    2.0 * sum_rounding::<T>(dimension)
+pub fn twice_summed_rounding<T: Number>(dimension: usize) -> T::Bound {
+    sum_rounding::<T>(dimension) * 2.0
 }
 
 /// Sine and cosine of an angle plus a small `low`, from those of the angle.
@@ -45,7 +42,7 @@ pub fn turned<T: Number>((sin, cos): (T, T), low: T) -> (T, T) {
     const LITTLE: f64 = 1e-17;
     let size = low.to_f64().abs();
     // In an arithmetic of two words `low` is a rounding, whose square is below every digit.
-    if size * size <= LITTLE || unit::<T>() < 1e-20 {
+    if size * size <= LITTLE || !is_f64::<T>() {
         return (sin + low * cos, cos - low * sin);
     }
     let (sin_low, cos_low) = low.sin_cos();
@@ -54,7 +51,7 @@ pub fn turned<T: Number>((sin, cos): (T, T), low: T) -> (T, T) {
 
 /// The sum of products of the first entries.
 #[inline]
-pub fn dot<T: Number>(a: &[T], b: &[T], dimension: usize) -> T {
+pub fn dot<E: Entry>(a: &[E], b: &[E], dimension: usize) -> E {
     let mut sum = a[0] * b[0];
     for (a, b) in a[..dimension].iter().zip(&b[..dimension]).skip(1) {
         sum = sum + *a * *b;
@@ -65,7 +62,7 @@ pub fn dot<T: Number>(a: &[T], b: &[T], dimension: usize) -> T {
 /// Adds a multiple of a vector. It is indexed because zipped iterators are not always inlined.
 #[allow(clippy::needless_range_loop, reason = "an iterator costs a call")]
 #[inline(always)]
-pub fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: &[T], factor: T) {
+pub fn add_product<E: Entry, const N: usize>(sums: &mut [E; N], vector: &[E], factor: E) {
     let vector = &vector[..N];
     for k in 0..N {
         sums[k] = sums[k] + vector[k] * factor;
@@ -75,9 +72,9 @@ pub fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: &[T], f
 /// Whether all entries, and their sum, are finite: what has overflowed proves nothing.
 #[inline]
 pub fn all_finite<T: Number>(entries: &[T]) -> bool {
-    let mut sum = 0.0;
+    let mut sum = T::Bound::ZERO;
     for entry in entries {
-        sum += entry.to_f64();
+        sum += entry.bound();
     }
     sum.is_finite()
 }
@@ -87,28 +84,28 @@ const SMALLEST_SQUARE: f64 = 1e-280;
 
 /// The Euclidean norm of some entries, which overflows or vanishes only where it has to.
 #[inline]
-pub fn euclidean(entries: impl Iterator<Item = f64> + Clone) -> f64 {
-    let square: f64 = entries.clone().map(|it| it * it).sum();
+pub fn euclidean<B: Bound>(entries: impl Iterator<Item = B> + Clone) -> B {
+    let square: B = entries.clone().map(|it| it * it).sum();
     if square > SMALLEST_SQUARE && square < f64::INFINITY {
         return square.sqrt();
     }
-    let largest = entries.clone().fold(0.0, |most: f64, it| most.max(it.abs()));
+    let largest = entries.clone().fold(B::ZERO, |most, it| most.max(it.abs()));
     if largest == 0.0 || largest == f64::INFINITY {
         return largest;
     }
     let shares = entries.map(|it| it / largest);
-    largest * shares.map(|it| it * it).sum::<f64>().sqrt()
+    largest * shares.map(|it| it * it).sum::<B>().sqrt()
 }
 
 /// [`euclidean`] of a part of a vector, in fewer instructions: it runs at every point.
 #[inline]
-pub fn norm<T: Number>(entries: &[T]) -> f64 {
+pub fn norm<T: Number>(entries: &[T]) -> T::Bound {
     if let [entry] = entries {
-        return entry.to_f64().abs();
+        return entry.bound().abs();
     }
-    let mut square = 0.0;
+    let mut square = T::Bound::ZERO;
     for entry in entries {
-        let entry = entry.to_f64();
+        let entry = entry.bound();
         square += entry * entry;
     }
     if square > SMALLEST_SQUARE && square < f64::INFINITY {
@@ -119,28 +116,30 @@ pub fn norm<T: Number>(entries: &[T]) -> f64 {
 
 #[cold]
 #[inline(never)]
-fn scaled_norm<T: Number>(entries: &[T]) -> f64 {
-    euclidean(entries.iter().map(|it| it.to_f64()))
+fn scaled_norm<T: Number>(entries: &[T]) -> T::Bound {
+    euclidean(entries.iter().map(|it| it.bound()))
 }
 
-/// A root of any degree, good to some per cent: the bits of a number are nearly its logarithm,
-/// which is divided.
-#[inline]
-pub fn approximate_root(value: f64, degree: usize) -> f64 {
-    const ONE: u64 = 1.0_f64.to_bits();
-    if value == 0.0 || value == f64::INFINITY || value.is_nan() {
-        return value;
-    }
-    let bits = value.to_bits();
-    let share = |bits: u64| bits / degree as u64;
-    f64::from_bits(if bits >= ONE { ONE + share(bits - ONE) } else { ONE - share(ONE - bits) })
-}
-
-/// A wide number, rounded to an arithmetic of one or two words.
+/// A wide number, rounded to an arithmetic.
 pub fn rounded<T: Number>(value: &BigReal) -> T {
-    let (high, low) = value.words();
-    T::exact(high) + T::exact(low)
+    if T::WORDS <= 2 {
+        let (high, low) = value.words();
+        return T::exact(high) + T::exact(low);
+    }
+    // The words of a number near one, so that the last of them does not underflow.
+    let exponent = value.exponent();
+    let mut rest = value.scaled(-exponent);
+    let mut sum = T::zero();
+    for k in 0..T::WORDS as i64 {
+        let word = rest.to_f64();
+        sum = sum + T::exact(word).scaled(-BITS_OF_A_WORD * k);
+        rest = (&rest - &BigReal::exact(word)).scaled(BITS_OF_A_WORD as isize);
+    }
+    sum.scaled(exponent as i64)
 }
+
+/// The bits of each of the words to which a wide number is taken apart.
+const BITS_OF_A_WORD: i64 = 50;
 
 /// A row in the arithmetic, with zeros beyond its end.
 pub fn vector<T: Number>(row: &[BigReal]) -> Vector<T> {

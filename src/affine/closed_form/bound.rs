@@ -8,8 +8,9 @@
 
 use super::nilpotent::nilpotent;
 use crate::affine::arithmetic::real::BigReal;
-use crate::affine::arithmetic::vector::{UNDERFLOW, euclidean};
+use crate::affine::arithmetic::vector::euclidean;
 use crate::affine::modal::{self, Kind};
+use crate::numeric::number::Bound;
 
 /// The number of derivatives of a row that are kept, its value included.
 pub const ORDERS: usize = 17;
@@ -51,10 +52,10 @@ impl BlockGrowth {
 
     /// A bound of a derivative over `length`, for co-ordinates of norm 1.
     #[inline]
-    pub fn bound(self, norms: &[f64; ORDERS], order: usize, length: f64) -> f64 {
+    pub fn bound<B: Bound>(self, norms: &[B; ORDERS], order: usize, length: f64) -> B {
         match self {
             Self::Decaying | Self::Bounded => norms[order],
-            Self::Growing(rate) => norms[order] * growth_by(rate * length),
+            Self::Growing(rate) => norms[order] * growth_by::<B>(rate * length),
             Self::Polynomial => polynomial(&norms[order..], length),
         }
     }
@@ -62,21 +63,21 @@ impl BlockGrowth {
 
 /// An upper bound of exp(x): up to x = 1, where it is most often asked for, a parabola.
 #[inline]
-fn growth_by(x: f64) -> f64 {
+fn growth_by<B: Bound>(x: f64) -> B {
     /// (exp(x) - 1 - x)/x^2 increases, and is e - 2 at 1.
     const MOST: f64 = 0.718_281_828_459_046;
-    if x <= 1.0 { (1.0 + x * (1.0 + x * MOST)) * OUTWARD } else { libm::exp(x) * OUTWARD }
+    if x <= 1.0 { B::of((1.0 + x * (1.0 + x * MOST)) * OUTWARD) } else { B::exp(x) * OUTWARD }
 }
 
 /// The sum of `norms[j] length^j/j!`, where norms that are zero end it.
 #[inline]
-fn polynomial(norms: &[f64], length: f64) -> f64 {
-    let (mut sum, mut factor) = (0.0, 1.0);
+fn polynomial<B: Bound>(norms: &[B], length: f64) -> B {
+    let (mut sum, mut factor) = (B::ZERO, B::of(1.0));
     for (j, norm) in norms.iter().enumerate() {
         if *norm == 0.0 {
             break;
         }
-        sum += norm * factor;
+        sum += *norm * factor;
         factor *= length / (j + 1) as f64;
     }
     sum
@@ -104,7 +105,7 @@ pub fn derivatives(row: &[BigReal], block: &modal::Block) -> Vec<Vec<BigReal>> {
 
 /// The norms of a row's derivatives in a block, raised to what they are at most later where a
 /// nilpotent block decays.
-pub fn norms(block: &modal::Block, parts: &[Vec<BigReal>]) -> [f64; ORDERS] {
+pub fn norms<B: Bound>(block: &modal::Block, parts: &[Vec<BigReal>]) -> [B; ORDERS] {
     let decay = match &block.kind {
         Kind::Nilpotent(rate) if *rate < BigReal::zero() => {
             let (matrix, index) = nilpotent(block, rate);
@@ -113,14 +114,14 @@ pub fn norms(block: &modal::Block, parts: &[Vec<BigReal>]) -> [f64; ORDERS] {
         _ => None,
     };
     let bound = |part: &Vec<BigReal>| {
-        let Some((matrix, index, rate)) = &decay else { return norm(part) };
+        let Some((matrix, index, rate)) = &decay else { return norm::<B>(part) };
         let next = |last: &Vec<BigReal>| Some(modal::row_times(last, matrix));
         let powers = std::iter::successors(Some(part.clone()), next).take(*index);
-        powers.enumerate().map(|(j, row)| norm(&row) * largest_term(j, *rate)).sum::<f64>()
+        powers.enumerate().map(|(j, row)| norm::<B>(&row) * largest_term(j, *rate)).sum::<B>()
     };
     std::array::from_fn(|k| {
         let is_zero = parts[k].iter().all(BigReal::is_zero);
-        if is_zero { 0.0 } else { (bound(&parts[k]) * OUTWARD).max(UNDERFLOW) }
+        if is_zero { B::ZERO } else { (bound(&parts[k]) * OUTWARD).max(B::UNDERFLOW) }
     })
 }
 
@@ -129,8 +130,8 @@ fn largest_term(j: usize, rate: f64) -> f64 {
     (1..=j).map(|n| j as f64 / (std::f64::consts::E * rate * n as f64)).product::<f64>() * OUTWARD
 }
 
-fn norm(part: &[BigReal]) -> f64 {
-    euclidean(part.iter().map(BigReal::to_f64))
+fn norm<B: Bound>(part: &[BigReal]) -> B {
+    euclidean(part.iter().map(BigReal::bound::<B>))
 }
 
 /// Sorts blocks by their speed, the fastest first and those without a bound for all times last.

@@ -4,17 +4,15 @@ use super::bound::BlockGrowth;
 use super::modal_state::ModalState;
 use super::motion::BlockMotion;
 use crate::affine::arithmetic::real::BigReal;
-use crate::affine::arithmetic::vector::{
-    UNDERFLOW, Vector, add_product, euclidean, norm, unit, vector,
-};
+use crate::affine::arithmetic::vector::{Entry, Vector, add_product, euclidean, norm, vector};
 use crate::affine::modal;
 use crate::affine::model::system::LARGEST_DIMENSION;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number, ScaledF64};
 use std::ops::Range;
 
 /// A mode's closed form.
 #[derive(Clone, Debug)]
-pub struct ModeFlow<T> {
+pub struct ModeFlow<T: Number> {
     pub dimension: usize,
     pub blocks: Vec<FlowBlock<T>>,
     /// The longest time for which bounds are asked: a growing block grows by at most e in it.
@@ -23,20 +21,21 @@ pub struct ModeFlow<T> {
     pub speed: f64,
     /// The matrix W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,
-    /// The matrix W of all blocks, rounded to f64, by columns; and the sizes of its entries.
-    to_modal_rounded: Vec<Vector<f64>>,
-    to_modal_sizes: Vec<Vector<f64>>,
+    /// The matrix W of all blocks, rounded to the digits of bounds, by columns; and the sizes of
+    /// its entries.
+    to_modal_rounded: Vec<Vector<T::Bound>>,
+    to_modal_sizes: Vec<Vector<T::Bound>>,
     /// The first co-ordinate of each block that rotates.
     turning: Vec<usize>,
     /// The matrix X of all blocks, by columns.
     from_modal: Vec<Vector<T>>,
     /// Bounds of the errors of the entries of X and of W, by columns.
-    off: [Vec<Vector<f64>>; 2],
+    off: [Vec<Vector<T::Bound>>; 2],
 }
 
 /// A block of modal co-ordinates, which move independently of other blocks.
 #[derive(Clone, Debug)]
-pub struct FlowBlock<T> {
+pub struct FlowBlock<T: Number> {
     pub at: usize,
     pub size: usize,
     /// The block's speed ([`modal::Block::speed`]).
@@ -79,9 +78,9 @@ impl<T: Number> ModeFlow<T> {
         flow.longest = 1.0 / flow.blocks.iter().map(rate).fold(0.0, f64::max);
         flow.to_modal = transposed(&to_modal);
         flow.off[1] = by_columns(&off);
-        let rounded = |row: &Vector<T>| row.map(Number::to_f64);
+        let rounded = |row: &Vector<T>| row.map(Number::bound);
         flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
-        let sizes = |row: &Vector<f64>| row.map(f64::abs);
+        let sizes = |row: &Vector<T::Bound>| row.map(Bound::abs);
         flow.to_modal_sizes = flow.to_modal_rounded.iter().map(sizes).collect();
         let turns = |it: &&FlowBlock<T>| matches!(it.motion, BlockMotion::Pair { .. });
         flow.turning = flow.blocks.iter().filter(turns).map(|it| it.at).collect();
@@ -118,10 +117,10 @@ impl<T: Number> ModeFlow<T> {
 
     #[inline(always)]
     fn set_modal_in<const ROWS: usize>(&self, modal: &mut ModalState<T>, z: &Vector<T>) {
-        let (mut sums, mut sizes) = ([T::zero(); ROWS], [0.0; ROWS]);
+        let (mut sums, mut sizes) = ([T::zero(); ROWS], [T::Bound::ZERO; ROWS]);
         for ((column, own), entry) in self.to_modal.iter().zip(&self.to_modal_sizes).zip(z) {
             add_product(&mut sums, column, *entry);
-            add_product(&mut sizes, own, entry.to_f64().abs());
+            add_product(&mut sizes, own, entry.bound().abs());
         }
         modal.y[..ROWS].copy_from_slice(&sums);
         modal.sizes[..ROWS].copy_from_slice(&sizes);
@@ -130,7 +129,7 @@ impl<T: Number> ModeFlow<T> {
     /// Modal co-ordinates whose sizes are their own, because no rounding error is counted so far.
     #[inline]
     pub fn exact(&self, y: &Vector<T>) -> ModalState<T> {
-        let mut modal = ModalState { y: *y, sizes: y.map(|it| it.to_f64().abs()) };
+        let mut modal = ModalState { y: *y, sizes: y.map(|it| it.bound().abs()) };
         for at in &self.turning {
             let norm = euclidean(modal.sizes[*at..at + 2].iter().copied());
             modal.sizes[*at..at + 2].fill(norm);
@@ -156,10 +155,10 @@ impl<T: Number> ModeFlow<T> {
 
     /// For each entry of a state, the sum of the sizes of its terms, from the sizes of the modal
     /// co-ordinates.
-    pub fn sizes(&self, y: &Vector<f64>) -> [f64; LARGEST_DIMENSION] {
-        let mut sizes = [0.0; LARGEST_DIMENSION];
+    pub fn sizes(&self, y: &Vector<T::Bound>) -> Vector<T::Bound> {
+        let mut sizes = [T::Bound::ZERO; LARGEST_DIMENSION];
         for (column, entry) in self.from_modal.iter().zip(y) {
-            let terms = column.iter().map(|it| (it.to_f64() * entry).abs());
+            let terms = column.iter().map(|it| (it.bound() * *entry).abs());
             sizes.iter_mut().zip(terms).for_each(|(size, term)| *size += term);
         }
         sizes
@@ -167,20 +166,20 @@ impl<T: Number> ModeFlow<T> {
 
     /// Bounds of the errors that the error of the matrix X makes in the entries of a state, from
     /// the sizes of its modal co-ordinates.
-    pub fn state_off(&self, y: &Vector<f64>) -> Vector<f64> {
+    pub fn state_off(&self, y: &Vector<T::Bound>) -> Vector<T::Bound> {
         times(&self.off[0], y)
     }
 
     /// Bounds of the rounding errors of a state's modal co-ordinates, each as the state that
     /// belongs to it.
-    pub fn entry_roundings(&self, z: &Vector<T>, unit: f64) -> Vec<Vector<f64>> {
-        let margin = (self.dimension + 2) as f64 * unit;
+    pub fn entry_roundings(&self, z: &Vector<T>) -> Vec<Vector<T::Bound>> {
+        let margin = T::unit() * (self.dimension + 2) as f64;
         let error = |(n, column): (usize, &Vector<T>)| {
-            let terms = self.to_modal.iter().zip(z).map(|(it, z)| (it[n].to_f64(), z.to_f64()));
-            let size: f64 = terms.map(|(factor, entry)| (factor * entry).abs()).sum();
-            let off = self.off[1].iter().zip(z).map(|(it, z)| it[n] * z.to_f64().abs());
-            let error = margin * size + off.sum::<f64>();
-            column.map(|entry| error * entry.to_f64())
+            let terms = self.to_modal.iter().zip(z).map(|(it, z)| (it[n].bound(), z.bound()));
+            let size: T::Bound = terms.map(|(factor, entry)| (factor * entry).abs()).sum();
+            let off = self.off[1].iter().zip(z).map(|(it, z)| it[n] * z.bound().abs());
+            let error = margin * size + off.sum::<T::Bound>();
+            column.map(|entry| error * entry.bound())
         };
         self.from_modal.iter().enumerate().map(error).collect()
     }
@@ -214,8 +213,8 @@ impl<T: Number> ModeFlow<T> {
         for (n, block) in self.blocks.iter().enumerate() {
             let turn = (block.speed * time.to_f64()).abs();
             let derivatives = match [turn * turn, turn * turn * turn] {
-                [square, _] if square <= 0.25 * unit::<T>() => 1,
-                [_, cube] if cube <= 0.25 * unit::<T>() => 2,
+                [square, _] if T::unit() * 0.25 >= square => 1,
+                [_, cube] if T::unit() * 0.25 >= cube => 2,
                 _ if turn <= 1.0 => {
                     self.advance(&mut later, time, 1 << n);
                     continue;
@@ -229,23 +228,32 @@ impl<T: Number> ModeFlow<T> {
 
     /// The norms of each block's co-ordinates.
     #[inline]
-    pub fn norms<U: Number>(&self, y: &Vector<U>) -> Vector<f64> {
-        let mut norms = [0.0; LARGEST_DIMENSION];
+    pub fn norms(&self, y: &Vector<T>) -> Vector<T::Bound> {
+        let mut norms = [T::Bound::ZERO; LARGEST_DIMENSION];
         self.set_norms(&mut norms, y);
         norms
     }
 
     /// Overwrites the norms of each block's co-ordinates; entries beyond the blocks stay.
     #[inline]
-    pub fn set_norms<U: Number>(&self, norms: &mut Vector<f64>, y: &Vector<U>) {
+    pub fn set_norms(&self, norms: &mut Vector<T::Bound>, y: &Vector<T>) {
         for (place, block) in norms.iter_mut().zip(&self.blocks) {
             *place = norm(&y[block.range()]);
         }
     }
 
+    /// The norms of each block's sizes or errors.
+    pub fn norms_of_bounds(&self, sizes: &Vector<T::Bound>) -> Vector<T::Bound> {
+        let mut norms = [T::Bound::ZERO; LARGEST_DIMENSION];
+        for (place, block) in norms.iter_mut().zip(&self.blocks) {
+            *place = euclidean(sizes[block.range()].iter().copied());
+        }
+        norms
+    }
+
     /// Norms of errors of each block's co-ordinates, a time later at most, but for what
     /// [`ModalRow::bound`](crate::affine::guards::row::ModalRow::bound) adds.
-    pub fn decayed(&self, norms: &Vector<f64>, time: f64) -> Vector<f64> {
+    pub fn decayed(&self, norms: &Vector<T::Bound>, time: f64) -> Vector<T::Bound> {
         let mut later = *norms;
         for (norm, block) in later.iter_mut().zip(&self.blocks) {
             *norm *= block.motion.decay(time);
@@ -254,22 +262,25 @@ impl<T: Number> ModeFlow<T> {
     }
 
     /// Bounds of the errors that underflow makes in each block's modal co-ordinates: none in zeros.
-    pub fn underflow(&self, y: &Vector<T>) -> Vector<f64> {
-        let lost = |norm: f64| if norm > 0.0 { 4.0 * UNDERFLOW * (1.0 + norm) } else { 0.0 };
+    pub fn underflow(&self, y: &Vector<T>) -> Vector<T::Bound> {
+        let lost = |norm: T::Bound| match norm > 0.0 {
+            true => T::Bound::UNDERFLOW * 4.0 * (T::Bound::of(1.0) + norm),
+            false => T::Bound::ZERO,
+        };
         self.norms(y).map(lost)
     }
 
-    /// The modal co-ordinates of an error, in f64.
-    pub fn modal_rounded(&self, z: &Vector<f64>) -> Vector<f64> {
+    /// The modal co-ordinates of an error.
+    pub fn modal_rounded(&self, z: &Vector<T::Bound>) -> Vector<T::Bound> {
         times(&self.to_modal_rounded, z)
     }
 
-    /// The columns of exp(M t), in f64.
-    pub fn transition(&self, time: T) -> Vec<Vector<f64>> {
+    /// The columns of exp(M t), rounded to the digits of bounds.
+    pub fn transition(&self, time: T) -> Vec<Vector<T::Bound>> {
         let column = |n: usize| {
             let mut unit = [T::zero(); LARGEST_DIMENSION];
             unit[n] = T::one();
-            self.state(&self.at(&self.modal(&unit), time).y).map(Number::to_f64)
+            self.state(&self.at(&self.modal(&unit), time).y).map(Number::bound)
         };
         (0..self.dimension).map(column).collect()
     }
@@ -291,33 +302,34 @@ impl<T: Number> FlowBlock<T> {
 
 /// The product of a matrix, given by its columns, with a vector; entries beyond its rows are zero.
 #[inline]
-fn times<T: Number>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
+fn times<E: Entry>(columns: &[Vector<E>], vector: &Vector<E>) -> Vector<E> {
     match columns.len() {
-        0..=4 => times_in::<T, 4>(columns, vector),
-        5..=8 => times_in::<T, 8>(columns, vector),
-        _ => times_in::<T, LARGEST_DIMENSION>(columns, vector),
+        0..=4 => times_in::<E, 4>(columns, vector),
+        5..=8 => times_in::<E, 8>(columns, vector),
+        _ => times_in::<E, LARGEST_DIMENSION>(columns, vector),
     }
 }
 
 /// The first `ROWS` entries of the product of a matrix, by columns, and a vector.
 #[inline]
-fn times_in<T: Number, const ROWS: usize>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
-    let mut sums = [T::zero(); ROWS];
+fn times_in<E: Entry, const ROWS: usize>(columns: &[Vector<E>], vector: &Vector<E>) -> Vector<E> {
+    let mut sums = [E::default(); ROWS];
     for (n, column) in columns.iter().enumerate() {
         let factor = vector[n];
         add_product(&mut sums, column, factor);
     }
-    let mut product = [T::zero(); LARGEST_DIMENSION];
+    let mut product = [E::default(); LARGEST_DIMENSION];
     product[..ROWS].copy_from_slice(&sums);
     product
 }
 
-/// A matrix of f64 by columns.
-fn by_columns(matrix: &[Vec<f64>]) -> Vec<Vector<f64>> {
+/// A matrix of bounds by columns.
+fn by_columns<B: Bound>(matrix: &[Vec<ScaledF64>]) -> Vec<Vector<B>> {
     let columns = matrix.first().map_or(0, Vec::len);
-    let mut all = vec![[0.0; LARGEST_DIMENSION]; columns];
+    let rounded = |it: &ScaledF64| B::of(it.parts().0).scaled(it.parts().1);
+    let mut all = vec![[B::ZERO; LARGEST_DIMENSION]; columns];
     for (n, row) in matrix.iter().enumerate() {
-        all.iter_mut().zip(row).for_each(|(column, entry)| column[n] = *entry);
+        all.iter_mut().zip(row).for_each(|(column, entry)| column[n] = rounded(entry));
     }
     all
 }

@@ -2,14 +2,14 @@
 
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::system::LARGEST_DIMENSION;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 /// Modal co-ordinates, and the sizes of what each is summed from: what rounding may do to it is
 /// proportional to that, and terms may cancel.
 #[derive(Clone, Copy, Debug)]
-pub struct ModalState<T> {
+pub struct ModalState<T: Number> {
     pub y: Vector<T>,
-    pub sizes: Vector<f64>,
+    pub sizes: Vector<T::Bound>,
 }
 
 impl<T: Number> ModalState<T> {
@@ -33,6 +33,6 @@ impl<T: Number> ModalState<T> {
 impl<T: Number> Default for ModalState<T> {
     #[inline]
     fn default() -> Self {
-        Self { y: [T::zero(); LARGEST_DIMENSION], sizes: [0.0; LARGEST_DIMENSION] }
+        Self { y: [T::zero(); LARGEST_DIMENSION], sizes: [T::Bound::ZERO; LARGEST_DIMENSION] }
     }
 }

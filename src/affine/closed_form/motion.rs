@@ -2,10 +2,10 @@
 
 use super::nilpotent::{SparseTriangular, nilpotent};
 use crate::affine::arithmetic::real::BigReal;
-use crate::affine::arithmetic::vector::{Vector, rounded, turned, unit, vector};
+use crate::affine::arithmetic::vector::{Entry, Vector, is_f64, rounded, turned, vector};
 use crate::affine::modal::{self, Kind};
 use crate::affine::model::system::LARGEST_DIMENSION;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 use std::ops::Range;
 
 /// A number in two words of an arithmetic.
@@ -16,7 +16,7 @@ pub(super) struct SplitNumber<T> {
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum BlockMotion<T> {
+pub(super) enum BlockMotion<T: Number> {
     /// The block stands still: exp(B t) = 1.
     Still,
     Real {
@@ -47,12 +47,12 @@ pub(super) struct PowerTables<T> {
 }
 
 fn words<T: Number>(value: &BigReal) -> SplitNumber<T> {
-    if unit::<T>() > 1e-20 {
+    if is_f64::<T>() {
         // Not the rounded sum of the two, which may be the next number: a half ulp is a tie.
         let (high, low) = value.words();
         return SplitNumber { high: T::exact(high), low: T::exact(low) };
     }
-    // An arithmetic of two words does not resolve what is left beyond them.
+    // Other arithmetics do not resolve what is left beyond their digits.
     SplitNumber { high: rounded(value), low: T::zero() }
 }
 
@@ -84,16 +84,16 @@ impl<T: Number> BlockMotion<T> {
 
     /// An upper bound of the factor by which the norm of co-ordinates that only decay and rotate
     /// shrinks in a time; 1 for other blocks.
-    pub fn decay(&self, time: f64) -> f64 {
+    pub fn decay(&self, time: f64) -> T::Bound {
         /// Room for the rounding of the exponential and of its exponent.
         const OUTWARD: f64 = 1.0 + 1e-9;
         match self {
             Self::Real { rate } | Self::Pair { rate: Some(rate), .. } => {
                 let exponent = rate.high.to_f64() * time;
                 let rounded = exponent * (1.0 - 1e-12);
-                if exponent < 0.0 { libm::exp(rounded) * OUTWARD } else { 1.0 }
+                if exponent < 0.0 { T::Bound::exp(rounded) * OUTWARD } else { T::Bound::of(1.0) }
             }
-            _ => 1.0,
+            _ => T::Bound::of(1.0),
         }
     }
 
@@ -101,7 +101,13 @@ impl<T: Number> BlockMotion<T> {
     /// it rounds by a few: terms may cancel, so the co-ordinate itself can be much smaller. Both
     /// sizes of a pair are at least its norm.
     #[inline]
-    pub fn advance(&self, own: Range<usize>, y: &mut Vector<T>, sizes: &mut Vector<f64>, time: T) {
+    pub fn advance(
+        &self,
+        own: Range<usize>,
+        y: &mut Vector<T>,
+        sizes: &mut Vector<T::Bound>,
+        time: T,
+    ) {
         match self {
             Self::Still => {}
             Self::Real { rate } => {
@@ -154,7 +160,13 @@ const TWICE: f64 = 2.0;
 /// `y = exp(B time) y` by so many terms of the Taylor series, in Horner's scheme, and the sizes of
 /// what that sums, raised.
 #[inline]
-fn taylor<T: Number>(matrix: &[Vector<T>], terms: usize, y: &mut [T], sizes: &mut [f64], time: T) {
+fn taylor<T: Number>(
+    matrix: &[Vector<T>],
+    terms: usize,
+    y: &mut [T],
+    sizes: &mut [T::Bound],
+    time: T,
+) {
     match y.len() {
         2 => taylor_in::<T, 2>(matrix, terms, y, sizes, time),
         3 => taylor_in::<T, 3>(matrix, terms, y, sizes, time),
@@ -170,42 +182,42 @@ fn taylor_in<T: Number, const LENGTH: usize>(
     matrix: &[Vector<T>],
     terms: usize,
     y: &mut [T],
-    sizes: &mut [f64],
+    sizes: &mut [T::Bound],
     time: T,
 ) {
     let count = y.len();
-    let (mut start, mut sizes_at_start) = ([T::zero(); LENGTH], [0.0; LENGTH]);
+    let (mut start, mut sizes_at_start) = ([T::zero(); LENGTH], [T::Bound::ZERO; LENGTH]);
     start[..count].copy_from_slice(y);
     sizes_at_start[..count].copy_from_slice(sizes);
     let (mut now, mut sizes_now) = (start, sizes_at_start);
     for k in (1..=terms).rev() {
         let (last, sizes_last) = (now, sizes_now);
         let factor = if k == 1 { time } else { time / T::exact(k as f64) };
-        let size_of_factor = factor.to_f64().abs();
+        let size_of_factor = factor.bound().abs();
         for n in 0..count {
             let row = &matrix[n];
-            let (mut sum, mut size) = (row[0] * last[0], row[0].to_f64().abs() * sizes_last[0]);
+            let (mut sum, mut size) = (row[0] * last[0], row[0].bound().abs() * sizes_last[0]);
             for k in 1..count {
                 sum = sum + row[k] * last[k];
-                size += row[k].to_f64().abs() * sizes_last[k];
+                size += row[k].bound().abs() * sizes_last[k];
             }
             now[n] = start[n] + factor * sum;
             sizes_now[n] = sizes_at_start[n] + size_of_factor * size;
         }
     }
     y.copy_from_slice(&now[..count]);
-    sizes.iter_mut().zip(sizes_now).for_each(|(size, now)| *size = TWICE * now);
+    sizes.iter_mut().zip(sizes_now).for_each(|(size, now)| *size = now * TWICE);
 }
 
 #[inline]
-fn copied<T: Number>(y: &[T]) -> Vector<T> {
-    let mut copy = [T::zero(); LARGEST_DIMENSION];
+fn copied<E: Entry>(y: &[E]) -> Vector<E> {
+    let mut copy = [E::default(); LARGEST_DIMENSION];
     copy[..y.len()].copy_from_slice(y);
     copy
 }
 
 #[inline(always)]
-fn decay<T: Number>(rate: Option<SplitNumber<T>>, time: T, y: &mut [T], sizes: &mut [f64]) {
+fn decay<T: Number>(rate: Option<SplitNumber<T>>, time: T, y: &mut [T], sizes: &mut [T::Bound]) {
     let Some(rate) = rate else { return };
     let factor = exponential(rate, time);
     y.iter_mut().for_each(|entry| *entry = *entry * factor);
@@ -233,16 +245,20 @@ fn circular<T: Number>(frequency: SplitNumber<T>, time: T) -> (T, T) {
     turned(high.sin_cos(), low)
 }
 
-/// A sixth, rounded up, of the relative rounding error of a phase: a frequency is rounded to
-/// 2^-106, its product with a time by four times that. Sizes are counted in at least six roundings
-/// where they are used.
-const PHASE: f64 = 0.25 * f64::EPSILON * f64::EPSILON;
+/// A sixth, rounded up, of the relative rounding error of a phase in units of the arithmetic: a
+/// frequency is rounded to a quarter of a unit, where f64 has two words to 2^-106, and its product
+/// with a time by four times that. Sizes are counted in at least six roundings where they are used.
+#[inline]
+fn phase<T: Number>() -> f64 {
+    if is_f64::<T>() { 0.5 * f64::EPSILON } else { 0.25 }
+}
 
 /// A factor, raised by the rounding error of its exponent or angle, a rate times a time, in units
 /// of the arithmetic.
 #[inline]
-fn raised<T: Number>(factor: T, rate: &SplitNumber<T>, time: T) -> f64 {
-    factor.to_f64() * (1.0 + PHASE / unit::<T>() * (rate.high * time).to_f64().abs())
+fn raised<T: Number>(factor: T, rate: &SplitNumber<T>, time: T) -> T::Bound {
+    let angle = (rate.high * time).bound().abs();
+    factor.bound() * (T::Bound::of(1.0) + angle * phase::<T>())
 }
 
 impl<T: Number> PowerTables<T> {
@@ -290,7 +306,7 @@ impl<T: Number> PowerTables<T> {
     /// The co-ordinates a time later, and the sizes of what they are summed from, once for each
     /// product; not inlined, because its vectors would take other motions' places in registers.
     #[inline(never)]
-    fn advance(&self, y: &mut [T], sizes: &mut [f64], time: T) {
+    fn advance(&self, y: &mut [T], sizes: &mut [T::Bound], time: T) {
         let steps = self.steps(time.to_f64());
         if steps >= Self::MOST_STEPS {
             // So long a time is beyond the tables.
@@ -300,12 +316,12 @@ impl<T: Number> PowerTables<T> {
         let mut products = 1.0;
         for matrix in self.factors(steps) {
             products += 1.0;
-            let (last, sizes_last): (Vector<T>, Vector<f64>) = (copied(y), copied(sizes));
+            let (last, sizes_last): (Vector<T>, Vector<T::Bound>) = (copied(y), copied(sizes));
             for (n, row) in matrix.iter().enumerate() {
-                let (mut sum, mut size) = (T::zero(), 0.0);
+                let (mut sum, mut size) = (T::zero(), T::Bound::ZERO);
                 for (k, factor) in row[..y.len()].iter().enumerate() {
                     sum = sum + *factor * last[k];
-                    size += factor.to_f64().abs() * sizes_last[k];
+                    size += factor.bound().abs() * sizes_last[k];
                 }
                 (y[n], sizes[n]) = (sum, size);
             }
@@ -324,7 +340,7 @@ impl<T: Number> PowerTables<T> {
         // |B rest| is at most 1/2 where the rest is a step.
         let size = 0.5 * (rest / self.step).abs();
         let (mut terms, mut next) = (0, size);
-        while next > BELOW * unit::<T>() && terms < 2 * T::TERMS {
+        while T::unit() * BELOW < next && terms < 2 * T::TERMS {
             terms += 1;
             next *= size / (terms + 1) as f64;
         }

@@ -8,7 +8,7 @@ use crate::affine::arithmetic::real::BigReal;
 use crate::affine::arithmetic::vector::{Vector, rounded};
 use crate::affine::modal;
 use crate::affine::model::system::LARGEST_DIMENSION;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 /// The rounding that products of a nilpotent matrix leave of a zero, relative to the matrix's norm:
 /// 2^-300.
@@ -17,23 +17,23 @@ const NOTHING: f64 = 4.909093465297727e-91;
 /// A strictly upper triangular matrix in some order of its rows, of which only the entries that are
 /// not zero are kept.
 #[derive(Clone, Debug)]
-pub(super) struct SparseTriangular<T> {
+pub(super) struct SparseTriangular<T: Number> {
     rows: Vec<SparseRow<T>>,
 }
 
 /// A row of the triangular matrix: its place in the vector, and its entries that are not zero.
 #[derive(Clone, Debug)]
-struct SparseRow<T> {
+struct SparseRow<T: Number> {
     to: usize,
     entries: Vec<SparseEntry<T>>,
 }
 
 /// An entry of the triangular matrix, with its column as a place in the vector.
 #[derive(Clone, Copy, Debug)]
-struct SparseEntry<T> {
+struct SparseEntry<T: Number> {
     from: usize,
     factor: T,
-    size: f64,
+    size: T::Bound,
 }
 
 /// The matrix of a block less its rate, and the least power of it that is zero.
@@ -74,7 +74,7 @@ impl<T: Number> SparseTriangular<T> {
     ///
     /// A row is moved before those that it is made of, which still are what they were.
     #[inline]
-    pub fn advance(&self, terms: usize, y: &mut Vector<T>, sizes: &mut Vector<f64>, time: T) {
+    pub fn advance(&self, terms: usize, y: &mut Vector<T>, sizes: &mut Vector<T::Bound>, time: T) {
         if terms == 1 {
             for row in &self.rows {
                 row.advance((y[row.to], sizes[row.to]), y, sizes, time);
@@ -82,7 +82,7 @@ impl<T: Number> SparseTriangular<T> {
             return;
         }
         // Entry by entry: a copy of all in wide registers would wait for entries just written.
-        let mut starts = [(T::zero(), 0.0); LARGEST_DIMENSION];
+        let mut starts = [(T::zero(), T::Bound::ZERO); LARGEST_DIMENSION];
         for (start, row) in starts.iter_mut().zip(&self.rows) {
             *start = (y[row.to], sizes[row.to]);
         }
@@ -100,7 +100,7 @@ impl<T: Number> SparseRow<T> {
         let there = row.iter().enumerate().filter(|(_, entry)| !entry.is_zero());
         let entry = |(column, entry): (usize, &BigReal)| {
             let factor = rounded::<T>(entry);
-            SparseEntry { from: at + column, factor, size: factor.to_f64().abs() }
+            SparseEntry { from: at + column, factor, size: factor.bound().abs() }
         };
         Self { to: at + n, entries: there.map(entry).collect() }
     }
@@ -110,18 +110,18 @@ impl<T: Number> SparseRow<T> {
     #[inline(always)]
     fn advance(
         &self,
-        (start, size_at_start): (T, f64),
+        (start, size_at_start): (T, T::Bound),
         y: &mut Vector<T>,
-        sizes: &mut Vector<f64>,
+        sizes: &mut Vector<T::Bound>,
         factor: T,
     ) {
-        let (mut sum, mut size) = (T::zero(), 0.0);
+        let (mut sum, mut size) = (T::zero(), T::Bound::ZERO);
         for entry in &self.entries {
             sum = sum + entry.factor * y[entry.from];
             size += entry.size * sizes[entry.from];
         }
         y[self.to] = start + factor * sum;
-        sizes[self.to] = size_at_start + factor.to_f64().abs() * size;
+        sizes[self.to] = size_at_start + factor.bound().abs() * size;
     }
 }
 

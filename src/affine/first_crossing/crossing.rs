@@ -7,13 +7,13 @@
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment, Passed, PerGuard};
 use crate::affine::guards::row::ModalRow;
 use crate::affine::guards::track::{SearchWork, Track, live, outward};
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 /// The number of Taylor terms that are summed to guess at a crossing, at most.
 const TERMS: usize = 8;
 
 /// A crossing that is proved to be the only one shortly after a point.
-struct GuardCrossing<T> {
+struct GuardCrossing<T: Number> {
     /// The number of the guard.
     guard: usize,
     /// The time from the point to the crossing, by a Taylor polynomial.
@@ -23,7 +23,7 @@ struct GuardCrossing<T> {
     /// An upper bound of the time from the point to the crossing.
     within: f64,
     /// The guard's rate at the point; half of it is the least that it has before `within`.
-    slope: f64,
+    slope: T::Bound,
     /// A bound of the rounding error of the crossing's time.
     error: f64,
 }
@@ -64,7 +64,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let is_open = |n: usize| all.iter().all(|it| it.guard != n) && !passed.has(n, end);
         for (n, track) in live(tracks).filter(|(n, _)| is_open(*n)) {
             let bound = self.upper_bound(n, track, at, first.within);
-            let below = bound <= 4.0 * at.slack[n];
+            let below = bound <= at.slack[n] * 4.0;
             if !below {
                 return None;
             }
@@ -107,7 +107,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let terms = terms(row);
         let next = row.bound(terms, &at.norms, it.within);
         let rest = (1..=terms).fold(next, |rest, k| rest * it.within / k as f64);
-        it.change + 2.0 * rest / it.slope
+        it.change + (rest * 2.0 / it.slope).to_f64()
     }
 
     /// Whether a guard rises through zero once, shortly after a point, and when.
@@ -115,24 +115,25 @@ impl<T: Number> GuardedSegment<'_, T> {
     fn rises(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> Option<GuardCrossing<T>> {
         let orders = outward(&at.orders[n], track);
         let slack = at.slack[n];
-        let [value, slope, bend, third] = orders.map(Number::to_f64);
-        let rising = slope > 0.0 && value <= 4.0 * slack;
+        let [value, slope, bend, third] = orders.map(Number::bound);
+        let rising = slope > 0.0 && value <= slack * 4.0;
         if track.zeros > 0 || !rising {
             return None;
         }
-        let within = (2.0 * value.abs() + 8.0 * slack) / slope;
+        let within = ((value.abs() * 2.0 + slack * 8.0) / slope).to_f64();
         let fourth = self.rows[n].bound(4, &at.norms, within);
         let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
         let (bend, third) = (bend.abs() + bend_off, third.abs() + third_off);
-        let change = slope_off + within * (bend + within * (0.5 * third + within * fourth / 6.0));
-        let steadily = change < 0.5 * slope;
+        let change = slope_off + (bend + (third * 0.5 + fourth * within / 6.0) * within) * within;
+        let steadily = change < slope * 0.5;
         if !steadily {
             return None;
         }
         let (after, change) = self.root(n, track, at);
         // Where terms of the slope cancel, their rounding is more than that of the value.
-        let moved = within * (slope_off + within * (0.5 * bend_off + within * third_off / 6.0));
-        let (is_finite, error) = (after.to_f64().is_finite(), 2.0 * (slack + moved) / slope);
+        let moved = (slope_off + (bend_off * 0.5 + third_off * within / 6.0) * within) * within;
+        let is_finite = after.to_f64().is_finite();
+        let error = ((slack + moved) * 2.0 / slope).to_f64();
         is_finite.then_some(GuardCrossing { guard: n, after, change, within, slope, error })
     }
 
@@ -155,7 +156,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             }
             *term = orders[k] * T::inverse_factorial(k);
         }
-        let (mut step, mut change) = (T::exact(series_reversion(&first)), f64::INFINITY);
+        let (mut step, mut change) = (T::of_bound(series_reversion(&first)), f64::INFINITY);
         for _ in 0..2 {
             let (mut value, mut slope) = (T::zero(), T::zero());
             for term in all[..last].iter().rev() {
@@ -170,7 +171,7 @@ impl<T: Number> GuardedSegment<'_, T> {
 
     /// Bounds of the rounding errors of the value and three derivatives of a guard.
     #[inline]
-    fn order_roundings(&self, n: usize, at: &GuardedPoint<T>) -> [f64; 4] {
+    fn order_roundings(&self, n: usize, at: &GuardedPoint<T>) -> [T::Bound; 4] {
         self.rows[n].order_sizes::<4>(&at.modal.sizes).map(|size| self.margin * size)
     }
 
@@ -182,37 +183,37 @@ impl<T: Number> GuardedSegment<'_, T> {
         track: &Track,
         at: &GuardedPoint<T>,
         within: f64,
-    ) -> f64 {
-        let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
+    ) -> T::Bound {
+        let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::bound);
         let fourth = self.rows[n].bound(4, &at.norms, within);
         let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
         let slope = slope + slope_off;
-        let rest = 0.5 * bend.abs() + within * (third.abs() / 6.0 + within * fourth / 24.0);
-        let rest = rest + 0.5 * bend_off + within * third_off / 6.0;
+        let rest = bend.abs() * 0.5 + (third.abs() / 6.0 + fourth * within / 24.0) * within;
+        let rest = rest + bend_off * 0.5 + third_off * within / 6.0;
         match track.zeros {
-            0 => value + within * (slope.max(0.0) + within * rest),
+            0 => value + (slope.max(T::Bound::ZERO) + rest * within) * within,
             // The guard has left zero for the inside, and does not return so soon.
-            1 if slope + within * rest < 0.0 => f64::NEG_INFINITY,
-            _ => f64::INFINITY,
+            1 if slope + rest * within < 0.0 => -T::Bound::INFINITY,
+            _ => T::Bound::INFINITY,
         }
     }
 }
 
 /// The number of a guard's Taylor terms that are summed to guess at a crossing.
 #[inline]
-fn terms<T>(row: &ModalRow<T>) -> usize {
+fn terms<T: Number>(row: &ModalRow<T>) -> usize {
     row.last.clamp(4, TERMS)
 }
 
 /// The step to the root of a cubic that is near zero, by the series of its inverse to the third
 /// order: what a cubic tells of a guard is no more than that.
 #[inline]
-fn series_reversion<T: Number>(orders: &[T; 4]) -> f64 {
-    let [value, slope, bend, third] = orders.map(Number::to_f64);
-    let inverse = 1.0 / slope;
+fn series_reversion<T: Number>(orders: &[T; 4]) -> T::Bound {
+    let [value, slope, bend, third] = orders.map(Number::bound);
+    let inverse = T::Bound::of(1.0) / slope;
     let step = -value * inverse;
     let share = step * inverse;
-    let (second, third) = (0.5 * bend * share, third / 6.0 * step * share);
+    let (second, third) = (bend * 0.5 * share, third / 6.0 * step * share);
     let square = second * second;
-    step + step * (5.0 * second * (third - square) + (2.0 * square - third) - second)
+    step + step * (second * 5.0 * (third - square) + (square * 2.0 - third) - second)
 }

@@ -2,9 +2,8 @@
 //! lies above it, in any arithmetic: the theorem and the interpolant are those of
 //! [`crate::crossing::certificate`].
 
-use crate::affine::arithmetic::vector::unit;
 use crate::crossing::certificate::{MIDDLE, in_order, interpolant};
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 use crate::numeric::real::Real;
 use smallvec::SmallVec;
 
@@ -64,9 +63,9 @@ impl<T: Number> Lengths<T> {
 pub(super) fn sign_on_piece<T: Number>(
     ends: &[[T; 4]; 2],
     lengths: &Lengths<T>,
-    eighth: f64,
-    [from, to]: [f64; 2],
-    slack: f64,
+    eighth: T::Bound,
+    [from, to]: [T::Bound; 2],
+    slack: T::Bound,
     zeros: usize,
 ) -> SignOnPiece {
     let Lengths { seventh, sixth, fifth, .. } = *lengths;
@@ -77,30 +76,31 @@ pub(super) fn sign_on_piece<T: Number>(
     );
     let mut hull = in_order(pairs, middle);
     if eighth != 0.0 {
-        hull[4] = hull[4] + lengths.middle * T::exact(eighth);
+        hull[4] = hull[4] + lengths.middle * T::of_bound(eighth);
     }
     if from != 0.0 || to != 0.0 {
         for (n, entry) in hull.iter_mut().enumerate() {
             let share = n as f64 * 0.125;
-            *entry = *entry + T::exact(from * (1.0 - share) + to * share);
+            *entry = *entry + T::of_bound(from * (1.0 - share) + to * share);
         }
     }
-    let [mut sum, mut size, mut top] = [0.0_f64, 0.0, f64::NEG_INFINITY];
-    for entry in hull.map(Number::to_f64) {
+    let [mut sum, mut size] = [T::Bound::ZERO; 2];
+    let mut top = -T::Bound::INFINITY;
+    for entry in hull.map(Number::bound) {
         // Unlike the maximum, the sum keeps NaN.
         sum += entry.abs();
-        size = size.larger(entry.abs());
-        top = top.larger(entry);
+        size = larger(size, entry.abs());
+        top = larger(top, entry);
     }
     if !(sum + slack).is_finite() {
         return SignOnPiece::NegativeUntil(0.0);
     }
-    let slack = slack + 16.0 * unit::<T>() * size;
+    let slack = slack + T::unit() * 16.0 * size;
     let stays_below = top < -slack || zeros > 0 && is_clear(&hull, slack, zeros);
     if stays_below {
         return SignOnPiece::Negative;
     }
-    if size <= 64.0 * slack && top <= slack {
+    if size <= slack * 64.0 && top <= slack {
         return SignOnPiece::Touch;
     }
     SignOnPiece::NegativeUntil(clear_share(&hull, slack, zeros))
@@ -118,19 +118,19 @@ fn scaled<T: Number>(orders: &[T; 4], [seventh, sixth, fifth]: [T; 3]) -> [T; 4]
 /// that belong to it are exact but for their own roundings, however small they are relative to the
 /// others' slack.
 #[inline]
-fn is_clear<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> bool {
+fn is_clear<T: Number>(hull: &Hull<T>, slack: T::Bound, zeros: usize) -> bool {
     if zeros == 0 {
-        return hull.iter().all(|it| it.to_f64() < -slack);
+        return hull.iter().all(|it| it.bound() < -slack);
     }
-    let size = hull.iter().fold(0.0_f64, |size, it| size.larger(it.to_f64().abs()));
-    let relative = 64.0 * unit::<T>() * size;
+    let size = hull.iter().fold(T::Bound::ZERO, |size, it| larger(size, it.bound().abs()));
+    let relative = T::unit() * 64.0 * size;
     let room = |n: usize| if n < 4 { relative } else { slack.max(relative) };
-    hull.iter().enumerate().skip(zeros.min(8)).all(|(n, it)| it.to_f64() < -room(n))
+    hull.iter().enumerate().skip(zeros.min(8)).all(|(n, it)| it.bound() < -room(n))
 }
 
 /// The share of the piece up to which the hull is negative.
 #[inline]
-fn clear_share<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> f64 {
+fn clear_share<T: Number>(hull: &Hull<T>, slack: T::Bound, zeros: usize) -> f64 {
     if let Some(share) = simple_root(hull, slack, zeros) {
         return share;
     }
@@ -157,8 +157,8 @@ fn clear_share<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> f64 {
 /// A share of a piece on which a hull is negative whose coefficients change their sign once,
 /// upward: by Descartes' rule it has one root, which is beyond the share.
 #[inline]
-fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f64> {
-    let hull = hull.map(|it| (it + T::exact(slack)).to_f64());
+fn simple_root<T: Number>(hull: &Hull<T>, slack: T::Bound, zeros: usize) -> Option<f64> {
+    let hull = relative(hull.map(|it| (it + T::of_bound(slack)).bound()));
     let zeros = zeros.min(8);
     let first = zeros + hull[zeros..].iter().position(|it| *it >= 0.0)?;
     if first == zeros || !hull[first..].iter().all(|it| *it >= 0.0) || hull[8] <= 0.0 {
@@ -168,6 +168,23 @@ fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f6
     let (below, above) = (hull[first - 1], hull[first]);
     let place = 0.125 * ((first - 1) as f64 + below / (below - above));
     Some(negative_until(&hull, place))
+}
+
+/// The larger one; of a NaN nothing is promised.
+#[inline(always)]
+fn larger<B: Bound>(a: B, b: B) -> B {
+    if a < b { b } else { a }
+}
+
+/// Coefficients in f64: only their quotients matter, so that a common power of two is left out where
+/// their exponents are beyond those of f64.
+#[inline]
+fn relative<B: Bound>(hull: [B; 9]) -> [f64; 9] {
+    if B::UNDERFLOW > 0.0 {
+        return hull.map(Bound::to_f64);
+    }
+    let size = hull.iter().fold(B::ZERO, |size, it| larger(size, it.abs()));
+    hull.map(|it| it.scaled(-size.parts().1).to_f64())
 }
 
 /// A place just before the root of a hull that has one: where it is negative beyond rounding.

@@ -8,14 +8,14 @@
 //! has no end.
 
 use super::hull::{self, Lengths, SignOnPiece};
-use crate::affine::arithmetic::vector::{Vector, approximate_root};
+use crate::affine::arithmetic::vector::Vector;
 use crate::affine::closed_form::bound::BlockGrowth;
 use crate::affine::guards::point::{Ends, GuardedPoint, GuardedSegment};
 use crate::affine::guards::row::{ModalRow, RowPart};
 use crate::affine::guards::track::{Track, outward};
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::crossing::certificate::MIDDLE;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 /// The share of a guard's size that the remainder of a piece may have.
 const REMAINDER: f64 = 3e-2;
@@ -55,7 +55,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         longest: f64,
     ) -> Reach {
         let row = &self.rows[n];
-        let orders = outward(&left.orders[n], track).map(Number::to_f64);
+        let orders = outward(&left.orders[n], track).map(Number::bound);
         let rests = eighths(row, left, longest);
         let whole = length(&orders, rests[0], track.zeros, || row.size(&left.modal.y)).min(longest);
         let mut reach = Reach { cut: 0, length: whole, whole };
@@ -65,7 +65,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         if reach.length == f64::INFINITY {
             let orders =
                 outward(&row.first_orders(&left.modal.y, row.first_column(reach.cut)), track);
-            let orders = orders.map(Number::to_f64);
+            let orders = orders.map(Number::bound);
             reach.length = polynomial_reach(&orders, track.zeros, left.slack[n]);
             reach.whole = reach.whole.min(reach.length);
         }
@@ -93,7 +93,14 @@ impl<T: Number> GuardedSegment<'_, T> {
         if cut == 0 {
             let orders = [outward(&left.orders[n], track), outward(&right.orders[n], track)];
             let eighth = eighth(row, track, left, 0, length);
-            return hull::sign_on_piece(&orders, lengths, eighth, [0.0; 2], slack, track.zeros);
+            return hull::sign_on_piece(
+                &orders,
+                lengths,
+                eighth,
+                [T::Bound::ZERO; 2],
+                slack,
+                track.zeros,
+            );
         }
         let raise = raise(row, track, ends, cut);
         let from = row.first_column(cut);
@@ -105,16 +112,23 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// The sum of the sizes of the derivatives' terms, as far as a coefficient of a hull has them:
     /// the third and fourth have most, 3/7 L, L^2/14 and L^3/210 of the first three.
     #[inline]
-    fn derivatives(&self, row: &ModalRow<T>, at: &GuardedPoint<T>, cut: usize, length: f64) -> f64 {
-        let size = |part: &RowPart| {
+    fn derivatives(
+        &self,
+        row: &ModalRow<T>,
+        at: &GuardedPoint<T>,
+        cut: usize,
+        length: f64,
+    ) -> T::Bound {
+        let size = |part: &RowPart<T::Bound>| {
             // Zeros contribute nothing, even where their factors overflow.
-            let sizes: f64 = at.modal.sizes[self.flow.blocks[part.block].range()].iter().sum();
+            let sizes = at.modal.sizes[self.flow.blocks[part.block].range()].iter().copied();
+            let sizes: T::Bound = sizes.sum();
             if sizes == 0.0 {
-                return 0.0;
+                return T::Bound::ZERO;
             }
             let norm = |k: usize| sizes * part.growth.bound(&part.norms, k, length);
-            let slope = 3.0 / 7.0 * norm(1);
-            (slope + length * (norm(2) / 14.0 + length * norm(3) / 210.0)) * length
+            let slope = norm(1) * (3.0 / 7.0);
+            (slope + (norm(2) / 14.0 + norm(3) * length / 210.0) * length) * length
         };
         row.parts[cut..].iter().map(size).sum()
     }
@@ -126,7 +140,7 @@ fn enclose<T: Number>(
     row: &ModalRow<T>,
     track: &Track,
     left: &GuardedPoint<T>,
-    (begin, rests, longest): (f64, &Vector<f64>, f64),
+    (begin, rests, longest): (T::Bound, &Vector<T::Bound>, f64),
     reach: &mut Reach,
 ) {
     /// A rest that is smaller by less makes a piece longer by less than a third.
@@ -135,26 +149,28 @@ fn enclose<T: Number>(
     for (k, part) in row.parts.iter().enumerate() {
         let own = part_of(row, part, track, &left.modal.y);
         value += match part.growth {
-            BlockGrowth::Decaying => own.max(0.0) - own,
+            BlockGrowth::Decaying => own.max(T::Bound::ZERO) - own,
             BlockGrowth::Bounded => part.norms[0] * left.norms[part.block] - own,
             BlockGrowth::Polynomial | BlockGrowth::Growing(_) => break,
         };
-        let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { 0.0 };
+        let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { T::Bound::ZERO };
         let is_constant = || row.parts[k + 1..].iter().all(|it| it.norms[1] == 0.0);
         let share = if rest == 0.0 && is_constant() { CLOSE } else { LEFT };
-        if value > share * begin {
-            if part.growth == BlockGrowth::Decaying && rest < MUCH * best {
+        if value > begin * share {
+            if part.growth == BlockGrowth::Decaying && rest < best * MUCH {
                 let from = row.first_column(k + 1);
-                let slope = track.outward * row.first_orders(&left.modal.y, from)[1].to_f64();
-                let length = held_back(-own, part.norms[1] / part.norms[0], value, slope);
+                let slope = row.first_orders(&left.modal.y, from)[1].bound() * track.outward;
+                let rate = (part.norms[1] / part.norms[0]).to_f64();
+                let length = held_back(-own, rate, value, slope);
                 if length > reach.length {
                     (reach.cut, reach.length) = (k + 1, length.min(longest));
                 }
             }
             break;
         }
-        if rest < MUCH * best {
-            let length = approximate_root(REMAINDER * MIDDLE * -value / rest, 8).min(longest);
+        if rest < best * MUCH {
+            let root = (-value * (REMAINDER * MIDDLE) / rest).approximate_root(8);
+            let length = root.to_f64().min(longest);
             if length > reach.length {
                 best = rest;
                 (reach.cut, reach.length) = (k + 1, length);
@@ -167,17 +183,17 @@ fn enclose<T: Number>(
 /// it: until it is twice as large as the rest has become. The next piece is short relative to the
 /// decay time.
 #[inline]
-fn held_back(decay: f64, rate: f64, value: f64, slope: f64) -> f64 {
-    let until = |rest: f64| libm::log(decay / (2.0 * rest)) / rate;
+fn held_back<B: Bound>(decay: B, rate: f64, value: B, slope: B) -> f64 {
+    let until = |rest: B| libm::log((decay / (rest * 2.0)).to_f64()) / rate;
     let length = until(value.abs());
-    if length > 0.0 { until(value.abs() + length * slope.abs()) } else { 0.0 }
+    if length > 0.0 { until(value.abs() + slope.abs() * length) } else { 0.0 }
 }
 
 /// For each block, a bound of the eighth derivative of its part and of all later ones.
 #[inline]
-fn eighths<T: Number>(row: &ModalRow<T>, left: &GuardedPoint<T>, longest: f64) -> Vector<f64> {
-    let mut rests = [0.0; LARGEST_DIMENSION];
-    let mut sum = 0.0;
+fn eighths<T: Number>(row: &ModalRow<T>, left: &GuardedPoint<T>, longest: f64) -> Vector<T::Bound> {
+    let mut rests = [T::Bound::ZERO; LARGEST_DIMENSION];
+    let mut sum = T::Bound::ZERO;
     for (n, part) in row.parts.iter().enumerate().rev() {
         sum += part.bound(8, longest, &left.norms);
         rests[n] = sum;
@@ -193,8 +209,8 @@ fn eighth<T: Number>(
     left: &GuardedPoint<T>,
     cut: usize,
     length: f64,
-) -> f64 {
-    let mut sum = 0.0;
+) -> T::Bound {
+    let mut sum = T::Bound::ZERO;
     for part in &row.parts[cut..] {
         // An even derivative of a decay has the sign of the decay.
         let falls =
@@ -209,8 +225,8 @@ fn eighth<T: Number>(
 /// Upper bounds of the first blocks' part in a guard at both ends of a piece; between them the part
 /// is below the straight line.
 #[inline]
-fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize) -> [f64; 2] {
-    let mut raise = [0.0; 2];
+fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize) -> [T::Bound; 2] {
+    let mut raise = [T::Bound::ZERO; 2];
     for part in &row.parts[..cut] {
         let [from, to] = [&ends.left, &ends.right].map(|it| part_of(row, part, track, &it.modal.y));
         let own = match part.growth {
@@ -227,55 +243,56 @@ fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize
 #[inline]
 pub(super) fn part_of<T: Number>(
     row: &ModalRow<T>,
-    part: &RowPart,
+    part: &RowPart<T::Bound>,
     track: &Track,
     y: &Vector<T>,
-) -> f64 {
+) -> T::Bound {
     let columns = &row.columns[part.columns.0..part.columns.1];
-    let terms = columns.iter().map(|it| it.orders[0].to_f64() * y[it.at].to_f64());
-    track.outward * terms.sum::<f64>()
+    let terms = columns.iter().map(|it| it.orders[0].bound() * y[it.at].bound());
+    terms.sum::<T::Bound>() * track.outward
 }
 
 /// A length that ends a little beyond the root that the first terms of a polynomial suggest, or
 /// where they have grown so much that rounding would hide the beginning.
 #[inline]
-fn polynomial_reach(orders: &[f64; 4], zeros: usize, slack: f64) -> f64 {
+fn polynomial_reach<B: Bound>(orders: &[B; 4], zeros: usize, slack: B) -> f64 {
     const GROWTH: f64 = 1e6;
     let [value, slope, bend, third] = *orders;
     let size = value.abs().max(slack);
     if zeros > 0 || size == 0.0 {
         return f64::INFINITY;
     }
-    let rise = if value < -slack { rise([value, slope, 0.5 * bend]) } else { f64::INFINITY };
-    let by_slope = GROWTH * size / slope.abs();
-    let by_bend = approximate_root(GROWTH * size / bend.abs(), 2);
-    let by_third = approximate_root(GROWTH * size / third.abs(), 3);
-    (1.25 * rise).min(by_slope).min(by_bend).min(by_third)
+    let rise = if value < -slack { rise([value, slope, bend * 0.5]) } else { B::INFINITY };
+    let by_slope = size * GROWTH / slope.abs();
+    let by_bend = (size * GROWTH / bend.abs()).approximate_root(2);
+    let by_third = (size * GROWTH / third.abs()).approximate_root(3);
+    (rise * 1.25).min(by_slope).min(by_bend).min(by_third).to_f64()
 }
 
 /// The root at which a parabola that is negative at zero rises through zero; infinite if it does
 /// not.
 #[inline]
-pub(super) fn rise([value, slope, bend]: [f64; 3]) -> f64 {
+pub(super) fn rise<B: Bound>([value, slope, bend]: [B; 3]) -> B {
     // The form of the root in which nothing cancels.
-    let divisor = slope + (slope * slope - 4.0 * value * bend).sqrt();
-    if divisor > 0.0 { -2.0 * value / divisor } else { f64::INFINITY }
+    let divisor = slope + (slope * slope - value * 4.0 * bend).sqrt();
+    if divisor > 0.0 { value * -2.0 / divisor } else { B::INFINITY }
 }
 
 /// A length on which the remainder stays small relative to what a guard becomes by one of its first
 /// derivatives that are not zero.
 #[inline]
-fn length(orders: &[f64; 4], eighth: f64, zeros: usize, size: impl Fn() -> f64) -> f64 {
+fn length<B: Bound>(orders: &[B; 4], eighth: B, zeros: usize, size: impl Fn() -> B) -> f64 {
     if eighth == 0.0 {
         return f64::INFINITY;
     }
-    if eighth.is_nan() || eighth == f64::INFINITY {
+    if !eighth.is_finite() {
         return 0.0;
     }
-    let room = REMAINDER * MIDDLE / eighth;
-    let [value, slope, bend, _] = orders.map(f64::abs);
-    let smallest = SMALLEST * size();
+    let room = B::of(REMAINDER * MIDDLE) / eighth;
+    let [value, slope, bend, _] = orders.map(Bound::abs);
+    let smallest = size() * SMALLEST;
     let by_value = if zeros > 0 { smallest } else { value.max(smallest) };
-    let by_slope = if zeros > 1 { 0.0 } else { approximate_root(0.5 * room * slope, 7) };
-    approximate_root(room * by_value, 8).max(by_slope).max(approximate_root(0.125 * room * bend, 6))
+    let by_slope = if zeros > 1 { B::ZERO } else { (room * 0.5 * slope).approximate_root(7) };
+    let by_bend = (room * 0.125 * bend).approximate_root(6);
+    (room * by_value).approximate_root(8).max(by_slope).max(by_bend).to_f64()
 }

@@ -15,10 +15,9 @@ use super::crossing::FirstCrossing;
 use super::hull::{Lengths, SignOnPiece};
 use super::reach::Reach;
 use super::taylor::FailedAttempts;
-use crate::affine::arithmetic::vector::unit;
 use crate::affine::guards::point::{Ends, GuardedPoint, GuardedSegment, Passed, PerGuard};
 use crate::affine::guards::track::{SearchWork, Track, live};
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 use std::ops::ControlFlow;
 
 /// The largest number of pieces from one event to the next, of all guards together: about a
@@ -119,7 +118,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         work: &mut SearchWork,
     ) -> ControlFlow<SearchOutcome, f64> {
         let left = &ends.left;
-        let is_finite = |n: usize| (left.orders[n][0].to_f64().abs() + left.slack[n]).is_finite();
+        let is_finite = |n: usize| (left.orders[n][0].bound().abs() + left.slack[n]).is_finite();
         if !live(tracks).all(|(n, _)| is_finite(n)) {
             // Values that overflow prove nothing.
             return ControlFlow::Break(SearchOutcome::GivenUp);
@@ -152,7 +151,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         if to > from {
             self.evaluate(&mut ends.left, to, work);
             clear_zeros(tracks);
-        } else if (end - from).to_f64() <= 8.0 * unit::<T>() * end.to_f64() {
+        } else if (end - from).bound() <= T::unit() * 8.0 * end.bound() {
             // A crossing within rounding is a touch.
             work.undecidable += 1;
             ends.step();
@@ -234,7 +233,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         else {
             return f64::INFINITY;
         };
-        let ratio = -(first.to_f64() / second.to_f64());
+        let ratio = -(first.bound() / second.bound()).to_f64();
         if track.zeros > 0 && ratio > 0.0 {
             1.25 * ratio * (track.zeros + 1) as f64
         } else {

@@ -1,16 +1,15 @@
 //! A crossing's time to the last digit: Newton's method inside of the proved bracket.
 
 use super::crossing::FirstCrossing;
-use crate::affine::arithmetic::vector::unit;
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
 use crate::affine::guards::track::{SearchWork, Track, outward};
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 /// Two times between which a root is, and the size of the last step towards it.
-struct Bracket<T> {
+struct Bracket<T: Number> {
     low: T,
     high: T,
-    last: f64,
+    last: T::Bound,
 }
 
 /// The next step towards a root.
@@ -50,14 +49,14 @@ impl<T: Number> GuardedSegment<'_, T> {
     ) -> bool {
         const ROUNDS: usize = 128;
         // A crossing exactly at the limit counts.
-        let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
+        let room = T::of_bound(T::unit() * 4.0 * limit.bound());
         let n = crossing.guards.trailing_zeros() as usize;
         let [mut low, high] = crossing.between;
         if low < from {
             low = from;
         }
         let inside = low <= crossing.time && crossing.time <= high;
-        let mut bracket = Bracket { low, high, last: f64::INFINITY };
+        let mut bracket = Bracket { low, high, last: T::Bound::INFINITY };
         let mut next = if inside { crossing.time } else { bracket.middle() };
         for _ in 0..ROUNDS {
             self.evaluate_guard(n, point, next, work);
@@ -91,9 +90,9 @@ impl<T: Number> GuardedSegment<'_, T> {
         /// digit.
         const FAR: f64 = 1e-4;
         // A value within a few roundings of its terms shows no better time.
-        let noise = 4.0 * unit::<T>() * self.rows[n].size(&point.modal.y);
+        let noise = T::unit() * 4.0 * self.rows[n].size(&point.modal.y);
         let orders = outward(&point.orders[n], track);
-        let value = orders[0].to_f64();
+        let value = orders[0].bound();
         if value.abs() <= noise {
             return Next::Nothing;
         }
@@ -103,20 +102,20 @@ impl<T: Number> GuardedSegment<'_, T> {
         if bracket.low <= end && end <= bracket.high && self.is_last(&orders, step) {
             return Next::Step(step);
         }
-        if step.to_f64().abs() > FAR * point.time.to_f64() {
+        if step.bound().abs() > point.time.bound() * FAR {
             step = self.root(n, track, point).0;
         }
-        let (mut better, mut size) = (point.time + step, step.to_f64().abs());
-        if size <= unit::<T>() * point.time.to_f64().abs() {
+        let (mut better, mut size) = (point.time + step, step.bound().abs());
+        if size <= T::unit() * point.time.bound().abs() {
             return Next::Nothing;
         }
-        if !(size < 0.25 * bracket.last && bracket.holds(better)) {
+        if !(size < bracket.last * 0.25 && bracket.holds(better)) {
             // Steps that do not shrink come from rounding, where the value may be rounding alone.
             better = bracket.middle();
-            if value.abs() <= 4.0 * point.slack[n] || !bracket.holds(better) {
+            if value.abs() <= point.slack[n] * 4.0 || !bracket.holds(better) {
                 return Next::Nothing;
             }
-            size = (better - point.time).to_f64().abs();
+            size = (better - point.time).bound().abs();
         }
         if better <= T::zero() {
             return Next::Nothing;
@@ -134,8 +133,8 @@ impl<T: Number> GuardedSegment<'_, T> {
         /// The share by which the guard's slope may change.
         const BEND: f64 = 1e-5;
         let turn = (self.flow.speed * step.to_f64()).abs();
-        let is_small = turn * turn * turn <= 0.25 * unit::<T>();
-        let rises = orders[1].to_f64() > 0.0;
+        let is_small = T::unit() * 0.25 >= turn * turn * turn;
+        let rises = orders[1].bound() > 0.0;
         rises && is_small && is_straight(orders, step, BEND) && !self.follows_errors()
     }
 }
@@ -152,8 +151,8 @@ fn remaining<T: Number>(orders: &[T; 4]) -> T {
 /// Whether a guard's slope changes by at most a share on a step.
 #[inline]
 fn is_straight<T: Number>(orders: &[T; 4], step: T, share: f64) -> bool {
-    let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
-    (step.to_f64() * bend).abs() <= share * slope.abs()
+    let [slope, bend] = [orders[1].bound(), orders[2].bound()];
+    (step.bound() * bend).abs() <= slope.abs() * share
 }
 
 /// The step to the root of a cubic that is near zero, by Newton's method.

@@ -8,11 +8,10 @@
 use super::crossing::FirstCrossing;
 use super::quotient::{Quotient, WINDOW};
 use super::reach::rise;
-use crate::affine::arithmetic::vector::{LOST, approximate_root};
 use crate::affine::closed_form::bound::ORDERS;
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
 use crate::affine::guards::track::{SearchWork, Track, live, outward};
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 /// The smaller number of derivatives that are used, the value and the one that is bounded included.
 pub(super) const FEW: usize = 9;
@@ -77,8 +76,9 @@ impl FailedAttempts {
 }
 
 impl<T: Number> GuardedSegment<'_, T> {
-    /// The first crossing after a point, if the polynomials there prove it. Runs that follow their
-    /// errors are left to the search, which counts what errors leave open.
+    /// The first crossing after a point, if the polynomials there prove it, which they do in f64.
+    /// Runs that follow their errors are left to the search, which counts what errors leave open,
+    /// and so are wide arithmetics, whose bounds f64 does not hold.
     #[inline]
     pub(super) fn first_by_taylor(
         &self,
@@ -88,14 +88,14 @@ impl<T: Number> GuardedSegment<'_, T> {
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
         let is_later = at.time > T::zero();
-        if self.follows_errors() || !failed_attempts.is_due(Attempt::WholeGuards, is_later) {
+        if !self.takes_polynomials() || !failed_attempts.is_due(Attempt::WholeGuards, is_later) {
             return None;
         }
         let (n, rough) = nearest(tracks, at)?;
         let zeros = tracks[n].zeros;
         let power = |sum: f64, last: usize| (1..=last).fold(sum, |sum, k| sum * rough / k as f64);
         let lead = power(at.orders[n][zeros].to_f64().abs(), zeros);
-        let rest = power(self.rows[n].bound(FEW - 1, &at.norms, rough), FEW - 1);
+        let rest = power(self.rows[n].bound(FEW - 1, &at.norms, rough).to_f64(), FEW - 1);
         let crossing = if rest <= LITTLE * lead {
             let mut crossing = self.proved::<FEW>(n, tracks, at, rough)?;
             if rest > NOTHING * lead {
@@ -123,7 +123,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     ) -> Option<FirstCrossing<T>> {
         let guard = self.quotient::<N>(n, &tracks[n], at);
         let after = guard.root(rough)?;
-        let last = self.rows[n].bound(N - 1, &at.norms, (1.0 + WINDOW) * after);
+        let last = self.rows[n].bound(N - 1, &at.norms, (1.0 + WINDOW) * after).to_f64();
         let room = guard.crosses(after, last)?;
         let end = (1.0 + room) * after;
         let mut guards = 1 << n;
@@ -162,13 +162,13 @@ impl<T: Number> GuardedSegment<'_, T> {
         at: &GuardedPoint<T>,
         length: f64,
     ) -> bool {
-        if self.upper_bound(n, track, at, length) < -4.0 * at.slack[n] {
+        if self.upper_bound(n, track, at, length) < at.slack[n] * -4.0 {
             return true;
         }
         if track.zeros > 2 {
             return false;
         }
-        let last = self.rows[n].bound(N - 1, &at.norms, length);
+        let last = self.rows[n].bound(N - 1, &at.norms, length).to_f64();
         self.quotient::<N>(n, track, at).is_negative(length, last)
     }
 
@@ -183,9 +183,17 @@ impl<T: Number> GuardedSegment<'_, T> {
         let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.modal, 0);
         orders[..4].copy_from_slice(&at.orders[n].map(Number::to_f64));
         orders.iter_mut().for_each(|order| *order *= track.outward);
-        let lost = LOST * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
-        let errors = [at.slack[n], lost];
-        Quotient::of([&orders, &sizes], track.zeros, self.margin, errors)
+        let errors = self.errors(n, at);
+        Quotient::of([&orders, &sizes], track.zeros, self.margin.to_f64(), errors)
+    }
+
+    /// The rounding error of a guard's value, and a bound of what underflow takes from its
+    /// derivatives.
+    #[inline]
+    pub(super) fn errors(&self, n: usize, at: &GuardedPoint<T>) -> [f64; 2] {
+        let norms = &at.norms[..self.flow.blocks.len()];
+        let lost = f64::LOST * (1.0 + norms.iter().map(|it| it.to_f64()).sum::<f64>());
+        [at.slack[n].to_f64(), lost]
     }
 }
 
@@ -232,7 +240,7 @@ pub(super) fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
     // From above all roots Newton's method falls to the last one.
     let share = |of: f64| (-of).max(0.0) / third;
     let mut at =
-        1.1 * (approximate_root(share(value), 3) + approximate_root(share(slope), 2) + share(bend));
+        1.1 * (share(value).approximate_root(3) + share(slope).approximate_root(2) + share(bend));
     for _ in 0..STEPS {
         let cubic = value + at * (slope + at * (bend + at * third));
         at -= cubic / (slope + at * (2.0 * bend + 3.0 * at * third));

@@ -11,10 +11,9 @@ use super::reach::part_of;
 use super::taylor::{
     ALL, Attempt, FEW, FailedAttempts, LITTLE, NOTHING, positive_root, rough_root,
 };
-use crate::affine::arithmetic::vector::LOST;
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
 use crate::affine::guards::track::{SearchWork, Track, live, outward};
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 impl<T: Number> GuardedSegment<'_, T> {
     /// The first crossing after a point, if the polynomials there and a decay prove it. Runs that
@@ -27,7 +26,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         failed_attempts: &mut FailedAttempts,
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
-        if !self.has_decay || self.follows_errors() {
+        if !self.has_decay || !self.takes_polynomials() {
             return None;
         }
         let is_later = at.time > T::zero();
@@ -163,12 +162,10 @@ impl<T: Number> GuardedSegment<'_, T> {
         at: &GuardedPoint<T>,
     ) -> Option<QuotientWithDecay<N>> {
         let (rate, row) = (self.decay_rate(n, track, at)?, &self.rows[n]);
-        let value = part_of(row, &row.parts[0], track, &at.modal.y);
+        let value = part_of(row, &row.parts[0], track, &at.modal.y).to_f64();
         let [mut orders, sizes] = row.orders_and_sizes::<N>(&at.modal, row.first_column(1));
         orders.iter_mut().for_each(|order| *order *= track.outward);
-        let lost = LOST * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
-        let errors = [at.slack[n], lost];
-        let rest = Quotient::of([&orders, &sizes], 0, self.margin, errors);
+        let rest = Quotient::of([&orders, &sizes], 0, self.margin.to_f64(), self.errors(n, at));
         Some(QuotientWithDecay { rest, decay: DecayTerm { value, rate } })
     }
 
@@ -178,6 +175,6 @@ impl<T: Number> GuardedSegment<'_, T> {
         /// Room for the rounding of a sum.
         const OUTWARD: f64 = 1.0 + 1e-12;
         let rest = &self.rows[n].parts[1..];
-        rest.iter().map(|part| part.bound(order, length, &at.norms)).sum::<f64>() * OUTWARD
+        rest.iter().map(|part| part.bound(order, length, &at.norms).to_f64()).sum::<f64>() * OUTWARD
     }
 }

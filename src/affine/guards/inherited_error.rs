@@ -4,27 +4,27 @@ use super::row::ModalRow;
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::closed_form::bound::ORDERS;
 use crate::affine::closed_form::flow::ModeFlow;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 /// The factor by which bounds are raised against rounding in f64.
 pub const OUTWARD: f64 = 1.0 + 1e-9;
 
 /// Bounds of a row's error along a segment, by the errors at the segment's entry.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct InheritedError {
+pub struct InheritedError<B> {
     /// Bounds of value and derivatives at entry, of the blocks that are polynomials of the time: so
     /// an error of a rate is none of the value before time has passed.
-    pub orders: [f64; ORDERS],
+    pub orders: [B; ORDERS],
     /// Bounds of the norms of the other blocks' co-ordinates at entry.
-    pub norms: Vector<f64>,
+    pub norms: Vector<B>,
 }
 
-impl InheritedError {
+impl<B: Bound> InheritedError<B> {
     /// A bound of the row's error at a time, which is not negative. Between two times it is at most
     /// the larger of theirs, because decays and polynomials of positive terms are convex.
-    pub fn by<T: Number>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>, time: f64) -> f64 {
+    pub fn by<T: Number<Bound = B>>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>, time: f64) -> B {
         let polynomial =
-            (1..ORDERS).rev().fold(0.0, |sum, k| (sum + self.orders[k]) * time / k as f64);
+            (1..ORDERS).rev().fold(B::ZERO, |sum, k| (sum + self.orders[k]) * time / k as f64);
         let norms = flow.decayed(&self.norms, time);
         (self.orders[0] + polynomial) * OUTWARD + row.bound(0, &norms, time)
     }

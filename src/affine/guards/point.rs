@@ -4,12 +4,12 @@ use super::entry_series::{EntrySeries, SegmentEntry, has_series, series_limit};
 use super::inherited_error::InheritedError;
 use super::row::ModalRow;
 use super::track::{SearchWork, Track};
-use crate::affine::arithmetic::vector::{UNDERFLOW, Vector, sum_rounding, twice_summed_rounding};
+use crate::affine::arithmetic::vector::{Vector, sum_rounding, twice_summed_rounding};
 use crate::affine::closed_form::bound::ORDERS;
 use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::closed_form::modal_state::ModalState;
 use crate::affine::model::system::LARGEST_DIMENSION;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 use smallvec::SmallVec;
 use std::cell::OnceCell;
 use std::ops::Range;
@@ -21,14 +21,14 @@ const INLINE: usize = 4;
 pub type PerGuard<T> = SmallVec<[T; INLINE]>;
 
 /// A segment with its guards, and with everything about them that is fixed at its entry.
-pub struct GuardedSegment<'a, T> {
+pub struct GuardedSegment<'a, T: Number> {
     pub flow: &'a ModeFlow<T>,
     pub rows: &'a [ModalRow<T>],
     pub entry: ModalState<T>,
     /// The rounding error of a guard, relative to the sum of its terms' sizes.
-    pub margin: f64,
+    pub margin: T::Bound,
     /// The guards' errors along the segment, where errors are followed.
-    followed: Option<Box<FollowedErrors>>,
+    followed: Option<Box<FollowedErrors<T::Bound>>>,
     /// Up to this time guards that begin with a structural zero are evaluated by their Taylor
     /// series at entry; negative where none does.
     pub early: f64,
@@ -42,20 +42,20 @@ pub struct GuardedSegment<'a, T> {
     /// Whether the fastest block of a guard which can cross is one decay.
     pub has_decay: bool,
     /// The norms of the entry's blocks.
-    norms: Vector<f64>,
+    norms: Vector<T::Bound>,
 }
 
 /// The guards' errors along a segment; boxed, because most runs do not follow errors.
-struct FollowedErrors {
+struct FollowedErrors<B> {
     /// For each guard, the errors that were made before the segment.
-    inherited: Vec<InheritedError>,
+    inherited: Vec<InheritedError<B>>,
     /// Bounds of the errors that underflow makes in each block.
-    lost: Vector<f64>,
+    lost: Vector<B>,
 }
 
 /// The guards at an instant.
 #[derive(Clone, Debug)]
-pub struct GuardedPoint<T> {
+pub struct GuardedPoint<T: Number> {
     pub time: T,
     /// The time from here to the zero of a guard, by its value and slope here: rounding of `time`
     /// would lose it.
@@ -63,12 +63,12 @@ pub struct GuardedPoint<T> {
     /// The modal co-ordinates; those of blocks without a part in any guard are the entry's.
     pub modal: ModalState<T>,
     /// The norms of each block's co-ordinates, after [`GuardedSegment::measure_norms`].
-    pub norms: Vector<f64>,
+    pub norms: Vector<T::Bound>,
     is_measured: bool,
     /// The value and three derivatives of each guard.
     pub orders: PerGuard<[T; 4]>,
     /// Bounds of the rounding errors of the guards' values.
-    pub slack: PerGuard<f64>,
+    pub slack: PerGuard<T::Bound>,
 }
 
 impl<'a, T: Number> GuardedSegment<'a, T> {
@@ -78,14 +78,14 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
             flow,
             rows,
             entry: ModalState::default(),
-            margin: 0.0,
+            margin: T::Bound::ZERO,
             followed: None,
             early: -1.0,
             series: OnceCell::new(),
             zeros: PerGuard::new(),
             blocks: 0,
             has_decay: false,
-            norms: [0.0; LARGEST_DIMENSION],
+            norms: [T::Bound::ZERO; LARGEST_DIMENSION],
         }
     }
 
@@ -97,7 +97,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         flow: &'a ModeFlow<T>,
         rows: &'a [ModalRow<T>],
         tracks: &[Track],
-        inherited: Option<Vec<InheritedError>>,
+        inherited: Option<Vec<InheritedError<T::Bound>>>,
     ) {
         (self.flow, self.rows, self.blocks) = (flow, rows, 0);
         let margin =
@@ -130,7 +130,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         let mut limit = longest;
         for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|it| has_series(*it.1)) {
             let last = row.bound(ORDERS - 1, &self.norms, longest.min(1e300));
-            let lead = row.order(*zeros, &self.entry).0.to_f64().abs();
+            let lead = row.order(*zeros, &self.entry).0.bound().abs();
             limit = limit.min(series_limit::<T>(lead, *zeros, last));
         }
         limit
@@ -142,7 +142,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         self.series.get_or_init(|| {
             let entry = SegmentEntry {
                 modal: self.flow.polynomial_sizes(&self.entry),
-                norms: self.flow.norms(&self.entry.sizes),
+                norms: self.flow.norms_of_bounds(&self.entry.sizes),
                 until: self.early,
             };
             let guards = self.rows.iter().zip(&self.zeros);
@@ -165,7 +165,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
             (orders[n], slack[n]) = evaluated;
             if *zeros > 0 {
                 orders[n].iter_mut().take(*zeros).for_each(|order| *order = T::zero());
-                slack[n] = 0.0;
+                slack[n] = T::Bound::ZERO;
             }
         }
         self.add_inherited(0..self.rows.len(), point);
@@ -258,9 +258,9 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
     /// Value and three derivatives of a guard, and a bound of the value's rounding error: from the
     /// co-ordinates, or from its Taylor series at a time.
     #[inline]
-    fn guard(&self, n: usize, at: &GuardedPoint<T>, series_at: Option<T>) -> ([T; 4], f64) {
+    fn guard(&self, n: usize, at: &GuardedPoint<T>, series_at: Option<T>) -> ([T; 4], T::Bound) {
         if self.zeros[n] == ORDERS {
-            return ([T::zero(); 4], 0.0);
+            return ([T::zero(); 4], T::Bound::ZERO);
         }
         if let Some(time) = series_at {
             let (orders, size) = self.series()[n].at(time);
@@ -280,13 +280,13 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
 
     fn add_followed_errors(
         &self,
-        followed: &FollowedErrors,
+        followed: &FollowedErrors<T::Bound>,
         guards: Range<usize>,
         point: &mut GuardedPoint<T>,
     ) {
         for n in guards {
             let lost = self.rows[n].bound(0, &followed.lost, point.time.to_f64());
-            let rest = LARGEST_DIMENSION as f64 * UNDERFLOW;
+            let rest = T::Bound::UNDERFLOW * LARGEST_DIMENSION as f64;
             let off = self.rows[n].off(&point.modal.sizes);
             point.slack[n] += self.inherited_by(n, point.time) + lost + rest + off;
         }
@@ -298,10 +298,17 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         self.followed.is_some()
     }
 
+    /// Whether crossings may be proved by Taylor polynomials in f64: they do not follow errors, and
+    /// f64 does not hold the bounds of wide arithmetics.
+    #[inline]
+    pub fn takes_polynomials(&self) -> bool {
+        self.followed.is_none() && T::Bound::UNDERFLOW > 0.0
+    }
+
     /// A bound of the error of a guard at a time by errors that were made before the segment.
     #[inline]
-    pub fn inherited_by(&self, n: usize, time: T) -> f64 {
-        self.followed.as_ref().map_or(0.0, |followed| {
+    pub fn inherited_by(&self, n: usize, time: T) -> T::Bound {
+        self.followed.as_ref().map_or(T::Bound::ZERO, |followed| {
             followed.inherited[n].by(self.flow, &self.rows[n], time.to_f64())
         })
     }
@@ -320,7 +327,7 @@ impl<T: Number> GuardedPoint<T> {
     fn make_room(&mut self, count: usize) {
         if self.orders.len() != count {
             self.orders.resize(count, [T::zero(); 4]);
-            self.slack.resize(count, 0.0);
+            self.slack.resize(count, T::Bound::ZERO);
         }
     }
 }
@@ -332,7 +339,7 @@ impl<T: Number> Default for GuardedPoint<T> {
             time: T::zero(),
             to_crossing: T::zero(),
             modal: ModalState::default(),
-            norms: [0.0; LARGEST_DIMENSION],
+            norms: [T::Bound::ZERO; LARGEST_DIMENSION],
             is_measured: false,
             orders: SmallVec::new(),
             slack: SmallVec::new(),
@@ -342,7 +349,7 @@ impl<T: Number> Default for GuardedPoint<T> {
 
 /// The two ends of a piece.
 #[derive(Clone, Debug)]
-pub struct Ends<T> {
+pub struct Ends<T: Number> {
     pub left: GuardedPoint<T>,
     pub right: GuardedPoint<T>,
     /// The guards that are proved to stay negative from the left end on.

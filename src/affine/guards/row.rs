@@ -1,18 +1,18 @@
 //! A row of z, as guards and conditions are, in modal co-ordinates: its derivatives, with their
 //! sizes and bounds.
 
-use crate::affine::arithmetic::real::BigReal;
-use crate::affine::arithmetic::vector::{UNDERFLOW, Vector, add_product, vector};
+use crate::affine::arithmetic::real::{BigReal, bits_for};
+use crate::affine::arithmetic::vector::{Vector, add_product, vector};
 use crate::affine::closed_form::bound::{self, BlockGrowth, ORDERS};
 use crate::affine::closed_form::flow::FlowBlock;
 use crate::affine::closed_form::modal_state::ModalState;
 use crate::affine::modal;
 use crate::affine::model::system::Row;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number, ScaledF64};
 
 /// A row of z with its derivatives, in modal co-ordinates.
 #[derive(Clone, Debug)]
-pub struct ModalRow<T> {
+pub struct ModalRow<T: Number> {
     /// The number of the first guard of its mode that is the same row.
     pub twin: usize,
     /// The row's derivatives.
@@ -22,7 +22,7 @@ pub struct ModalRow<T> {
     /// The co-ordinates that have a part in the row, in their order.
     pub columns: Vec<RowColumn<T>>,
     /// The blocks that have a part in the row, in their order.
-    pub parts: Vec<RowPart>,
+    pub parts: Vec<RowPart<T::Bound>>,
     /// The blocks of `parts`, a bit each.
     pub blocks: u16,
     /// The rate of the first of `parts`, the fastest, if it is a single decaying exponential.
@@ -31,19 +31,19 @@ pub struct ModalRow<T> {
 
 /// A co-ordinate's factors in a row.
 #[derive(Clone, Copy, Debug)]
-pub struct RowColumn<T> {
+pub struct RowColumn<T: Number> {
     pub at: usize,
     /// The factors in the value and in its derivatives.
     pub orders: [T; ORDERS],
     /// The size of the factor in the value.
-    size: f64,
+    size: T::Bound,
     /// A bound of the error of the factor in the value.
-    off: f64,
+    off: T::Bound,
 }
 
 /// A block's part in a row.
 #[derive(Clone, Debug)]
-pub struct RowPart {
+pub struct RowPart<B> {
     /// The block's index.
     pub block: usize,
     /// The first column of the block and the one after its last, among those of the row.
@@ -52,14 +52,14 @@ pub struct RowPart {
     pub growth: BlockGrowth,
     /// The norms of the block's rows in the derivatives, for all times at which its co-ordinates
     /// only rotate and decay.
-    pub norms: [f64; ORDERS],
+    pub norms: [B; ORDERS],
 }
 
 impl<T: Number> ModalRow<T> {
     /// A row of z in the modal co-ordinates of a closed form's blocks, of which `blocks` are the
     /// exact forms.
     pub fn of(row: &Row, flow: &[FlowBlock<T>], blocks: &[modal::Block]) -> Self {
-        let row: Vec<BigReal> = row.iter().map(BigReal::of).collect();
+        let row: Vec<BigReal> = row.iter().map(|it| BigReal::of(it, bits_for::<T>())).collect();
         let parts: Vec<_> = blocks.iter().map(|block| bound::derivatives(&row, block)).collect();
         let order = |k: usize| {
             let entries: Vec<_> = parts.iter().flat_map(|part| part[k].iter().cloned()).collect();
@@ -79,7 +79,7 @@ impl<T: Number> ModalRow<T> {
             decay_rate: None,
         };
         for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
-            let norms = bound::norms(block, part);
+            let norms = bound::norms::<T::Bound>(block, part);
             if norms.iter().any(|it| *it > 0.0) {
                 modal.add_part(n, &flow[n], norms, |j| off(&row, block, j));
             }
@@ -93,15 +93,15 @@ impl<T: Number> ModalRow<T> {
         &mut self,
         n: usize,
         block: &FlowBlock<T>,
-        norms: [f64; ORDERS],
-        off: impl Fn(usize) -> f64,
+        norms: [T::Bound; ORDERS],
+        off: impl Fn(usize) -> T::Bound,
     ) {
         let first = self.columns.len();
         for at in block.at..block.at + block.size {
             let orders: [T; ORDERS] = std::array::from_fn(|k| self.orders[k][at]);
             let used = orders.iter().any(|it| *it != T::zero());
             if used {
-                let (size, off) = (orders[0].to_f64().abs(), off(at - block.at));
+                let (size, off) = (orders[0].bound().abs(), off(at - block.at));
                 self.columns.push(RowColumn { at, orders, size, off });
             }
         }
@@ -129,10 +129,10 @@ impl<T: Number> ModalRow<T> {
 
     /// For each of the first orders, the sum of the sizes of its terms.
     #[inline]
-    pub fn order_sizes<const N: usize>(&self, sizes: &Vector<f64>) -> [f64; N] {
-        let mut sums = [0.0; N];
+    pub fn order_sizes<const N: usize>(&self, sizes: &Vector<T::Bound>) -> [T::Bound; N] {
+        let mut sums = [T::Bound::ZERO; N];
         for column in &self.columns {
-            let factors: [f64; N] = std::array::from_fn(|k| column.orders[k].to_f64().abs());
+            let factors: [T::Bound; N] = std::array::from_fn(|k| column.orders[k].bound().abs());
             add_product(&mut sums, &factors, sizes[column.at]);
         }
         sums
@@ -162,8 +162,8 @@ impl<T: Number> ModalRow<T> {
 
     /// Value and three derivatives, and the sum of the sizes of the value's terms.
     #[inline]
-    pub fn sized_orders(&self, ModalState { y, sizes }: &ModalState<T>) -> ([T; 4], f64) {
-        let (mut sums, mut size) = ([T::zero(); 4], 0.0);
+    pub fn sized_orders(&self, ModalState { y, sizes }: &ModalState<T>) -> ([T; 4], T::Bound) {
+        let (mut sums, mut size) = ([T::zero(); 4], T::Bound::ZERO);
         for column in &self.columns {
             let entry = y[column.at];
             add_product(&mut sums, &column.orders, entry);
@@ -181,7 +181,7 @@ impl<T: Number> ModalRow<T> {
     ) -> [[f64; N]; 2] {
         let [mut orders, mut sizes] = [[0.0; N]; 2];
         for column in &self.columns[from..] {
-            let (entry, size) = (modal.y[column.at].to_f64(), modal.sizes[column.at]);
+            let (entry, size) = (modal.y[column.at].to_f64(), modal.sizes[column.at].to_f64());
             for k in 0..N {
                 let factor = column.orders[k].to_f64();
                 orders[k] += factor * entry;
@@ -194,8 +194,8 @@ impl<T: Number> ModalRow<T> {
     /// A bound of the derivative of an order over `length`, from the norms of the blocks'
     /// co-ordinates.
     #[inline]
-    pub fn bound(&self, order: usize, sizes: &Vector<f64>, length: f64) -> f64 {
-        let mut sum = 0.0;
+    pub fn bound(&self, order: usize, sizes: &Vector<T::Bound>, length: f64) -> T::Bound {
+        let mut sum = T::Bound::ZERO;
         for part in &self.parts {
             sum += part.bound(order, length, sizes);
         }
@@ -204,52 +204,55 @@ impl<T: Number> ModalRow<T> {
 
     /// The sum of the sizes of the terms of the row's value.
     #[inline]
-    pub fn size<U: Number>(&self, y: &Vector<U>) -> f64 {
-        self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
+    pub fn size(&self, y: &Vector<T>) -> T::Bound {
+        self.columns.iter().map(|it| it.size * y[it.at].bound().abs()).sum()
     }
 
     /// A bound of the error of the row's value by the errors of its factors, from the sizes of the
     /// co-ordinates.
-    pub fn off(&self, y: &Vector<f64>) -> f64 {
+    pub fn off(&self, y: &Vector<T::Bound>) -> T::Bound {
         self.columns.iter().map(|it| it.off * y[it.at]).sum()
     }
 
     /// A derivative, and the sum of the sizes of its terms.
     #[inline]
-    pub fn order(&self, order: usize, ModalState { y, sizes }: &ModalState<T>) -> (T, f64) {
+    pub fn order(&self, order: usize, ModalState { y, sizes }: &ModalState<T>) -> (T, T::Bound) {
         let row = &self.orders[order];
-        let (mut sum, mut size) = (T::zero(), 0.0);
+        let (mut sum, mut size) = (T::zero(), T::Bound::ZERO);
         for RowColumn { at, .. } in &self.columns {
             sum = sum + row[*at] * y[*at];
-            size += row[*at].to_f64().abs() * sizes[*at];
+            size += row[*at].bound().abs() * sizes[*at];
         }
         (sum, size)
     }
 }
 
-impl RowPart {
+impl<B: Bound> RowPart<B> {
     /// The rate of a decay: the quotient of two norms, unless they have lost digits to underflow or
     /// have overflown.
     fn decay_rate(&self) -> Option<f64> {
         const RANGE: std::ops::Range<f64> = 1e-250..1e250;
-        let is_in_range = self.norms[..2].iter().all(|norm| RANGE.contains(norm));
+        let is_in_range = self.norms[..2].iter().all(|norm| RANGE.contains(&norm.to_f64()));
         let is_decay = self.growth == BlockGrowth::Decaying && is_in_range;
-        is_decay.then(|| self.norms[1] / self.norms[0])
+        is_decay.then(|| (self.norms[1] / self.norms[0]).to_f64())
     }
 
     /// A bound of the part in a derivative over `length`, from the norms of the blocks'
     /// co-ordinates.
     #[inline]
-    pub fn bound(&self, order: usize, length: f64, sizes: &Vector<f64>) -> f64 {
+    pub fn bound(&self, order: usize, length: f64, sizes: &Vector<B>) -> B {
         let size = sizes[self.block];
-        let norm = if size == 0.0 { 0.0 } else { self.growth.bound(&self.norms, order, length) };
+        let norm =
+            if size == 0.0 { B::ZERO } else { self.growth.bound(&self.norms, order, length) };
         // Zeros contribute nothing, even where their factors overflow. A bound that is not zero is
         // kept from underflow, because derivatives bounded by zero are taken for a polynomial's.
-        if norm == 0.0 { 0.0 } else { (norm * size).max(UNDERFLOW) }
+        if norm == 0.0 { B::ZERO } else { (norm * size).max(B::UNDERFLOW) }
     }
 }
 
 /// A bound of the error of a row's factor of a block's co-ordinate.
-fn off(row: &[BigReal], block: &modal::Block, j: usize) -> f64 {
-    row.iter().zip(&block.off[0]).map(|(it, off)| it.to_f64().abs() * off[j]).sum()
+fn off<B: Bound>(row: &[BigReal], block: &modal::Block, j: usize) -> B {
+    let term = |(it, off): (&BigReal, &Vec<ScaledF64>)| it.bound::<ScaledF64>().abs() * off[j];
+    let sum: ScaledF64 = row.iter().zip(&block.off[0]).map(term).sum();
+    B::of(sum.parts().0).scaled(sum.parts().1)
 }

@@ -4,9 +4,6 @@ use crate::affine::arithmetic::real::BigReal;
 
 pub type BigMatrix = Vec<Vec<BigReal>>;
 
-/// The rounding that elimination leaves of a zero, relative to the largest entry: 2^-320.
-const NOTHING: isize = -320;
-
 pub fn identity(size: usize) -> BigMatrix {
     let entry = |same| if same { BigReal::one() } else { BigReal::zero() };
     (0..size).map(|i| (0..size).map(|j| entry(i == j)).collect()).collect()
@@ -54,7 +51,9 @@ pub fn null_space(matrix: &BigMatrix, nullity: usize) -> Option<BigMatrix> {
     let size = rows.len();
     let rank = size.checked_sub(nullity)?;
     let mut order: Vec<usize> = (0..size).collect();
-    let nothing = largest(&rows).scaled(NOTHING);
+    // The rounding that elimination leaves of a zero is far below half of the bits.
+    let largest = largest(&rows);
+    let nothing = largest.scaled(-(largest.bits() as isize) / 2);
     for step in 0..size {
         let (size_of_pivot, at, column) = pivot(&rows, step)?;
         let is_nothing = size_of_pivot < nothing || size_of_pivot.is_zero();

@@ -21,6 +21,7 @@ use self::polynomial::{Eigenvalue, eigenvalues};
 use self::quasi_triangular::triangular;
 use crate::affine::arithmetic::real::BigReal;
 use crate::affine::model::system::Row;
+use crate::numeric::number::{Bound, ScaledF64};
 use dashu_ratio::RBig;
 
 /// Eigenvalues stay together if their distance is below this share of the larger one: the
@@ -31,9 +32,9 @@ const CLOSE: f64 = 0.125;
 /// over such a time their exponentials are nearly alike.
 const SLOW: f64 = 0.05;
 
-/// The rounding that is left of a zero of a block, relative to the terms of the block's largest
-/// entry: 2^-500. It is far above the last of the bits.
-const NOTHING: isize = -500;
+/// The bits between the last and the rounding that is left of a zero of a block, relative to the
+/// terms of the block's largest entry.
+const ABOVE_THE_LAST: isize = 140;
 
 /// A factor for the growth of residuals by the errors of a block's columns and rows: 2^40.
 const ROOM: isize = 40;
@@ -66,7 +67,7 @@ pub(super) struct Block {
     /// The matrix B.
     pub matrix: BigMatrix,
     /// Bounds of the errors of the entries of X and of W.
-    pub off: [Vec<Vec<f64>>; 2],
+    pub off: [Vec<Vec<ScaledF64>>; 2],
 }
 
 impl Block {
@@ -88,18 +89,20 @@ impl Block {
 }
 
 /// The blocks of a matrix: it stays whole if it cannot be taken apart at this precision.
-pub(super) fn blocks(exact: &[Row], time_scale: f64) -> Vec<Block> {
+/// The numbers have so many bits.
+pub(super) fn blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> {
     let scales = scales(exact);
     let scaled = |(i, row): (usize, &Row)| -> Vec<BigReal> {
         let entries = row.iter().zip(&scales);
-        entries.map(|(it, scale)| BigReal::of(it).scaled(scale - scales[i])).collect()
+        entries.map(|(it, scale)| BigReal::of(it, bits).scaled(scale - scales[i])).collect()
     };
     let matrix: BigMatrix = exact.iter().enumerate().map(scaled).collect();
     let taken_apart = |roots: Vec<Eigenvalue>| -> Option<Vec<_>> {
         let clusters = clusters(roots, time_scale);
         clusters.iter().map(|it| block(&matrix, it, time_scale)).collect()
     };
-    let blocks = eigenvalues(exact).and_then(taken_apart).unwrap_or_else(|| vec![whole(&matrix)]);
+    let blocks =
+        eigenvalues(exact, bits).and_then(taken_apart).unwrap_or_else(|| vec![whole(&matrix)]);
     let spread = spread(&blocks);
     let finished = |it| unscaled(measured(it, &matrix, time_scale, &spread), &scales);
     blocks.into_iter().map(finished).collect()
@@ -122,34 +125,34 @@ fn unscaled(mut block: Block, scales: &[isize]) -> Block {
     }
     let [columns, rows] = &mut block.off;
     for (row, scale) in columns.iter_mut().zip(scales) {
-        row.iter_mut().for_each(|it| *it = libm::scalbn(*it, *scale as i32));
+        row.iter_mut().for_each(|it| *it = it.scaled(*scale as i64));
     }
     for row in rows {
-        row.iter_mut().zip(scales).for_each(|(it, scale)| *it = libm::scalbn(*it, -*scale as i32));
+        row.iter_mut().zip(scales).for_each(|(it, scale)| *it = it.scaled(-*scale as i64));
     }
     block
 }
 
 /// The sum over all blocks of the sizes of X W, by which an error in one entry spreads to others.
-fn spread(blocks: &[Block]) -> Vec<Vec<f64>> {
-    let sizes = |it: &BigMatrix| -> Vec<Vec<f64>> {
-        it.iter().map(|row| row.iter().map(|it| it.to_f64().abs()).collect()).collect()
+fn spread(blocks: &[Block]) -> Vec<Vec<ScaledF64>> {
+    let sizes = |it: &BigMatrix| -> Vec<Vec<ScaledF64>> {
+        it.iter().map(|row| row.iter().map(|it| it.bound::<ScaledF64>().abs()).collect()).collect()
     };
     let parts: Vec<_> = blocks.iter().map(|it| (sizes(&it.columns), sizes(&it.rows))).collect();
     let width = parts.first().map_or(0, |(columns, _)| columns.len());
-    let mut spread = vec![vec![0.0; width]; width];
+    let mut spread = vec![vec![ScaledF64::ZERO; width]; width];
     for (columns, rows) in &parts {
         for (sums, row) in spread.iter_mut().zip(spread_by(columns, rows)) {
-            sums.iter_mut().zip(row).for_each(|(sum, term): (&mut f64, f64)| *sum += term);
+            sums.iter_mut().zip(row).for_each(|(sum, term): (&mut ScaledF64, _)| *sum += term);
         }
     }
     spread
 }
 
 /// A product of matrices that are not negative, in which zero times infinity is zero.
-fn spread_by(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn spread_by(a: &[Vec<ScaledF64>], b: &[Vec<ScaledF64>]) -> Vec<Vec<ScaledF64>> {
     let width = b.first().map_or(0, Vec::len);
-    let entry = |row: &Vec<f64>, j: usize| {
+    let entry = |row: &Vec<ScaledF64>, j: usize| {
         let terms = row.iter().zip(b).map(|(a, b)| (*a, b[j]));
         terms.filter(|(a, b)| *a != 0.0 && *b != 0.0).map(|(a, b)| a * b).sum()
     };
@@ -158,12 +161,17 @@ fn spread_by(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// A block with bounds of the errors of its columns and rows: the residuals M X - X B and W M - B W
 /// come from parts in other blocks, and are divided by the distance of their eigenvalues.
-fn measured(mut block: Block, matrix: &BigMatrix, time_scale: f64, spread: &[Vec<f64>]) -> Block {
+fn measured(
+    mut block: Block,
+    matrix: &BigMatrix,
+    time_scale: f64,
+    spread: &[Vec<ScaledF64>],
+) -> Block {
     let Block { columns, rows, matrix: inner, .. } = &block;
     let nearest = (CLOSE * norm(inner)).max(SLOW / time_scale);
     let factor = libm::exp2(ROOM as f64) / nearest;
-    let difference = |a: BigMatrix, b: BigMatrix| -> Vec<Vec<f64>> {
-        let size = |(a, b): (&BigReal, &BigReal)| (a - b).to_f64().abs() * factor;
+    let difference = |a: BigMatrix, b: BigMatrix| -> Vec<Vec<ScaledF64>> {
+        let size = |(a, b): (&BigReal, &BigReal)| (a - b).bound::<ScaledF64>().abs() * factor;
         a.iter().zip(&b).map(|(a, b)| a.iter().zip(b).map(size).collect()).collect()
     };
     let left = difference(product(matrix, columns), product(columns, inner));
@@ -239,7 +247,9 @@ fn noise(matrix: &BigMatrix, [columns, rows]: [&BigMatrix; 2], inner: &BigMatrix
         .collect();
     let terms = product(&product(&sizes(rows), &sizes(matrix)), &sizes(columns));
     let left = product(&off, &sizes(columns));
-    &largest(&terms).scaled(NOTHING) + &largest(&left).scaled(ROOM)
+    let largest_term = largest(&terms);
+    let last = -(largest_term.bits() as isize);
+    &largest_term.scaled(last + ABOVE_THE_LAST) + &largest(&left).scaled(ROOM)
 }
 
 /// Powers of two, one for each entry of z, by which a matrix is scaled so that its entries become
@@ -347,11 +357,12 @@ pub(super) fn logarithmic_norm(matrix: &[Vec<BigReal>]) -> f64 {
 
 /// exp(B 2^exponent), where |B 2^exponent| is at most 1/2: a Taylor series to the last bit.
 pub(super) fn exponential(matrix: &[Vec<BigReal>], exponent: isize) -> BigMatrix {
-    const TERMS: usize = 120;
     let scaled: BigMatrix =
         matrix.iter().map(|row| row.iter().map(|it| it.scaled(exponent)).collect()).collect();
+    // Each term is below half of the one before it, divided by its number.
+    let bits = matrix.first().map_or(0, |row| row[0].bits());
     let mut sum = identity(matrix.len());
-    for k in (1..=TERMS).rev() {
+    for k in (1..=3 * bits / 16).rev() {
         let factor = BigReal::exact(k as f64);
         sum = product(&scaled, &sum);
         sum.iter_mut().flatten().for_each(|it| *it = &*it / &factor);

@@ -1,7 +1,7 @@
 //! The characteristic polynomial with exact coefficients, its factors of equal multiplicity, and
 //! their roots.
 
-use crate::affine::arithmetic::real::{BITS, BigComplex, BigReal};
+use crate::affine::arithmetic::real::{BigComplex, BigReal};
 use crate::affine::model::system::Row;
 use dashu_ratio::RBig;
 
@@ -27,10 +27,10 @@ impl Eigenvalue {
 }
 
 /// The eigenvalues of a matrix; none if the iteration does not converge.
-pub fn eigenvalues(matrix: &[Row]) -> Option<Vec<Eigenvalue>> {
+pub fn eigenvalues(matrix: &[Row], bits: usize) -> Option<Vec<Eigenvalue>> {
     let mut roots = Vec::new();
     for (n, factor) in squarefree(&characteristic(matrix)).into_iter().enumerate() {
-        for value in simple_roots(&factor)? {
+        for value in simple_roots(&factor, bits)? {
             roots.push(Eigenvalue { value, multiplicity: n + 1 });
         }
     }
@@ -129,10 +129,24 @@ fn greatest_common_divisor(a: &Polynomial, b: &Polynomial) -> Polynomial {
     }
 }
 
-/// The roots of a polynomial that has each once: Aberth's iteration, all of them at a time.
-fn simple_roots(polynomial: &Polynomial) -> Option<Vec<BigComplex>> {
+/// The roots of a polynomial that has each once. A root at zero is exactly zero: an iteration would
+/// only come near it, and what stands still would then seem to grow or decay.
+fn simple_roots(polynomial: &[RBig], bits: usize) -> Option<Vec<BigComplex>> {
+    match polynomial.split_first() {
+        Some((lowest, [])) if !lowest.is_zero() => Some(Vec::new()),
+        Some((lowest, rest)) if lowest.is_zero() => {
+            let others = simple_roots(rest, bits)?;
+            Some([BigComplex::real(BigReal::zero())].into_iter().chain(others).collect())
+        }
+        _ => roots_away_from_zero(polynomial, bits),
+    }
+}
+
+/// The roots of a polynomial that has each once, and none at zero: Aberth's iteration, all of them
+/// at a time.
+fn roots_away_from_zero(polynomial: &[RBig], bits: usize) -> Option<Vec<BigComplex>> {
     const ROUNDS: usize = 2000;
-    let coefficients: Vec<_> = polynomial.iter().map(BigReal::of).collect();
+    let coefficients: Vec<_> = polynomial.iter().map(|it| BigReal::of(it, bits)).collect();
     let degree = coefficients.len() - 1;
     if degree == 1 {
         return Some(vec![BigComplex::real(&-&coefficients[0] / &coefficients[1])]);
@@ -154,8 +168,8 @@ fn simple_roots(polynomial: &Polynomial) -> Option<Vec<BigComplex>> {
 
 /// Whether a step moves a root by less than the last quarter of its bits.
 fn is_small(step: &BigComplex, root: &BigComplex) -> bool {
-    const LAST: isize = 3 * BITS as isize / 4;
-    step.norm_square() <= root.norm_square().scaled(-2 * LAST)
+    let last = 3 * step.re.bits() as isize / 4;
+    step.norm_square() <= root.norm_square().scaled(-2 * last)
 }
 
 /// Starts on circles whose radii follow the coefficients (Bini's choice, by the upper hull of their
@@ -180,12 +194,6 @@ fn beginnings(coefficients: &[BigReal]) -> Vec<BigComplex> {
     let mut roots = Vec::with_capacity(degree);
     let mut from = 0;
     while from < degree {
-        if heights[from] == f64::NEG_INFINITY {
-            // A root that is zero: it is found at once from a tiny start.
-            roots.push(BigComplex::new(BigReal::exact(1e-300), BigReal::exact(1e-300)));
-            from += 1;
-            continue;
-        }
         let slope = |to: usize| (heights[to] - heights[from]) / (to - from) as f64;
         let to = (from + 1..=degree).max_by(|a, b| slope(*a).total_cmp(&slope(*b)));
         let to = to.unwrap_or(degree);
@@ -227,10 +235,9 @@ fn step(coefficients: &[BigReal], roots: &[BigComplex], n: usize) -> BigComplex 
 
 /// Real roots, and of each pair the one above the real axis.
 fn above_the_axis(roots: Vec<BigComplex>) -> Vec<BigComplex> {
-    const NOTHING: isize = BITS as isize / 2;
     let mut kept = Vec::new();
     for root in roots {
-        let nothing = root.norm().scaled(-NOTHING);
+        let nothing = root.norm().scaled(-(root.re.bits() as isize) / 2);
         if root.im.abs() <= nothing {
             kept.push(BigComplex::real(root.re));
         } else if root.im > BigReal::zero() && root.re.abs() <= nothing {

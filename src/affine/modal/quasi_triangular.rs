@@ -19,9 +19,13 @@ const OF_THE_SPREAD: f64 = 1.0 / 16.0;
 /// Couplings below this part of the fastest rate are small enough.
 const OF_THE_FASTEST: f64 = 1.0 / 1024.0;
 
-/// The rounding that is left of a zero of the triangular matrix, relative to its largest entry:
-/// 2^-300.
-const NOTHING: isize = -300;
+/// The exponent of two of the rounding that is left of a zero of the triangular matrix, relative to
+/// its largest entry: it is far below half of the bits.
+fn nothing(matrix: &BigMatrix) -> isize {
+    /// Room for what the invariant spaces of close eigenvalues lose.
+    const ROOM: isize = 20;
+    ROOM - matrix.first().map_or(0, |row| row[0].bits() as isize) / 2
+}
 
 /// A coupling that is smaller than this part of the largest would be among the roundings of others
 /// in another basis, while an eigenvalue's direction may hang on it.
@@ -93,7 +97,7 @@ fn steep(root: &Eigenvalue) -> bool {
 fn invariant(matrix: &BigMatrix, root: &Eigenvalue, size: f64) -> Option<Vec<Vec<BigReal>>> {
     let mut annihilator = factor(matrix, root);
     let step = if root.is_real() { 1 } else { 2 };
-    let nothing = BigReal::exact(size.powi(step as i32)).scaled(NOTHING);
+    let nothing = BigReal::exact(size.powi(step as i32)).scaled(nothing(matrix));
     let noise = annihilator.iter_mut().flatten().filter(|it| it.abs() <= nothing);
     noise.for_each(|it| *it = BigReal::zero());
     let nullities = (step..=matrix.len()).step_by(step);
@@ -180,7 +184,7 @@ fn in_basis(block: &Block, basis: &BigMatrix) -> Option<Block> {
 /// Sets the rounding below the diagonal blocks of a triangular matrix to zero; none if larger
 /// entries stand there.
 fn clear_below(matrix: &mut BigMatrix, places: &[Place]) -> Option<()> {
-    let nothing = BigReal::exact(norm(matrix)).scaled(NOTHING);
+    let nothing = BigReal::exact(norm(matrix)).scaled(nothing(matrix));
     for place in places {
         for row in &mut matrix[place.at + place.size..] {
             for entry in &mut row[place.at..place.at + place.size] {

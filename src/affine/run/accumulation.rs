@@ -7,10 +7,10 @@
 //! proportional to the rates of the impacts.
 
 use super::{Restitution, Run};
-use crate::affine::arithmetic::vector::{Vector, dot, unit};
+use crate::affine::arithmetic::vector::{Vector, dot};
 use crate::affine::guards::row::ModalRow;
 use crate::affine::zeros::graph::Firing;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 /// A run ends at an accumulation once at most this share of the system's unit of time is left.
 const LEFT: f64 = 1.0 / (1u64 << 30) as f64;
@@ -44,15 +44,15 @@ impl<T: Number> Run<'_, T> {
         }
         // How much the derivative of a row can change along the flow and by all jumps.
         let change = |row: &ModalRow<T>, order: usize| {
-            let jump = (at(&row.orders[order], after) - at(&row.orders[order], before)).to_f64();
-            2.0 * (row.bound(order + 1, &flow.norms(after), guess) * guess
-                + jump.abs() / (1.0 - e_f64))
+            let jump = (at(&row.orders[order], after) - at(&row.orders[order], before)).bound();
+            (row.bound(order + 1, &flow.norms(after), guess) * guess + jump.abs() / (1.0 - e_f64))
+                * 2.0
         };
-        let room = T::exact(change(gap, 2));
+        let room = T::of_bound(change(gap, 2));
         let (a1, a2) = (bend - room, bend + room);
         let until = self.solver.system.modes[mode].until.len();
         for (n, row) in solver_mode.guards.iter().enumerate().take(until) {
-            let inside = at(&row.orders[0], after).to_f64() + change(row, 0) < 0.0;
+            let inside = at(&row.orders[0], after).bound() + change(row, 0) < 0.0;
             if n != firing.until && self.tracks_live(n) && !inside {
                 return None;
             }
@@ -62,7 +62,7 @@ impl<T: Number> Run<'_, T> {
         for (condition, order) in conditions.iter().zip(orders.iter().copied()).take(successor + 1)
         {
             let (Some(row), Some(order)) = (condition, order) else { continue };
-            let settled = at(&row.orders[order], after).to_f64().abs() > change(row, order);
+            let settled = at(&row.orders[order], after).bound().abs() > change(row, order);
             if !settled {
                 return None;
             }
@@ -80,10 +80,12 @@ impl<T: Number> Run<'_, T> {
     /// Widens the bounds by the errors of the rate of departure, in a run that follows its errors.
     fn widened(&self, earliest: T, latest: T, gap: &ModalRow<T>, rate: f64) -> (T, T) {
         let flow = &self.solver.modes[self.graph.node(self.node).mode].flow;
-        let inherited = self.enclosure.as_ref().map_or(0.0, |it| it.of_row(flow, gap, 1));
+        let inherited = self.enclosure.as_ref();
+        let inherited = inherited.map_or(T::Bound::ZERO, |it| it.of_row(flow, gap, 1));
         let (_, size) = gap.order(1, &self.segment.entry);
-        let share = 4.0 * (inherited + 32.0 * unit::<T>() * size) / rate;
-        let room = latest * T::exact(if self.enclosure.is_some() { share } else { 0.0 });
+        let share = (inherited + T::unit() * 32.0 * size) * 4.0 / rate;
+        let share = if self.enclosure.is_some() { share } else { T::Bound::ZERO };
+        let room = latest * T::of_bound(share);
         (earliest - room, latest + room)
     }
 

@@ -3,15 +3,15 @@
 use super::Run;
 use super::enclosure::Enclosure;
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::arithmetic::real::BigReal;
-use crate::affine::arithmetic::vector::{Vector, rounded, unit};
+use crate::affine::arithmetic::real::{BigReal, bits_for};
+use crate::affine::arithmetic::vector::{Vector, rounded};
 use crate::affine::first_crossing::taylor::FailedAttempts;
 use crate::affine::guards::point::{Ends, GuardedSegment};
 use crate::affine::guards::track::SearchWork;
 use crate::affine::model::system::{LARGEST_DIMENSION, StartPoint};
 use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Event, What};
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 use std::collections::VecDeque;
 
 impl<T: Number> Solver<T> {
@@ -31,8 +31,8 @@ impl<T: Number> Solver<T> {
     pub fn run_enclosed(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut run = self.at_start(start, until)?;
         // Three products and two sums an entry; sine and cosine are good to two units.
-        let error = |size: T| 8.0 * unit::<T>() * size.to_f64().abs();
-        let mut sizes = [0.0; LARGEST_DIMENSION];
+        let error = |size: T| T::unit() * 8.0 * size.bound().abs();
+        let mut sizes = [T::Bound::ZERO; LARGEST_DIMENSION];
         for (size, entry) in sizes.iter_mut().zip(&run.state) {
             *size = error(*entry);
         }
@@ -44,7 +44,7 @@ impl<T: Number> Solver<T> {
             *size += error(T::exact(cos + sin + one)) + turned * (cos + sin);
         }
         sizes.iter_mut().zip(phase).for_each(|(size, turned)| *size += turned);
-        sizes[self.system.dimension() - 1] = 0.0;
+        sizes[self.system.dimension() - 1] = T::Bound::ZERO;
         run.begin(Some(Enclosure::of(&sizes)));
         Some(run)
     }
@@ -87,7 +87,7 @@ impl<T: Number> Solver<T> {
         let (sin, cos) = self.sin_cos(&time);
         let mut states = [T::zero(); LARGEST_DIMENSION];
         for (entry, [c, s, one]) in states.iter_mut().zip(&start.state) {
-            let number = |it| rounded::<T>(&BigReal::of(it));
+            let number = |it| rounded::<T>(&BigReal::of(it, bits_for::<T>()));
             *entry = number(c) * cos + number(s) * sin + number(one);
         }
         (time, self.complete(&states[..start.state.len()], &time))
@@ -96,7 +96,7 @@ impl<T: Number> Solver<T> {
 
 impl<T: Number> Run<'_, T> {
     /// Begins the run, with the errors of the start where they are followed.
-    fn begin(&mut self, enclosure: Option<Enclosure>) {
+    fn begin(&mut self, enclosure: Option<Enclosure<T::Bound>>) {
         self.start = self.event(What::Start, self.entered, &self.state);
         self.start.errors = enclosure.as_ref().map(|it| self.errors(it));
         self.last.clone_from(&self.start);

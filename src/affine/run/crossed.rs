@@ -1,13 +1,13 @@
 //! The guards that a search has found crossed: watched events, and the errors at the crossing.
 
 use super::Run;
-use super::enclosure::{EnclosedCrossing, Enclosure, LAST_WORD, roundings};
+use super::enclosure::{EnclosedCrossing, Enclosure, roundings};
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::arithmetic::vector::{Vector, unit};
+use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::system::Direction;
 use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::graph::Firing;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 impl<T: Number> Run<'_, T> {
     /// The events whose guards cross within what rounding may do, so that it is open which is the
@@ -64,13 +64,19 @@ impl<T: Number> Run<'_, T> {
         guards: u64,
         time: &Time<T>,
         state: &Vector<T>,
-    ) -> Option<Enclosure> {
+    ) -> Option<Enclosure<T::Bound>> {
         let (enclosure, segment) = (self.enclosure.as_ref()?, &self.segment);
         let point = &self.ends.left;
         let solver_mode = &self.solver.modes[mode];
         let first = guards.trailing_zeros() as usize;
         let inherited = segment.inherited_by(first, point.time);
-        let mut errors = enclosure.at_crossing(&EnclosedCrossing {
+        let mut roundings = roundings(&solver_mode.flow, &segment.entry, point.time);
+        let phase = self.solver.phase();
+        if let Some(at) = phase {
+            let own = self.solver.phase_roundings(time);
+            roundings[at..at + 2].copy_from_slice(&own[at..at + 2]);
+        }
+        Some(enclosure.at_crossing(&EnclosedCrossing {
             flow: &solver_mode.flow,
             matrix: &solver_mode.matrix,
             guard: &solver_mode.guards[first],
@@ -78,15 +84,13 @@ impl<T: Number> Run<'_, T> {
             elapsed: point.time,
             state: *state,
             // The guard differs from zero by its computed value and by the rounding error of that.
-            slack: (point.slack[first] - inherited).max(0.0)
-                + point.orders[first][0].to_f64().abs()
-                + LAST_WORD,
-            unit: unit::<T>(),
+            slack: (point.slack[first] - inherited).max(T::Bound::ZERO)
+                + point.orders[first][0].bound().abs()
+                + T::Bound::LAST_WORD,
+            roundings,
+            phase,
             zeros: segment.zeros_by_series(first, point.time.to_f64()),
-        });
-        errors.add_box(&roundings(&solver_mode.flow, &segment.entry, point.time));
-        errors.add_box(&self.solver.phase_roundings(time));
-        Some(errors)
+        }))
     }
 
     #[inline]
@@ -97,7 +101,7 @@ impl<T: Number> Run<'_, T> {
         until: usize,
         time: Time<T>,
         state: &Vector<T>,
-        errors: Option<&Enclosure>,
+        errors: Option<&Enclosure<T::Bound>>,
     ) {
         let rising = self.tracks[n].outward > 0.0;
         let counted = match self.solver.system.modes[mode].watch[n - until].direction {

@@ -10,10 +10,11 @@ mod accumulation;
 mod begin;
 mod crossed;
 mod enclosure;
+mod reduction;
 mod transition;
 
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::arithmetic::vector::{Vector, all_finite, twice_summed_rounding, unit};
+use crate::affine::arithmetic::vector::{Vector, all_finite, twice_summed_rounding};
 use crate::affine::first_crossing::search::SearchOutcome;
 use crate::affine::first_crossing::taylor::FailedAttempts;
 use crate::affine::guards::point::{Ends, GuardedSegment, Passed};
@@ -22,12 +23,12 @@ use crate::affine::solver::event::{Ending, Errors, Event, What};
 use crate::affine::solver::pool::Loan;
 use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::zeros::graph::Firing;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 use enclosure::{Enclosure, roundings};
 use std::collections::VecDeque;
 
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
-pub struct Run<'a, T> {
+pub struct Run<'a, T: Number> {
     solver: &'a Solver<T>,
     graph: Loan<'a, T>,
     work: SearchWork,
@@ -54,7 +55,7 @@ pub struct Run<'a, T> {
     decided: usize,
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
-    enclosure: Option<Enclosure>,
+    enclosure: Option<Enclosure<T::Bound>>,
     /// The start, with the errors that it has before the rounding of its modal co-ordinates.
     start: Event<T>,
     /// The last event that the iterator returned, or the start.
@@ -112,7 +113,7 @@ impl<'a, T: Number> Run<'a, T> {
     pub fn overflows(&self) -> bool {
         /// Room for the bounds of derivatives.
         const LARGEST: f64 = 1e280;
-        let within = |it: &T| it.to_f64().abs() <= LARGEST;
+        let within = |it: &T| it.bound().abs() <= LARGEST;
         let is_large = || self.present().is_none_or(|(_, state)| !state.iter().all(within));
         self.ending() == Some(&Ending::Undecided) && is_large()
     }
@@ -175,7 +176,7 @@ impl<'a, T: Number> Run<'a, T> {
                 continue;
             };
             let (value, size) = row.order(order, &self.segment.entry);
-            let value = value.to_f64();
+            let value = value.bound();
             let mut slack = margin * size;
             if let Some(errors) = &self.enclosure {
                 slack += errors.of_row(flow, row, order);
@@ -204,7 +205,7 @@ impl<'a, T: Number> Run<'a, T> {
         let SolverMode { flow, guards, .. } = solver_mode;
         if let Some(errors) = &mut self.enclosure {
             // From here on the rounding of the entry is among the errors that are followed.
-            errors.add_entry(flow, &self.state, unit::<T>());
+            errors.add_entry(flow, &self.state);
             self.segment.entry = flow.exact(&self.segment.entry.y);
         }
         let inherited = self
@@ -240,9 +241,9 @@ impl<'a, T: Number> Run<'a, T> {
         Event { what, time, state: state[..states].to_vec(), mode, errors: None }
     }
 
-    fn errors(&self, enclosure: &Enclosure) -> Errors {
+    fn errors(&self, enclosure: &Enclosure<T::Bound>) -> Errors<T::Bound> {
         let states = self.solver.system.states.len();
-        let rounding = 2.0 * unit::<T>() * self.entered.high.to_f64().abs();
+        let rounding = T::unit() * 2.0 * self.entered.high.bound().abs();
         Errors { time: enclosure.time() + rounding, state: enclosure.state()[..states].to_vec() }
     }
 
@@ -286,7 +287,7 @@ impl<'a, T: Number> Run<'a, T> {
         let SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
         if let Some(errors) = &self.enclosure {
             let errors = errors.later(flow, limit);
-            let rounded = 4.0 * unit::<T>() * limit.to_f64().abs();
+            let rounded = T::unit() * 4.0 * limit.bound().abs();
             let mut errors = errors.at_given_time(flow, matrix, &self.state, rounded);
             errors.add_box(&roundings(flow, &self.segment.entry, limit));
             errors.add_box(&self.solver.phase_roundings(&self.entered));

@@ -3,10 +3,10 @@
 
 use super::Run;
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::arithmetic::vector::{Vector, twice_summed_rounding, unit};
+use crate::affine::arithmetic::vector::{Vector, twice_summed_rounding};
 use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::graph::Firing;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 
 /// The largest number of `until` events in one instant.
 const MOST_AT_ONCE: u32 = 64;
@@ -34,10 +34,11 @@ impl<T: Number> Run<'_, T> {
         if let Some(errors) = self.enclosure.take() {
             let reset = &solver.modes[mode].resets[firing.until];
             let sizes = reset.iter().map(|row| {
-                let terms = row.iter().zip(&before).map(|(a, b)| (a.to_f64() * b.to_f64()).abs());
-                (reset.len() + 2) as f64 * unit::<T>() * terms.sum::<f64>()
+                let terms = row.iter().zip(&before).map(|(a, b)| (a.bound() * b.bound()).abs());
+                T::unit() * (reset.len() + 2) as f64 * terms.sum::<T::Bound>()
             });
-            let errors = errors.after_reset(reset, &sizes.collect::<Vec<_>>());
+            let mut errors = errors.after_reset(reset, &sizes.collect::<Vec<_>>());
+            errors.reduce();
             event.errors = Some(self.errors(&errors));
             self.enclosure = Some(errors);
         }
@@ -73,7 +74,7 @@ impl<T: Number> Run<'_, T> {
             };
             let flow = &solver.modes[next[n].mode].flow;
             let (value, size) = condition.order(order, &flow.modal(state));
-            let value = value.to_f64();
+            let value = value.bound();
             let mut slack = twice_summed_rounding::<T>(flow.dimension) * size;
             if let Some(errors) = &self.enclosure {
                 // The errors before the reset bound those after it for all that follows here.

@@ -1,6 +1,7 @@
 //! The events of a run, and its endings.
 
 use crate::affine::arithmetic::clock::Time;
+use crate::numeric::number::{Bound, Number};
 
 /// The kind of an event of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +37,7 @@ pub enum Ending<T> {
 
 /// An event of a run.
 #[derive(Debug)]
-pub struct Event<T> {
+pub struct Event<T: Number> {
     /// The kind of event.
     pub what: What<T>,
     /// The time of the event.
@@ -46,10 +47,10 @@ pub struct Event<T> {
     /// The index of the mode just after the event.
     pub mode: usize,
     /// Bounds of the errors, in a run that follows them.
-    pub errors: Option<Errors>,
+    pub errors: Option<Errors<T::Bound>>,
 }
 
-impl<T: Clone> Clone for Event<T> {
+impl<T: Number> Clone for Event<T> {
     fn clone(&self) -> Self {
         Self {
             what: self.what.clone(),
@@ -73,14 +74,14 @@ impl<T: Clone> Clone for Event<T> {
 
 /// Bounds of the errors of an event's time and state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Errors {
+pub struct Errors<B> {
     /// A bound of the error of the time.
-    pub time: f64,
+    pub time: B,
     /// For each state, a bound of its error.
-    pub state: Vec<f64>,
+    pub state: Vec<B>,
 }
 
-impl Errors {
+impl<B: Bound> Errors<B> {
     /// Whether all bounds are finite.
     pub(in crate::affine) fn are_finite(&self) -> bool {
         self.time.is_finite() && self.state.iter().all(|it| it.is_finite())

@@ -10,7 +10,7 @@ pub mod pool;
 mod start_cache;
 
 use crate::affine::arithmetic::clock::{Clock, Time};
-use crate::affine::arithmetic::real::BigReal;
+use crate::affine::arithmetic::real::{BigReal, bits_for};
 use crate::affine::arithmetic::vector::{Vector, rounded};
 use crate::affine::closed_form::bound;
 use crate::affine::closed_form::flow::ModeFlow;
@@ -18,13 +18,13 @@ use crate::affine::guards::row::ModalRow;
 use crate::affine::modal;
 use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, System};
 use crate::affine::zeros::graph::ZeroGraph;
-use crate::numeric::number::Number;
+use crate::numeric::number::{Bound, Number};
 use event::Event;
 use pool::CachePool;
 
-/// A piecewise-affine system in closed form, in an arithmetic of one or two words.
+/// A piecewise-affine system in closed form, in one arithmetic.
 #[derive(Clone, Debug)]
-pub struct Solver<T> {
+pub struct Solver<T: Number> {
     pub(super) system: System,
     pub(super) modes: Vec<SolverMode<T>>,
     pub(super) clock: Option<Clock<T>>,
@@ -34,7 +34,7 @@ pub struct Solver<T> {
 
 /// A mode prepared for runs in one arithmetic.
 #[derive(Clone, Debug)]
-pub(super) struct SolverMode<T> {
+pub(super) struct SolverMode<T: Number> {
     pub flow: ModeFlow<T>,
     /// The mode's matrix M.
     pub matrix: Vec<Vector<T>>,
@@ -87,7 +87,7 @@ impl<T: Number> Solver<T> {
     fn prepared(system: System, backward: bool) -> Result<Self, Unprepared> {
         let mut blocks = Vec::new();
         for mode in &system.modes {
-            let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale);
+            let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale, bits_for::<T>());
             blocks.push(bound::ordered(blocks_of_mode));
         }
         let graph = ZeroGraph::of(&system);
@@ -178,10 +178,15 @@ impl<T: Number> Solver<T> {
         }
     }
 
+    /// The place of cos theta in z, which sin theta follows, where the system is forced.
+    pub(super) fn phase(&self) -> Option<usize> {
+        self.clock.as_ref().map(|_| self.system.states.len())
+    }
+
     /// Bounds of the errors that the rounding of the time makes in cos theta and sin theta, as
     /// errors of z.
-    pub(super) fn phase_roundings(&self, time: &Time<T>) -> [f64; LARGEST_DIMENSION] {
-        let mut errors = [0.0; LARGEST_DIMENSION];
+    pub(super) fn phase_roundings(&self, time: &Time<T>) -> Vector<T::Bound> {
+        let mut errors = [T::Bound::ZERO; LARGEST_DIMENSION];
         if let Some(clock) = &self.clock {
             let states = self.system.states.len();
             errors[states..states + 2].fill(clock.rounding(time));
@@ -194,7 +199,7 @@ impl<T: Number> Solver<T> {
 pub(super) fn numbers<T: Number>(row: &Row) -> Vector<T> {
     let mut vector = [T::zero(); LARGEST_DIMENSION];
     for (entry, number) in vector.iter_mut().zip(row) {
-        *entry = rounded(&BigReal::of(number));
+        *entry = rounded(&BigReal::of(number, bits_for::<T>()));
     }
     vector
 }
@@ -206,7 +211,7 @@ fn changes<T: Number>(reset: &[Row]) -> Vec<Change<T>> {
     };
     let factors = |row: &Row| {
         let there = row.iter().enumerate().filter(|(_, it)| !it.is_zero());
-        there.map(|(k, it)| (k, rounded(&BigReal::of(it)))).collect()
+        there.map(|(k, it)| (k, rounded(&BigReal::of(it, bits_for::<T>())))).collect()
     };
     let changed = reset.iter().enumerate().filter(|(n, row)| !kept(*n, row));
     changed.map(|(n, row)| (n, factors(row))).collect()

@@ -56,6 +56,12 @@ impl From<TwoWord> for DoubleDouble {
     }
 }
 
+impl Default for DoubleDouble {
+    fn default() -> Self {
+        Self::exact(0.0)
+    }
+}
+
 impl fmt::Debug for DoubleDouble {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:e} + {:e}", self.0.hi(), self.0.lo())
@@ -99,6 +105,32 @@ impl Neg for DoubleDouble {
 
 impl Number for DoubleDouble {
     const TERMS: usize = 14;
+
+    const WORDS: usize = 2;
+
+    type Bound = f64;
+
+    /// Four units of 2^-106, because each operation is good to a few of them.
+    #[inline]
+    fn unit() -> f64 {
+        4.0 * UNIT
+    }
+
+    #[inline]
+    fn bound(self) -> f64 {
+        self.0.hi()
+    }
+
+    #[inline]
+    fn of_bound(bound: f64) -> Self {
+        Self::exact(bound)
+    }
+
+    fn scaled(self, exponent: i64) -> Self {
+        let (high, low) = self.words();
+        let [high, low] = [high, low].map(|it| percuss::number::Bound::scaled(it, exponent));
+        Self::new(high, low)
+    }
 
     fn exact(value: f64) -> Self {
         Self(Df64::new(value))

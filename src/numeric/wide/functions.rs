@@ -1,0 +1,186 @@
+//! Roots, the exponential, sine and cosine of wide numbers.
+
+use super::limbs::{add_into, quotient_by_word, subtract_from, times_word};
+use super::{Kind, MOST, Wide};
+use crate::numeric::number::Number;
+use std::sync::OnceLock;
+
+/// The words of a constant: those of a number, and as many below it.
+const CONSTANT: usize = 2 * MOST;
+
+/// The largest exponent of an argument of sine, cosine and the exponential: whole turns and powers
+/// of two are counted in 64 bits.
+const LARGEST_EXPONENT: i64 = 61;
+
+/// The number of bits to which an f64 begins an iteration.
+const FIRST_BITS: usize = 48;
+
+/// The sum of 1/((2 k + 1) n^(2 k + 1)) as a fraction, with alternating signs or without: the inverse
+/// (hyperbolic) tangent of 1/n.
+fn inverse_tangent(n: u64, alternates: bool) -> [u64; CONSTANT] {
+    let mut power = [0; CONSTANT];
+    // 2^(64 CONSTANT) - 1 for one: the words below are far beyond those that are used.
+    power.fill(u64::MAX);
+    quotient_by_word(&mut power, n);
+    let mut sum = power;
+    let mut odd = 1;
+    while power.iter().any(|it| *it != 0) {
+        odd += 2;
+        quotient_by_word(&mut power, n * n);
+        let mut term = power;
+        quotient_by_word(&mut term, odd);
+        if alternates && odd % 4 == 3 {
+            subtract_from(&mut sum, &term);
+        } else {
+            add_into(&mut sum, &term);
+        }
+    }
+    sum
+}
+
+/// A quarter of pi as a fraction, by Machin's formula.
+fn quarter_pi() -> &'static [u64; CONSTANT] {
+    static WORDS: OnceLock<[u64; CONSTANT]> = OnceLock::new();
+    WORDS.get_or_init(|| {
+        let mut sum = inverse_tangent(5, true);
+        times_word(&mut sum, 4);
+        subtract_from(&mut sum, &inverse_tangent(239, true));
+        sum
+    })
+}
+
+/// The natural logarithm of two as a fraction: 18 artanh(1/26) - 2 artanh(1/4801) + 8 artanh(1/8749).
+fn logarithm_of_two() -> &'static [u64; CONSTANT] {
+    static WORDS: OnceLock<[u64; CONSTANT]> = OnceLock::new();
+    WORDS.get_or_init(|| {
+        let [mut sum, mut less, mut more] = [26, 4801, 8749].map(|it| inverse_tangent(it, false));
+        times_word(&mut sum, 18);
+        times_word(&mut less, 2);
+        times_word(&mut more, 8);
+        subtract_from(&mut sum, &less);
+        add_into(&mut sum, &more);
+        sum
+    })
+}
+
+impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
+    /// The number of halvings after which a series is short, as it is best for so many bits.
+    const HALVINGS: i64 = (BITS.isqrt() / 2) as i64;
+
+    /// A constant in two parts, of which multiples of the first are exact.
+    fn split(words: &[u64; CONSTANT], exponent: i64) -> [Self; 2] {
+        let below = CONSTANT - (WORDS - 1);
+        let high = Self::constant(&words[below..], exponent);
+        let low = exponent - 64 * (WORDS as i64 - 1);
+        [high, Self::constant(&words[below - WORDS..below], low)]
+    }
+
+    /// The number less its nearest multiple of a constant, and the multiple modulo four.
+    fn reduced(self, [high, low]: [Self; 2]) -> (Self, i64, i64) {
+        let (mut rest, mut count) = (self, 0_i64);
+        let constant = high.to_f64();
+        // The first multiple has the digits of f64 alone.
+        for _ in 0..2 {
+            let multiple = (rest.to_f64() / constant).round();
+            let factor = Self::exact(multiple);
+            rest = (rest - factor * high) - factor * low;
+            count += multiple as i64;
+        }
+        (rest, count.rem_euclid(4), count)
+    }
+
+    /// 1/x of an ordinary number, by Newton's method.
+    pub(super) fn inverse(self) -> Self {
+        let fraction = Self { exponent: 0, ..self };
+        let mut inverse = Self::exact(1.0 / fraction.to_f64());
+        let mut bits = FIRST_BITS;
+        while bits < 64 * WORDS {
+            inverse = inverse + inverse * (Self::one() - fraction * inverse);
+            bits *= 2;
+        }
+        inverse.scaled(-self.exponent)
+    }
+
+    pub(super) fn square_root(self) -> Self {
+        if self.kind != Kind::Ordinary {
+            return self;
+        }
+        if self.is_negative {
+            return Self::UNKNOWN;
+        }
+        let half = self.exponent.div_euclid(2);
+        let fraction = self.scaled(-2 * half);
+        let mut inverse = Self::exact(1.0 / fraction.to_f64().sqrt());
+        let mut bits = FIRST_BITS;
+        while bits < 64 * WORDS {
+            let rest = Self::one() - fraction * inverse * inverse;
+            inverse = inverse + (inverse * rest).scaled(-1);
+            bits *= 2;
+        }
+        let root = fraction * inverse;
+        let root = root + (inverse * (fraction - root * root)).scaled(-1);
+        root.scaled(half)
+    }
+
+    pub(super) fn exponential(self) -> Self {
+        match self.kind {
+            Kind::Zero => return Self::one(),
+            Kind::Unknown => return self,
+            Kind::Ordinary if self.exponent > LARGEST_EXPONENT => {
+                return if self.is_negative { Self::ZERO } else { Self::UNKNOWN };
+            }
+            Kind::Ordinary => {}
+        }
+        let (rest, _, powers) = self.reduced(Self::split(logarithm_of_two(), 0));
+        let small = rest.scaled(-Self::HALVINGS);
+        // exp(x) - 1, whose digits the doublings keep: (1 + e)^2 - 1 = e (2 + e).
+        let (mut sum, mut term, mut n) = (small, small, 1);
+        while !term.is_below(&sum) {
+            n += 1;
+            term = (term * small).over(n);
+            sum = sum + term;
+        }
+        let two = Self::one().scaled(1);
+        let grown = (0..Self::HALVINGS).fold(sum, |it, _| it * (two + it));
+        (Self::one() + grown).scaled(powers)
+    }
+
+    pub(super) fn sine_and_cosine(self) -> (Self, Self) {
+        if self.kind == Kind::Unknown || self.exponent > LARGEST_EXPONENT {
+            return (Self::UNKNOWN, Self::UNKNOWN);
+        }
+        let (rest, quarter, _) = self.reduced(Self::split(quarter_pi(), 1));
+        let versine = rest.versine();
+        let two = Self::one().scaled(1);
+        let size = (versine * (two - versine)).square_root();
+        let sin = if rest.is_negative { -size } else { size };
+        let cos = Self::one() - versine;
+        match quarter {
+            0 => (sin, cos),
+            1 => (cos, -sin),
+            2 => (-sin, -cos),
+            _ => (-cos, sin),
+        }
+    }
+
+    /// 1 - cos(x) of a small angle, all of whose digits the doublings keep:
+    /// 1 - cos(2 x) = 2 v (2 - v).
+    fn versine(self) -> Self {
+        let small = self.scaled(-Self::HALVINGS);
+        let square = small * small;
+        let mut term = square.scaled(-1);
+        let (mut sum, mut n) = (term, 2);
+        while !term.is_below(&sum) {
+            term = -(term * square).over((n + 1) * (n + 2));
+            sum = sum + term;
+            n += 2;
+        }
+        let two = Self::one().scaled(1);
+        (0..Self::HALVINGS).fold(sum, |it, _| (it * (two - it)).scaled(1))
+    }
+
+    /// Whether the number is below the last bit of another one.
+    fn is_below(&self, other: &Self) -> bool {
+        self.kind != Kind::Ordinary || self.exponent < other.exponent - 64 * WORDS as i64
+    }
+}
