@@ -12,6 +12,7 @@ mod run;
 mod solver;
 mod zeros;
 
+pub use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 pub use arithmetic::clock::Time;
 pub use dashu_ratio::RBig as Rational;
 pub use guards::track::SearchWork;

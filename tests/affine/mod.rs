@@ -16,6 +16,7 @@ mod spectra;
 mod tables;
 mod together;
 mod touches;
+mod wide;
 
 use crate::double_double::DoubleDouble;
 use percuss::affine::{Ending, Event, Solver, System, What};

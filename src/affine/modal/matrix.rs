@@ -45,15 +45,15 @@ pub fn largest(matrix: &BigMatrix) -> BigReal {
 }
 
 /// Eliminates with complete pivoting, and gives the right null space as columns, each with a 1 in a
-/// row of its own; none if the rank is another one than said.
-pub fn null_space(matrix: &BigMatrix, nullity: usize) -> Option<BigMatrix> {
+/// row of its own; none if the rank is another one than said. Entries below `noise` are rounding.
+pub fn null_space(matrix: &BigMatrix, nullity: usize, noise: &BigReal) -> Option<BigMatrix> {
     let mut rows = matrix.clone();
     let size = rows.len();
     let rank = size.checked_sub(nullity)?;
     let mut order: Vec<usize> = (0..size).collect();
     // The rounding that elimination leaves of a zero is far below half of the bits.
     let largest = largest(&rows);
-    let nothing = largest.scaled(-(largest.bits() as isize) / 2);
+    let nothing = &largest.scaled(-(largest.bits() as isize) / 2) + noise;
     for step in 0..size {
         let (size_of_pivot, at, column) = pivot(&rows, step)?;
         let is_nothing = size_of_pivot < nothing || size_of_pivot.is_zero();

@@ -212,12 +212,18 @@ fn is_close(gap: f64, a: &Eigenvalue, b: &Eigenvalue, time_scale: f64) -> bool {
 
 fn block(matrix: &BigMatrix, cluster: &[Eigenvalue], time_scale: f64) -> Option<Block> {
     let dimensions = cluster.iter().map(Eigenvalue::dimensions).sum();
-    let annihilator = cluster.iter().fold(identity(matrix.len()), |product_so_far, root| {
+    let (mut annihilator, mut size) = (identity(matrix.len()), BigReal::one());
+    for root in cluster {
         let factor = factor(matrix, root);
-        (0..root.multiplicity).fold(product_so_far, |it, _| product(&it, &factor))
-    });
-    let columns = null_space(&annihilator, dimensions)?;
-    let left = transposed(&null_space(&transposed(&annihilator), dimensions)?);
+        let own = largest(&factor);
+        for _ in 0..root.multiplicity {
+            (annihilator, size) = (product(&annihilator, &factor), &size * &own);
+        }
+    }
+    // Where the factors annihilate all, only their rounding is left.
+    let rounding = size.scaled(ABOVE_THE_LAST - size.bits() as isize);
+    let columns = null_space(&annihilator, dimensions, &rounding)?;
+    let left = transposed(&null_space(&transposed(&annihilator), dimensions, &rounding)?);
     let rows = product(&inverse(&product(&left, &columns))?, &left);
     let mut inner = product(&product(&rows, matrix), &columns);
     let nothing = noise(matrix, [&columns, &rows], &inner);

@@ -101,7 +101,8 @@ fn invariant(matrix: &BigMatrix, root: &Eigenvalue, size: f64) -> Option<Vec<Vec
     let noise = annihilator.iter_mut().flatten().filter(|it| it.abs() <= nothing);
     noise.for_each(|it| *it = BigReal::zero());
     let nullities = (step..=matrix.len()).step_by(step);
-    let space = nullities.map(|it| null_space(&annihilator, it)).find_map(|it| it)?;
+    let space =
+        nullities.map(|it| null_space(&annihilator, it, &BigReal::zero())).find_map(|it| it)?;
     let first: Vec<BigReal> = space.iter().map(|row| row[0].clone()).collect();
     if root.is_real() {
         return Some(vec![first]);

@@ -2,6 +2,7 @@
 
 use super::Run;
 use super::enclosure::Enclosure;
+use super::exact::ExactRun;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::real::{BigReal, bits_for};
 use crate::affine::arithmetic::vector::{Vector, rounded};
@@ -45,6 +46,11 @@ impl<T: Number> Solver<T> {
         }
         sizes.iter_mut().zip(phase).for_each(|(size, turned)| *size += turned);
         sizes[self.system.dimension() - 1] = T::Bound::ZERO;
+        let zero_angle = match &self.system.forcing {
+            Some(forcing) => (&forcing.omega * &start.time + &forcing.phi).is_zero(),
+            None => true,
+        };
+        run.exact = Some(ExactRun::at_start(start, self.phase().is_some(), zero_angle));
         run.begin(Some(Enclosure::of(&sizes)));
         Some(run)
     }
@@ -76,6 +82,7 @@ impl<T: Number> Solver<T> {
             decided: 0,
             ended: false,
             enclosure: None,
+            exact: None,
             start: first.clone(),
             last: first,
         })

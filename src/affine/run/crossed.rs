@@ -26,7 +26,10 @@ impl<T: Number> Run<'_, T> {
         let mode = self.graph.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
         let Some((time, state)) = self.present() else { return self.end(Ending::Undecided) };
-        let tied = self.graph.tied(self.node, guards & guards.wrapping_neg(), false);
+        let first = self.zero_guards(mode, guards & guards.wrapping_neg(), &state);
+        let exactly = |guard: u32| self.exact.as_ref().map_or(0, |it| it.tied(guard as usize));
+        let exactly_tied = exactly(guards.trailing_zeros());
+        let tied = self.graph.tied(self.node, first, false) | exactly_tied;
         if guards & !tied != 0 {
             self.work.undecidable += 1;
             self.tie = Some((mode, guards));
@@ -45,16 +48,21 @@ impl<T: Number> Run<'_, T> {
                 self.tracks[n].zeros = 1;
                 self.ends.left.orders[n][0] = T::zero();
             }
+            if let Some(exact) = &mut self.exact {
+                exact.pass(bits(guards));
+            }
             return;
         }
         if self.solver.backward {
             (self.entered, self.state, self.enclosure) = (time, state, errors);
             return self.end(Ending::LeavesDomain);
         }
-        let guards = self.graph.tied(self.node, guards, false);
+        let zero = self.zero_guards(mode, guards, &state);
+        let guards = self.graph.tied(self.node, zero, false) | exactly_tied;
+        let zero = self.zero_guards(mode, guards, &state);
         let until = ending.trailing_zeros() as usize;
         self.enclosure = errors;
-        self.fire(Firing { until, guards, at_entry: false }, time, state);
+        self.fire(Firing { until, zero, at_entry: false }, time, state);
     }
 
     /// The errors at a crossing, where they are followed.

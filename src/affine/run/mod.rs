@@ -10,6 +10,7 @@ mod accumulation;
 mod begin;
 mod crossed;
 mod enclosure;
+mod exact;
 mod reduction;
 mod transition;
 
@@ -22,9 +23,10 @@ use crate::affine::guards::track::{SearchWork, Track};
 use crate::affine::solver::event::{Ending, Errors, Event, What};
 use crate::affine::solver::pool::Loan;
 use crate::affine::solver::{Solver, SolverMode};
-use crate::affine::zeros::graph::Firing;
+use crate::affine::zeros::graph::{Firing, ZeroGuards};
 use crate::numeric::number::{Bound, Number};
 use enclosure::{Enclosure, roundings};
+use exact::ExactRun;
 use std::collections::VecDeque;
 
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
@@ -56,6 +58,8 @@ pub struct Run<'a, T: Number> {
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
     enclosure: Option<Enclosure<T::Bound>>,
+    /// What is known exactly beside it.
+    exact: Option<ExactRun>,
     /// The start, with the errors that it has before the rounding of its modal co-ordinates.
     start: Event<T>,
     /// The last event that the iterator returned, or the start.
@@ -164,6 +168,10 @@ impl<'a, T: Number> Run<'a, T> {
     #[inline]
     fn track_guards(&mut self, mode: usize, solver_mode: &SolverMode<T>) -> Option<Ending<T>> {
         let SolverMode { flow, guards, .. } = solver_mode;
+        if let Some(mut exact) = self.exact.take() {
+            exact.enter(self.exact_mode(mode));
+            self.exact = Some(exact);
+        }
         let node = self.graph.node(self.node);
         let until = self.solver.system.modes[mode].until.len();
         let margin = twice_summed_rounding::<T>(flow.dimension);
@@ -171,7 +179,10 @@ impl<'a, T: Number> Run<'a, T> {
         self.at_entry = 0;
         let mut ending = None;
         for (n, (row, order)) in guards.iter().zip(node.multiplicities.iter()).enumerate() {
-            let Some(order) = *order else {
+            let fate = self.exact.as_ref().and_then(|it| it.fate(n));
+            let order = fate.map_or(*order, |it| it.begin.map(|(order, _)| order));
+            let order = order.filter(|_| !self.never_crosses(mode, n));
+            let Some(order) = order else {
                 self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
                 continue;
             };
@@ -181,13 +192,16 @@ impl<'a, T: Number> Run<'a, T> {
             if let Some(errors) = &self.enclosure {
                 slack += errors.of_row(flow, row, order);
             }
-            let doubtful = value.abs() <= slack;
+            let begin = fate.and_then(|it| it.begin);
+            let doubtful = begin.is_none() && value.abs() <= slack;
+            let is_positive = begin.map_or(value > 0.0, |(_, is_positive)| is_positive);
+            let live = !fate.is_some_and(|it| it.keeps_sign);
             if doubtful {
                 self.work.doubt(n);
             }
-            let outward = if n >= until && value > 0.0 { -1.0 } else { 1.0 };
-            self.tracks.push(Track { outward, zeros: order, live: true });
-            if n < until && value > 0.0 {
+            let outward = if n >= until && is_positive { -1.0 } else { 1.0 };
+            self.tracks.push(Track { outward, zeros: order, live });
+            if n < until && is_positive {
                 if order == 0 && !doubtful {
                     ending = ending.or(Some(Ending::BeyondGuard));
                 } else if self.solver.backward {
@@ -250,9 +264,11 @@ impl<'a, T: Number> Run<'a, T> {
     /// Searches for the next event, and queues the events of its instant.
     fn advance(&mut self) {
         if self.at_entry != 0 {
-            let guards = self.graph.tied(self.node, self.at_entry, true);
+            let zero = ZeroGuards { guards: self.at_entry, point: None };
+            let guards = self.graph.tied(self.node, zero, true);
             let until = self.at_entry.trailing_zeros() as usize;
-            self.fire(Firing { until, guards, at_entry: true }, self.entered, self.state);
+            let zero = ZeroGuards { guards, point: None };
+            self.fire(Firing { until, zero, at_entry: true }, self.entered, self.state);
             return;
         }
         let mode = self.graph.node(self.node).mode;

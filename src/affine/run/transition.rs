@@ -5,6 +5,7 @@ use super::Run;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{Vector, twice_summed_rounding};
 use crate::affine::solver::event::{Ending, What};
+use crate::affine::zeros::exact::Entries;
 use crate::affine::zeros::graph::Firing;
 use crate::numeric::number::{Bound, Number};
 
@@ -23,7 +24,10 @@ impl<T: Number> Run<'_, T> {
             let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
             state[*n] = terms.fold(T::zero(), |sum, term| sum + term);
         }
-        let successor = self.successor(mode, firing, &state);
+        let exact = self.exact_before(mode, firing.zero, firing.at_entry);
+        let exact = exact.map(|it| self.exact_after(mode, firing.until, &it));
+        let successor = self.successor(mode, firing, &state, exact.as_ref());
+        self.set_exact(exact);
         let arrival = self.graph.arrival(self.node, firing);
         let impact = arrival.impact;
         let from = self.node;
@@ -60,12 +64,24 @@ impl<T: Number> Run<'_, T> {
 
     /// The first successor whose condition holds.
     #[inline]
-    fn successor(&mut self, mode: usize, firing: Firing, state: &Vector<T>) -> usize {
+    fn successor(
+        &mut self,
+        mode: usize,
+        firing: Firing,
+        state: &Vector<T>,
+        exact: Option<&Entries>,
+    ) -> usize {
         let solver = self.solver;
-        let orders = &self.graph.arrival(self.node, firing).orders;
+        let orders = self.graph.arrival(self.node, firing).orders.clone();
         let conditions = &solver.modes[mode].conditions[firing.until];
         let next = &solver.system.modes[mode].until[firing.until].next;
         for (n, (condition, order)) in conditions.iter().zip(orders.iter()).enumerate() {
+            if let Some(begin) = exact.and_then(|it| self.exact_begin(mode, firing.until, n, it)) {
+                if begin.is_some_and(|(_, is_positive)| is_positive) {
+                    return n;
+                }
+                continue;
+            }
             let (Some(condition), Some(order)) = (condition, *order) else {
                 if condition.is_none() {
                     return n;

@@ -17,10 +17,12 @@ use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::guards::row::ModalRow;
 use crate::affine::modal;
 use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, System};
+use crate::affine::zeros::exact::ExactMode;
 use crate::affine::zeros::graph::ZeroGraph;
 use crate::numeric::number::{Bound, Number};
 use event::Event;
 use pool::CachePool;
+use std::sync::OnceLock;
 
 /// A piecewise-affine system in closed form, in one arithmetic.
 #[derive(Clone, Debug)]
@@ -46,6 +48,8 @@ pub(super) struct SolverMode<T: Number> {
     pub changes: Vec<Vec<Change<T>>>,
     /// The conditions of the successors of each `until`, in the co-ordinates of their modes.
     pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
+    /// The mode's rows in exact arithmetic, once a run asks for them.
+    pub exact: OnceLock<ExactMode>,
 }
 
 /// An entry of z that a reset changes, and the factors of the entries before it.
@@ -113,6 +117,7 @@ impl<T: Number> Solver<T> {
                 resets: resets.collect(),
                 changes: mode.until.iter().map(|it| changes(&it.reset)).collect(),
                 conditions: conditions.collect(),
+                exact: OnceLock::new(),
             }
         };
         let modes = system.modes.iter().enumerate().map(mode).collect();

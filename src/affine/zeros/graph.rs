@@ -4,9 +4,11 @@
 //! The structural zeros at the entry of a segment depend on the events that led there, not on
 //! numbers. A run therefore follows a path in a small graph, each node of which is computed once.
 
+use super::circle::Circle;
 use super::residue::{Residue, Residues, residues, row_times};
 use super::space::ZeroSpace;
 use crate::affine::model::system::{Mode, Row, Successor, System, Until};
+use dashu_ratio::RBig;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -20,18 +22,30 @@ struct ModeResidues {
     matrix: Vec<Residues>,
     /// The mode's guards: those of `until`, then those of `watch`.
     guards: Vec<Residues>,
+    /// For each guard, the rows that are zero where it is zero at one or the other of two rational
+    /// points of the circle.
+    points: Vec<[Vec<Residues>; 2]>,
     resets: Vec<Vec<Residues>>,
     /// The conditions of each event's successors, with their modes.
     next: Vec<Vec<(Option<Residues>, usize)>>,
 }
 
-/// An event: the `until` that ends the mode, all guards that are zero there, as bits, and whether
-/// it is at the instant at which the mode was entered.
+/// An event: the `until` that ends the mode, the zeros there, and whether it is at the instant at
+/// which the mode was entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Firing {
     pub until: usize,
-    pub guards: u64,
+    pub zero: ZeroGuards,
     pub at_entry: bool,
+}
+
+/// The guards that are zero at an instant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ZeroGuards {
+    /// The guards, as bits.
+    pub guards: u64,
+    /// The rational point of the circle at which the first of them is zero, if it is at one.
+    pub point: Option<usize>,
 }
 
 /// A node of the graph: a mode with the space of structural zeros at its entry.
@@ -46,7 +60,7 @@ pub struct Node {
     pub multiplicities: Arc<[Option<usize>]>,
     /// The arrivals that were asked for: there are few, and each event searches the list.
     arrivals: Vec<(Firing, Arrival)>,
-    ties: Vec<(u64, bool, u64)>,
+    ties: Vec<(ZeroGuards, bool, u64)>,
 }
 
 /// The consequences of an event for the structural zeros.
@@ -73,7 +87,9 @@ pub struct ZeroGraph {
 impl ZeroGraph {
     /// The graph of a system, without a node; none if a coefficient has no residue.
     pub fn of(system: &System) -> Option<Self> {
-        let modes = system.modes.iter().map(ModeResidues::of).collect::<Option<_>>()?;
+        let states = system.states.len();
+        let modes = system.modes.iter().map(|it| ModeResidues::of(it, states));
+        let modes = modes.collect::<Option<_>>()?;
         Some(Self { modes, nodes: Vec::new(), known: HashMap::new() })
     }
 
@@ -92,17 +108,18 @@ impl ZeroGraph {
 
     /// The guards that are zero at an event because the given ones are, which are included.
     #[inline]
-    pub fn tied(&mut self, node: usize, guards: u64, at_entry: bool) -> u64 {
+    pub fn tied(&mut self, node: usize, zero: ZeroGuards, at_entry: bool) -> u64 {
         let node = &mut self.nodes[node];
-        let known = node.ties.iter().find(|it| (it.0, it.1) == (guards, at_entry));
+        let known = node.ties.iter().find(|it| (it.0, it.1) == (zero, at_entry));
         if let Some((.., tied)) = known {
             return *tied;
         }
-        let rows = &self.modes[node.mode].guards;
-        let zeros = with_rows(node.zeros_at(at_entry), rows, guards);
+        let mode = &self.modes[node.mode];
+        let rows = &mode.guards;
+        let zeros = with_rows(node.zeros_at(at_entry), mode, zero);
         let also = |n: &usize| zeros.contains(&rows[*n]);
-        let tied = (0..rows.len()).filter(also).fold(guards, |mask, n| mask | 1 << n);
-        node.ties.push((guards, at_entry, tied));
+        let tied = (0..rows.len()).filter(also).fold(zero.guards, |mask, n| mask | 1 << n);
+        node.ties.push((zero, at_entry, tied));
         tied
     }
 
@@ -167,7 +184,7 @@ impl Node {
 
 fn arrived(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
     let own = &modes[node.mode];
-    let zeros = with_rows(node.zeros_at(firing.at_entry), &own.guards, firing.guards);
+    let zeros = with_rows(node.zeros_at(firing.at_entry), own, firing.zero);
     let after = zeros.after(&own.resets[firing.until]);
     let next = &own.next[firing.until];
     let order = |(when, mode): &(Option<Residues>, usize)| {
@@ -181,10 +198,14 @@ fn arrived(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
     }
 }
 
-fn with_rows(zeros: &ZeroSpace, guards: &[Residues], fired: u64) -> ZeroSpace {
+fn with_rows(zeros: &ZeroSpace, mode: &ModeResidues, zero: ZeroGuards) -> ZeroSpace {
     let mut zeros = zeros.clone();
-    for (_, guard) in guards.iter().enumerate().filter(|(n, _)| fired >> n & 1 == 1) {
+    for (_, guard) in mode.guards.iter().enumerate().filter(|(n, _)| zero.guards >> n & 1 == 1) {
         zeros.insert(guard);
+    }
+    let first = mode.points.get(zero.guards.trailing_zeros() as usize);
+    if let (Some(points), Some(point)) = (first, zero.point) {
+        points[point].iter().for_each(|row| zeros.insert(row));
     }
     zeros
 }
@@ -208,9 +229,11 @@ fn is_impact(own: &ModeResidues, until: usize, zeros: &ZeroSpace, after: &ZeroSp
 }
 
 impl ModeResidues {
-    fn of(mode: &Mode) -> Option<Self> {
+    fn of(mode: &Mode, states: usize) -> Option<Self> {
         let until = mode.until.iter().map(|it| &it.guard);
-        let guards = until.chain(mode.watch.iter().map(|it| &it.guard)).map(|it| residues(it));
+        let rows = until.chain(mode.watch.iter().map(|it| &it.guard));
+        let guards = rows.clone().map(|it| residues(it));
+        let points = rows.map(|it| points(it, states));
         let next = |until: &Until| {
             let one = |it: &Successor| match &it.when {
                 Some(row) => residues(row).map(|row| (Some(row), it.mode)),
@@ -221,10 +244,27 @@ impl ModeResidues {
         Some(Self {
             matrix: matrix(&mode.matrix)?,
             guards: guards.collect::<Option<_>>()?,
+            points: points.collect::<Option<_>>()?,
             resets: mode.until.iter().map(|it| matrix(&it.reset)).collect::<Option<_>>()?,
             next: mode.until.iter().map(next).collect::<Option<_>>()?,
         })
     }
+}
+
+/// For each rational point at which a guard of the forcing angle is zero, the rows cos theta - p and
+/// sin theta - q; none if a coefficient has no residue.
+fn points(guard: &Row, states: usize) -> Option<[Vec<Residues>; 2]> {
+    let Some(points) = Circle::of(guard, states).and_then(|it| it.points) else {
+        return Some([Vec::new(), Vec::new()]);
+    };
+    let row = |at: usize, value: &RBig| {
+        let mut row = vec![RBig::ZERO; states + 3];
+        (row[at], row[states + 2]) = (RBig::ONE, -value);
+        residues(&row)
+    };
+    let rows = |[cos, sin]: &[RBig; 2]| Some(vec![row(states, cos)?, row(states + 1, sin)?]);
+    let [first, second] = &points;
+    Some([rows(first)?, rows(second)?])
 }
 
 fn matrix(rows: &[Row]) -> Option<Vec<Residues>> {

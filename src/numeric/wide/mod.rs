@@ -33,6 +33,21 @@ pub struct Wide<const WORDS: usize, const BITS: usize> {
     words: [u64; WORDS],
 }
 
+/// Numbers of 212 bits.
+pub type Bits212 = Wide<4, 212>;
+
+/// Numbers of 424 bits.
+pub type Bits424 = Wide<7, 424>;
+
+/// Numbers of 848 bits.
+pub type Bits848 = Wide<14, 848>;
+
+/// Numbers of 1696 bits.
+pub type Bits1696 = Wide<27, 1696>;
+
+/// Numbers of 3392 bits.
+pub type Bits3392 = Wide<54, 3392>;
+
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Zero,

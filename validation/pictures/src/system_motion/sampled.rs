@@ -29,7 +29,7 @@ pub(super) struct Mark {
 }
 
 /// The names of the events that occur, in the order of the system's file.
-pub(super) fn event_names<T>(system: &System, run: &[Event<T>]) -> Vec<String> {
+pub(super) fn event_names<T: Number>(system: &System, run: &[Event<T>]) -> Vec<String> {
     let mut named: Vec<&str> = Vec::new();
     for mode in &system.modes {
         let until = mode.until.iter().map(|it| it.name.as_str());
@@ -48,7 +48,7 @@ pub(super) fn event_names<T>(system: &System, run: &[Event<T>]) -> Vec<String> {
     names
 }
 
-fn name_of<'a, T>(system: &'a System, event: &Event<T>) -> Option<&'a str> {
+fn name_of<'a, T: Number>(system: &'a System, event: &Event<T>) -> Option<&'a str> {
     match event.what {
         What::Until(mode, n) => Some(&system.modes[mode].until[n].name),
         What::Watch(mode, n) => Some(&system.modes[mode].watch[n].name),

@@ -1,0 +1,153 @@
+//! Exact arithmetic beside a run that follows its errors: which entries of the state are known as
+//! rationals, and what that decides of guards and successors which no number of bits would.
+
+use super::Run;
+use crate::affine::arithmetic::vector::Vector;
+use crate::affine::model::system::StartPoint;
+use crate::affine::zeros::exact::{Entries, ExactMode, Fate, entries_after};
+use crate::affine::zeros::graph::ZeroGuards;
+use crate::numeric::number::Number;
+use dashu_ratio::RBig;
+
+/// The exact side of a run.
+pub(super) struct ExactRun {
+    /// The entries of z at the entry of the segment that are known.
+    entries: Entries,
+    /// For each guard of the mode, its future on the segment as far as it is known.
+    fates: Vec<Option<Fate>>,
+}
+
+impl ExactRun {
+    /// The entries that a start gives exactly.
+    pub fn at_start(start: &StartPoint, is_forced: bool, zero_angle: bool) -> Self {
+        let known = |[cos, sin, one]: &[RBig; 3]| {
+            let is_plain = cos.is_zero() && sin.is_zero();
+            (zero_angle || is_plain).then(|| cos + one)
+        };
+        let mut entries: Entries = start.state.iter().map(known).collect();
+        if is_forced {
+            entries.push(zero_angle.then_some(RBig::ONE));
+            entries.push(zero_angle.then_some(RBig::ZERO));
+        }
+        entries.push(Some(RBig::ONE));
+        Self { entries, fates: Vec::new() }
+    }
+
+    /// Enters a mode: the future of its guards.
+    pub fn enter(&mut self, mode: &ExactMode) {
+        let Self { entries, fates } = self;
+        fates.clear();
+        fates.extend(mode.guards.iter().map(|it| it.fate(entries)));
+    }
+
+    /// The future of a guard, as far as it is known.
+    pub fn fate(&self, guard: usize) -> Option<&Fate> {
+        self.fates.get(guard)?.as_ref()
+    }
+
+    /// The rational time of a guard's next change of sign.
+    fn next_root(&self, guard: usize) -> Option<&RBig> {
+        self.fate(guard)?.roots.first()
+    }
+
+    /// The guards that change their sign at the very time of one of them, as bits.
+    pub fn tied(&self, guard: usize) -> u64 {
+        let Some(time) = self.next_root(guard) else { return 0 };
+        let also = |n: &usize| self.next_root(*n) == Some(time);
+        (0..self.fates.len()).filter(also).fold(0, |mask, n| mask | 1 << n)
+    }
+
+    /// Passes a change of sign of guards whose mode goes on.
+    pub fn pass(&mut self, guards: impl Iterator<Item = usize>) {
+        for n in guards {
+            if let Some(Some(fate)) = self.fates.get_mut(n)
+                && !fate.roots.is_empty()
+            {
+                fate.roots.remove(0);
+            }
+        }
+    }
+}
+
+impl<T: Number> Run<'_, T> {
+    /// Whether a guard of the forcing angle alone never crosses by the model: it stays inside, or is
+    /// watched and keeps its sign.
+    pub(super) fn never_crosses(&self, mode: usize, guard: usize) -> bool {
+        let (Some(_), Some(circle)) = (&self.exact, &self.exact_mode(mode).circles[guard]) else {
+            return false;
+        };
+        let own = &self.solver.system.modes[mode];
+        circle.keeps_sign
+            && own
+                .until
+                .get(guard)
+                .is_none_or(|it| it.guard.last().is_some_and(|c| *c < RBig::ZERO))
+    }
+
+    /// The exact rows of a mode.
+    pub(super) fn exact_mode(&self, mode: usize) -> &ExactMode {
+        let system = &self.solver.system;
+        self.solver.modes[mode].exact.get_or_init(|| ExactMode::of(system, &system.modes[mode]))
+    }
+
+    /// Guards that are zero at a state, with the rational point of the circle at which the first of
+    /// them is.
+    pub(super) fn zero_guards(&self, mode: usize, guards: u64, state: &Vector<T>) -> ZeroGuards {
+        let first = guards.trailing_zeros() as usize;
+        let point = self.solver.phase().filter(|_| self.exact.is_some()).and_then(|at| {
+            let circle = self.exact_mode(mode).circles.get(first)?.as_ref()?;
+            circle.nearest(state[at].to_f64(), state[at + 1].to_f64())
+        });
+        ZeroGuards { guards, point }
+    }
+
+    /// The exact entries just before an event, at the entry or at the crossing of these guards.
+    pub(super) fn exact_before(
+        &self,
+        mode: usize,
+        zero: ZeroGuards,
+        at_entry: bool,
+    ) -> Option<Entries> {
+        let exact = self.exact.as_ref()?;
+        if at_entry {
+            return Some(exact.entries.clone());
+        }
+        let own = self.exact_mode(mode);
+        let is_zero = |n: &usize| zero.guards >> n & 1 == 1;
+        let time = (0..exact.fates.len()).filter(is_zero).find_map(|n| exact.next_root(n));
+        let mut entries = own.entries_at(&exact.entries, time);
+        let first = zero.guards.trailing_zeros() as usize;
+        if let (Some(at), Some(point)) = (self.solver.phase(), zero.point)
+            && let Some(Some(circle)) = own.circles.get(first)
+            && let Some(points) = &circle.points
+        {
+            let [cos, sin] = points[point].clone();
+            (entries[at], entries[at + 1]) = (Some(cos), Some(sin));
+        }
+        Some(entries)
+    }
+
+    /// The exact entries after the reset of an event.
+    pub(super) fn exact_after(&self, mode: usize, until: usize, before: &Entries) -> Entries {
+        entries_after(&self.solver.system.modes[mode].until[until].reset, before)
+    }
+
+    /// The order and the sign with which the condition of a successor begins, where that is known
+    /// exactly.
+    pub(super) fn exact_begin(
+        &self,
+        mode: usize,
+        until: usize,
+        successor: usize,
+        entries: &Entries,
+    ) -> Option<Option<(usize, bool)>> {
+        self.exact_mode(mode).conditions[until][successor].as_ref()?.begin(entries)
+    }
+
+    /// Makes these the exact entries of the next segment.
+    pub(super) fn set_exact(&mut self, entries: Option<Entries>) {
+        if let (Some(exact), Some(entries)) = (&mut self.exact, entries) {
+            exact.entries = entries;
+        }
+    }
+}

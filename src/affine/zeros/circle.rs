@@ -1,0 +1,99 @@
+//! Guards of the forcing angle alone: a cos theta + b sin theta + c.
+//!
+//! Such a guard changes its sign where a^2 + b^2 > c^2, at two points of the circle. Where the root
+//! of a^2 + b^2 - c^2 is rational, so are these points, and every other guard of the angle that
+//! passes through one is zero there by the model.
+
+use crate::affine::model::system::Row;
+use dashu_int::UBig;
+use dashu_int::ops::{SquareRoot, UnsignedAbs};
+use dashu_ratio::RBig;
+
+/// A guard of the forcing angle alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Circle {
+    /// Whether the guard never changes its sign: it may touch zero.
+    pub keeps_sign: bool,
+    /// The two points (cos, sin) at which the guard is zero, if they are rational.
+    pub points: Option<[[RBig; 2]; 2]>,
+}
+
+impl Circle {
+    /// A guard of a system with so many states, if it depends on the forcing angle alone.
+    pub fn of(guard: &Row, states: usize) -> Option<Self> {
+        let (own, angle) = guard.split_at(states);
+        let [a, b, c] = angle else { return None };
+        let turns = !(a.is_zero() && b.is_zero());
+        if !turns || !own.iter().all(RBig::is_zero) {
+            return None;
+        }
+        let square = a * a + b * b;
+        let rest = &square - c * c;
+        let points = root(&rest).filter(|it| !it.is_zero()).map(|root| {
+            let point =
+                |root: &RBig| [(-a * c - b * root) / &square, (-b * c + a * root) / &square];
+            [point(&root), point(&-&root)]
+        });
+        Some(Self { keeps_sign: rest <= RBig::ZERO, points })
+    }
+
+    /// The number of the rational point that is nearest to an angle, if the two are well apart.
+    pub fn nearest(&self, cos: f64, sin: f64) -> Option<usize> {
+        /// The points' distances differ by much more than the rounding of f64.
+        const APART: f64 = 1e-6;
+        let distance = |[x, y]: &[RBig; 2]| {
+            let (x, y) = (x.to_f64().value() - cos, y.to_f64().value() - sin);
+            (x * x + y * y).sqrt()
+        };
+        let [first, second] = self.points.as_ref()?.each_ref().map(distance);
+        let is_apart = (first - second).abs() > APART && first.min(second) < APART;
+        is_apart.then_some(usize::from(second < first))
+    }
+}
+
+/// The root of a rational number that is not negative, if it is rational.
+pub fn root(number: &RBig) -> Option<RBig> {
+    let whole = |it: UBig| -> Option<UBig> {
+        let root = it.sqrt();
+        (&root * &root == it).then_some(root)
+    };
+    if *number < RBig::ZERO {
+        return None;
+    }
+    let above = whole(number.numerator().unsigned_abs())?;
+    let below = whole(number.denominator().clone())?;
+    Some(RBig::from_parts(above.into(), below))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn guard(entries: [i32; 4]) -> Row {
+        entries.into_iter().map(RBig::from).collect()
+    }
+
+    #[test]
+    fn a_guard_of_the_angle_has_its_points() {
+        let circle = Circle::of(&guard([0, 0, 10, -6]), 1).unwrap();
+        assert!(!circle.keeps_sign);
+        let fifth = |n: i32| RBig::from(n) / RBig::from(5);
+        assert_eq!(circle.points, Some([[fifth(-4), fifth(3)], [fifth(4), fifth(3)]]));
+        assert_eq!(circle.nearest(-0.8, 0.6), Some(0));
+        assert_eq!(circle.nearest(0.8, 0.6), Some(1));
+        assert_eq!(circle.nearest(0.0, 1.0), None);
+    }
+
+    #[test]
+    fn touches_and_guards_of_states_have_none() {
+        let touch = Circle::of(&guard([0, 3, 4, -5]), 1).unwrap();
+        assert!(touch.keeps_sign && touch.points.is_none());
+        assert!(!Circle::of(&guard([0, 3, 4, -4]), 1).unwrap().keeps_sign);
+        assert!(Circle::of(&guard([0, 3, 4, -4]), 1).unwrap().points.is_some());
+        assert!(Circle::of(&guard([0, 1, 1, -1]), 1).unwrap().points.is_some());
+        assert!(Circle::of(&guard([0, 2, 1, -1]), 1).unwrap().points.is_some());
+        assert!(Circle::of(&guard([0, 2, 2, -1]), 1).unwrap().points.is_none());
+        assert_eq!(Circle::of(&guard([1, 3, 4, -5]), 1), None);
+        assert_eq!(Circle::of(&guard([0, 0, 0, -5]), 1), None);
+    }
+}

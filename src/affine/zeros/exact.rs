@@ -1,0 +1,273 @@
+//! Exactly rational motion: what follows from entries of a state that are known as rationals.
+//!
+//! A guard whose derivatives end is a polynomial of the time. Where it is a parabola with rational
+//! coefficients, its touches, and its crossings at rational times, are known exactly. A guard that
+//! is a constant and one oscillation never crosses where the amplitude is at most the constant.
+//! Without this no number of bits would tell a touch from a crossing, or which of two guards that
+//! cross at one instant is the first.
+
+use super::circle::{Circle, root};
+use crate::affine::model::system::{Mode, Row, Successor, System};
+use dashu_int::ops::BitTest;
+use dashu_ratio::RBig;
+
+/// The most bits of a rational entry: what is longer is not followed any more.
+const LONGEST: usize = 4096;
+
+/// The rows w, w M, w M^2, ... of a guard, as far as they are needed.
+#[derive(Clone, Debug)]
+pub struct Chain {
+    rows: Vec<Row>,
+    kind: Kind,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    /// The row after the last is zero: a polynomial of the time.
+    Polynomial,
+    /// w M^3 = -s w M, with this positive s: a constant and an oscillation.
+    Oscillation(RBig),
+    Other,
+}
+
+/// The future of a guard on a segment, as far as exact arithmetic tells it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fate {
+    /// The number of the guard's orders that are zero at the entry, and whether the first of the
+    /// others is positive; none if all are zero.
+    pub begin: Option<(usize, bool)>,
+    /// Whether the sign that the guard has after the entry is the one that it keeps.
+    pub keeps_sign: bool,
+    /// The times after the entry at which the guard changes its sign, if they are rational.
+    pub roots: Vec<RBig>,
+}
+
+/// Entries of z, of which some are known exactly.
+pub type Entries = Vec<Option<RBig>>;
+
+impl Chain {
+    /// The chain of a row in a mode's motion.
+    pub fn of(row: &Row, matrix: &[Row]) -> Self {
+        let is_zero = |row: &Row| row.iter().all(RBig::is_zero);
+        let mut rows = vec![row.clone()];
+        loop {
+            let next = row_times(&rows[rows.len() - 1], matrix);
+            if is_zero(&next) {
+                return Self { rows, kind: Kind::Polynomial };
+            }
+            if let Some(square) = oscillation(&rows, &next) {
+                return Self { rows, kind: Kind::Oscillation(square) };
+            }
+            if rows.len() == matrix.len() {
+                return Self { rows, kind: Kind::Other };
+            }
+            rows.push(next);
+        }
+    }
+
+    /// The values of the row and its derivatives, if all entries that they need are known.
+    fn values(&self, entries: &Entries) -> Option<Vec<RBig>> {
+        self.rows.iter().map(|row| product(row, entries)).collect()
+    }
+
+    /// The order and the sign of the first derivative that is not zero, the value included: none
+    /// if an entry is not known, and none inside if all are zero.
+    pub fn begin(&self, entries: &Entries) -> Option<Option<(usize, bool)>> {
+        let values = self.values(entries)?;
+        Some(first_sign(&values))
+    }
+
+    /// The guard's future after an entry, if all entries that it needs are known.
+    pub fn fate(&self, entries: &Entries) -> Option<Fate> {
+        let values = self.values(entries)?;
+        let begin = first_sign(&values);
+        let (keeps_sign, roots) = match (&self.kind, begin) {
+            (_, None) => (true, Vec::new()),
+            (Kind::Polynomial, Some((_, rises))) if values.len() <= 3 => parabola(&values, rises),
+            (Kind::Oscillation(square), _) => (oscillation_keeps_sign(&values, square), Vec::new()),
+            _ => (false, Vec::new()),
+        };
+        Some(Fate { begin, keeps_sign, roots })
+    }
+
+    /// The row's value a time after the entry, where that is a polynomial and all that it needs is
+    /// known: of what stands still no time is needed.
+    fn at(&self, entries: &Entries, time: Option<&RBig>) -> Option<RBig> {
+        let values = self.values(entries).filter(|_| self.kind == Kind::Polynomial)?;
+        if let [value] = &values[..] {
+            return Some(value.clone());
+        }
+        let time = time?;
+        let orders = values.iter().enumerate().rev();
+        let step = |sum: RBig, (k, value): (usize, &RBig)| value + sum * time / RBig::from(k + 1);
+        Some(orders.fold(RBig::ZERO, step))
+    }
+}
+
+/// A mode's rows in its exact motion.
+#[derive(Clone, Debug)]
+pub struct ExactMode {
+    /// The guards of `until`, then those of `watch`.
+    pub guards: Vec<Chain>,
+    /// For each guard of the forcing angle alone, what is known of it.
+    pub circles: Vec<Option<Circle>>,
+    /// The conditions of each event's successors, in the motion of their modes.
+    pub conditions: Vec<Vec<Option<Chain>>>,
+    /// The entries of z.
+    entries: Vec<Chain>,
+}
+
+impl ExactMode {
+    /// The rows of a system's mode.
+    pub fn of(system: &System, mode: &Mode) -> Self {
+        let states = system.states.len();
+        let until = mode.until.iter().map(|it| &it.guard);
+        let guards = until.chain(mode.watch.iter().map(|it| &it.guard));
+        let condition = |it: &Successor| {
+            it.when.as_ref().map(|when| Chain::of(when, &system.modes[it.mode].matrix))
+        };
+        let unit = |n: usize| -> Row {
+            (0..mode.matrix.len()).map(|k| RBig::from(u8::from(k == n))).collect()
+        };
+        Self {
+            circles: guards.clone().map(|it| Circle::of(it, states)).collect(),
+            guards: guards.map(|it| Chain::of(it, &mode.matrix)).collect(),
+            conditions: mode
+                .until
+                .iter()
+                .map(|it| it.next.iter().map(condition).collect())
+                .collect(),
+            entries: (0..mode.matrix.len()).map(|n| Chain::of(&unit(n), &mode.matrix)).collect(),
+        }
+    }
+
+    /// The entries of z a time after those at the entry of the mode, as far as they are known.
+    pub fn entries_at(&self, entries: &Entries, time: Option<&RBig>) -> Entries {
+        self.entries.iter().map(|it| it.at(entries, time)).collect()
+    }
+}
+
+/// The entries after a reset, as far as they are known and not too long.
+pub fn entries_after(reset: &[Row], entries: &Entries) -> Entries {
+    let is_short = |it: &RBig| it.numerator().bit_len() + it.denominator().bit_len() < LONGEST;
+    reset.iter().map(|row| product(row, entries).filter(is_short)).collect()
+}
+
+/// The product of a row with the entries, if all that it needs are known.
+fn product(row: &Row, entries: &Entries) -> Option<RBig> {
+    let needed = row.iter().zip(entries).filter(|(factor, _)| !factor.is_zero());
+    let mut terms = needed.map(|(factor, entry)| Some(factor * entry.as_ref()?));
+    terms.try_fold(RBig::ZERO, |sum, term| Some(sum + term?))
+}
+
+fn row_times(row: &Row, matrix: &[Row]) -> Row {
+    let mut sums = vec![RBig::ZERO; row.len()];
+    for (factor, own) in row.iter().zip(matrix).filter(|(factor, _)| !factor.is_zero()) {
+        let entries = sums.iter_mut().zip(own).filter(|(_, entry)| !entry.is_zero());
+        entries.for_each(|(sum, entry)| *sum += factor * entry);
+    }
+    sums
+}
+
+/// The square s of a frequency for which the next row is -s times the last but one, which is the
+/// second.
+fn oscillation(rows: &[Row], next: &Row) -> Option<RBig> {
+    let [_, rate, _] = rows else { return None };
+    let at = rate.iter().position(|it| !it.is_zero())?;
+    let square = -(&next[at] / &rate[at]);
+    let is_so = rate.iter().zip(next).all(|(a, b)| a * &square + b == RBig::ZERO);
+    (is_so && square > RBig::ZERO).then_some(square)
+}
+
+fn first_sign(values: &[RBig]) -> Option<(usize, bool)> {
+    let first = values.iter().position(|it| !it.is_zero())?;
+    Some((first, values[first] > RBig::ZERO))
+}
+
+/// Whether a parabola with these derivatives keeps the sign that it has at first, and the rational
+/// times of its changes.
+fn parabola(values: &[RBig], rises: bool) -> (bool, Vec<RBig>) {
+    let sign = RBig::from(if rises { -1 } else { 1 });
+    let order = |k: usize| values.get(k).map_or(RBig::ZERO, |it| it * &sign);
+    let [value, slope, bend] = [0, 1, 2].map(order);
+    // The parabola is negative at first.
+    if bend.is_zero() {
+        let rises_later = slope > RBig::ZERO;
+        let root = rises_later.then(|| -&value / &slope);
+        return (!rises_later, root.into_iter().collect());
+    }
+    let rest = &slope * &slope - RBig::from(2) * &value * &bend;
+    if bend < RBig::ZERO && (slope <= RBig::ZERO || rest <= RBig::ZERO) {
+        return (true, Vec::new());
+    }
+    let Some(root) = root(&rest) else { return (false, Vec::new()) };
+    let mut roots = vec![(-&slope + &root) / &bend, (-&slope - &root) / &bend];
+    roots.retain(|it| *it > RBig::ZERO);
+    roots.sort();
+    (false, roots)
+}
+
+/// Whether a constant outweighs an oscillation about it: G = c + A, with the amplitude's square
+/// (G''/s)^2 + G'^2/s and the constant G + G''/s.
+fn oscillation_keeps_sign(values: &[RBig], square: &RBig) -> bool {
+    let [value, slope, bend] = values else { return false };
+    let share = bend / square;
+    let constant = value + &share;
+    let amplitude = &share * &share + slope * slope / square;
+    !constant.is_zero() && amplitude <= &constant * &constant
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(entries: &[&[i32]]) -> Vec<Row> {
+        entries.iter().map(|row| row.iter().map(|it| RBig::from(*it)).collect()).collect()
+    }
+
+    fn known(entries: &[i32]) -> Entries {
+        entries.iter().map(|it| Some(RBig::from(*it))).collect()
+    }
+
+    /// x' = v, v' = -8 from x = 0 at v = 2: the crest is 1/4, at 1/4.
+    #[test]
+    fn a_throw_touches_its_crest_and_crosses_below_it() {
+        let matrix = rows(&[&[0, 1, 0], &[0, 0, -8], &[0, 0, 0]]);
+        let level = |above: i32, parts: i32| {
+            vec![RBig::ONE, RBig::ZERO, -RBig::from(above) / RBig::from(parts)]
+        };
+        let start = known(&[0, 2, 1]);
+        let fate = |level| Chain::of(&level, &matrix).fate(&start).unwrap();
+        assert!(fate(level(1, 4)).keeps_sign);
+        assert!(fate(level(1, 3)).keeps_sign);
+        let crossed = fate(level(3, 16));
+        let eighth = |n: i32| RBig::from(n) / RBig::from(8);
+        assert_eq!((crossed.keeps_sign, crossed.roots), (false, vec![eighth(1), eighth(3)]));
+        let irrational = fate(level(1, 8));
+        assert_eq!((irrational.keeps_sign, irrational.roots.len()), (false, 0));
+        let ground = fate(level(0, 1));
+        assert_eq!(ground.begin, Some((1, true)));
+        assert_eq!(ground.roots, [RBig::ONE / RBig::from(2)]);
+    }
+
+    /// x'' = -4 x from x = 3, v = 8: the amplitude is 5.
+    #[test]
+    fn an_oscillation_touches_its_amplitude() {
+        let matrix = rows(&[&[0, 1, 0], &[-4, 0, 0], &[0, 0, 0]]);
+        let start = known(&[3, 8, 1]);
+        let fate = |level: i32| {
+            let guard = vec![RBig::ONE, RBig::ZERO, -RBig::from(level)];
+            Chain::of(&guard, &matrix).fate(&start).unwrap()
+        };
+        assert!(fate(5).keeps_sign && fate(6).keeps_sign && fate(-5).keeps_sign);
+        assert!(!fate(4).keeps_sign);
+    }
+
+    #[test]
+    fn what_is_not_known_tells_nothing() {
+        let matrix = rows(&[&[0, 1, 0], &[0, 0, -8], &[0, 0, 0]]);
+        let guard = vec![RBig::ONE, RBig::ZERO, RBig::ZERO];
+        let start = vec![Some(RBig::ZERO), None, Some(RBig::ONE)];
+        assert!(Chain::of(&guard, &matrix).fate(&start).is_none());
+    }
+}
