@@ -89,6 +89,9 @@ const ROWS: &[Row] = &[
     (&["simulate"], "--events", INTEGERS, "an integer, 0 to"),
     (&["simulate", "events"], "--until", NUMBERS, "at or after the start"),
     (&["events"], "--events", INTEGERS, "an integer, 1 to"),
+    (&["events"], "--samples", INTEGERS, "1 to 4294967295"),
+    (&["events"], "--max-events", INTEGERS, "an integer, 1 to 1e9"),
+    (&["events"], "--max-events", &["0", "2e9"], "an integer, 1 to 1e9"),
     (&["events"], "--digits", WORDS, "17, 25"),
     (&["events"], "--states", WORDS, "png and svg"),
     (&["events"], "--set", &["", "x", "g=", "g=nan"], "NAME=VALUE with a finite number"),
@@ -273,6 +276,10 @@ fn flags_without_effect() {
         (
             vec!["simulate", "--periods", "1", "--samples", "4", "--format", "svg"],
             &["--samples 4", "picture"],
+        ),
+        (
+            vec!["events", "bouncing-ball", "--until", "1", "--samples", "2", "--format", "png"],
+            &["--samples 2", "csv and json"],
         ),
         (
             vec!["events", "bouncing-ball", "--until", "1", "--states", "x"],

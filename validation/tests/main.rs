@@ -18,6 +18,7 @@ mod command_line;
 mod contributing;
 mod counted_work;
 mod dynamics_verbs;
+mod event_rows;
 mod events;
 mod every_flag;
 mod export;

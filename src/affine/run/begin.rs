@@ -77,6 +77,7 @@ impl<T: Number> Solver<T> {
             restitution: None,
             at_entry: 0,
             tie: None,
+            doubt: None,
             events_in_instant: 0,
             queue: VecDeque::new(),
             decided: 0,

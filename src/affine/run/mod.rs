@@ -3,14 +3,17 @@
 //! [`begin`] makes a run of a start. This file enters each segment and asks for its first crossing;
 //! [`crossed`] says which events the crossed guards are, and [`transition`] resets the state and
 //! picks the successor. [`accumulation`] encloses where impacts accumulate, and [`enclosure`]
-//! carries the errors along in a run that follows them. Read this file first, then `crossed` and
-//! `transition`.
+//! carries the errors along in a run that follows them. [`horizon`] has the errors at a time that
+//! is given, and [`given_up`] the motion that is known where such a run is not decided. Read this
+//! file first, then `crossed` and `transition`.
 
 mod accumulation;
 mod begin;
 mod crossed;
 mod enclosure;
 mod exact;
+mod given_up;
+mod horizon;
 mod reduction;
 mod transition;
 
@@ -18,14 +21,14 @@ use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{Vector, all_finite, twice_summed_rounding};
 use crate::affine::first_crossing::search::SearchOutcome;
 use crate::affine::first_crossing::taylor::FailedAttempts;
-use crate::affine::guards::point::{Ends, GuardedSegment, Passed};
+use crate::affine::guards::point::{Ends, GuardedPoint, GuardedSegment, Passed};
 use crate::affine::guards::track::{SearchWork, Track};
 use crate::affine::solver::event::{Ending, Errors, Event, What};
 use crate::affine::solver::pool::Loan;
 use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::zeros::graph::{Firing, ZeroGuards};
 use crate::numeric::number::{Bound, Number};
-use enclosure::{Enclosure, roundings};
+use enclosure::Enclosure;
 use exact::ExactRun;
 use std::collections::VecDeque;
 
@@ -51,6 +54,8 @@ pub struct Run<'a, T: Number> {
     at_entry: u64,
     /// The mode and the guards of the last crossing whose order rounding left open.
     tie: Option<(usize, u64)>,
+    /// The mode and the guard that rounding left open by itself, first of all.
+    doubt: Option<(usize, usize)>,
     events_in_instant: u32,
     queue: VecDeque<Event<T>>,
     /// The number of queued events that came before anything that rounding left open.
@@ -95,11 +100,20 @@ impl<'a, T: Number> Run<'a, T> {
         self.entered.after(self.solver.directed(self.ends.left.time))
     }
 
-    /// The event of the present mode whose guard rounding left open, in a run that ended so.
+    /// The event whose guard rounding left open by itself, in a run that ended so.
     #[must_use]
     pub fn doubtful(&self) -> Option<What<T>> {
-        let guard = self.work.doubtful.filter(|_| self.enclosure.is_some())?;
-        Some(self.what(self.graph.node(self.node).mode, guard))
+        let (mode, guard) = self.doubt.filter(|_| self.enclosure.is_some())?;
+        Some(self.what(mode, guard))
+    }
+
+    /// Remembers the mode of the first guard that rounding left open: its number is one of that
+    /// mode's, and another mode may have begun by the time it is asked for.
+    #[inline]
+    fn remember_doubt(&mut self, mode: usize) {
+        if self.doubt.is_none() {
+            self.doubt = self.work.doubtful.map(|guard| (mode, guard));
+        }
     }
 
     /// The ending of a run that has ended.
@@ -157,7 +171,9 @@ impl<'a, T: Number> Run<'a, T> {
         if !all_finite(&self.segment.entry.y[..flow.dimension]) {
             return self.end(Ending::Undecided);
         }
-        if let Some(ending) = self.track_guards(mode, solver_mode) {
+        let ending = self.track_guards(mode, solver_mode);
+        self.remember_doubt(mode);
+        if let Some(ending) = ending {
             self.end(ending);
         }
         self.begin_segment(solver_mode);
@@ -231,21 +247,25 @@ impl<'a, T: Number> Run<'a, T> {
         self.ends.passed = Passed::none();
     }
 
-    /// Ends the run: at an instant of its own, which is then the entry, or at that of the last
-    /// event.
+    /// Ends the run before its horizon: at an instant of its own, which is then the entry, or at
+    /// that of the last event.
     fn end(&mut self, ending: Ending<T>) {
-        if self.ended {
-            return;
-        }
-        self.ended = true;
         let what = What::End(ending);
-        let event = if matches!(ending, Ending::Horizon | Ending::LeavesDomain) {
+        let event = if ending == Ending::LeavesDomain {
             let errors = self.enclosure.as_ref().map(|it| self.errors(it));
             Event { errors, ..self.event(what, self.entered, &self.state) }
         } else {
             Event { what, ..self.queue.back().unwrap_or(&self.last).clone() }
         };
-        self.queue.push_back(event);
+        self.finish(event);
+    }
+
+    /// Ends the run with an event, unless it has ended.
+    fn finish(&mut self, ending: Event<T>) {
+        if !self.ended {
+            self.ended = true;
+            self.queue.push_back(ending);
+        }
     }
 
     #[inline]
@@ -256,9 +276,7 @@ impl<'a, T: Number> Run<'a, T> {
     }
 
     fn errors(&self, enclosure: &Enclosure<T::Bound>) -> Errors<T::Bound> {
-        let states = self.solver.system.states.len();
-        let rounding = T::unit() * 2.0 * self.entered.high.bound().abs();
-        Errors { time: enclosure.time() + rounding, state: enclosure.state()[..states].to_vec() }
+        self.errors_near(enclosure, &self.entered)
     }
 
     /// Searches for the next event, and queues the events of its instant.
@@ -275,9 +293,19 @@ impl<'a, T: Number> Run<'a, T> {
         let Time { high: limit, low: rest } = self.time_left();
         let (segment, ends) = (&self.segment, &mut self.ends);
         let failed_attempts = &mut self.failed_attempts[mode];
-        match segment.first(&mut self.tracks, ends, limit, failed_attempts, &mut self.work) {
+        let (work, from) = (&mut self.work, ends.left.time);
+        let outcome = segment.first(&mut self.tracks, ends, limit, failed_attempts, work);
+        self.remember_doubt(mode);
+        if self.is_open() {
+            return;
+        }
+        let (segment, ends) = (&self.segment, &mut self.ends);
+        match outcome {
             SearchOutcome::GivenUp => self.end(Ending::Undecided),
             SearchOutcome::NoCrossing => {
+                if limit > from {
+                    self.tracks.iter_mut().for_each(|track| track.zeros = 0);
+                }
                 let is_ahead = limit > T::zero();
                 let [limit, rest] = if is_ahead { [limit, rest] } else { [T::zero(); 2] };
                 segment.evaluate(&mut ends.left, limit, &mut self.work);
@@ -287,29 +315,26 @@ impl<'a, T: Number> Run<'a, T> {
             }
             SearchOutcome::Crossing(guards) => {
                 segment.complete(&mut ends.left);
+                let before = self.errors_before(mode, guards);
                 self.crossed(guards);
+                if before.is_some() && self.is_open() {
+                    self.enclosure = before;
+                }
             }
         }
     }
 
     /// Ends the run at its horizon, a time after the entry.
     fn at_horizon(&mut self, mode: usize, limit: T) {
-        let Some((time, state)) = self.present() else { return self.end(Ending::Undecided) };
-        (self.entered, self.state) = (time, state);
+        let Some((mut time, state)) = self.present() else { return self.end(Ending::Undecided) };
         if limit > T::zero() {
             // The time since an entry long before is rounded; the horizon is not.
-            self.entered = Time { high: self.horizon, low: T::zero() };
+            time = Time { high: self.horizon, low: T::zero() };
         }
-        let SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
-        if let Some(errors) = &self.enclosure {
-            let errors = errors.later(flow, limit);
-            let rounded = T::unit() * 4.0 * limit.bound().abs();
-            let mut errors = errors.at_given_time(flow, matrix, &self.state, rounded);
-            errors.add_box(&roundings(flow, &self.segment.entry, limit));
-            errors.add_box(&self.solver.phase_roundings(&self.entered));
-            self.enclosure = Some(errors);
-        }
-        self.end(Ending::Horizon);
+        let enclosure = self.errors_at_given_time(mode, limit, &time, &state);
+        let errors = enclosure.map(|it| self.errors_near(&it, &time));
+        let what = What::End(Ending::Horizon);
+        self.finish(Event { errors, ..self.event(what, time, &state) });
     }
 
     /// The time until the horizon, in two words.
@@ -322,8 +347,13 @@ impl<'a, T: Number> Run<'a, T> {
     /// Time and state at which the search has arrived; none where the state has overflowed.
     #[inline]
     fn present(&self) -> Option<(Time<T>, Vector<T>)> {
-        let point = &self.ends.left;
-        let mut time = self.searched();
+        self.time_and_state_at(&self.ends.left)
+    }
+
+    /// Time and state at a point of the segment; none where the state has overflowed.
+    #[inline]
+    fn time_and_state_at(&self, point: &GuardedPoint<T>) -> Option<(Time<T>, Vector<T>)> {
+        let mut time = self.entered.after(self.solver.directed(point.time));
         let mode = self.graph.node(self.node).mode;
         let flow = &self.solver.modes[mode].flow;
         let mut state = if point.to_crossing == T::zero() {
@@ -351,6 +381,7 @@ impl<T: Number> Iterator for Run<'_, T> {
                 return None;
             }
             self.decided = 0;
+            let from = self.search_start();
             self.advance();
             // An enclosed run has no event that errors may have decided, and none without bounds of
             // its errors.
@@ -361,6 +392,9 @@ impl<T: Number> Iterator for Run<'_, T> {
                 self.queue.truncate(unbounded.map_or(self.decided, |it| it.min(self.decided)));
                 self.ended = false;
                 self.end(Ending::Undecided);
+            }
+            if let Some(from) = from.filter(|_| unbounded.is_none()) {
+                self.show_known_motion(from);
             }
         }
     }

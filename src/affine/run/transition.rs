@@ -15,7 +15,13 @@ const MOST_AT_ONCE: u32 = 64;
 impl<T: Number> Run<'_, T> {
     /// Ends the mode by an `until`: resets the state, chooses the successor and enters the next
     /// segment.
+    ///
+    /// A run that follows its errors stays in its segment where rounding leaves open whether this
+    /// event is the next one, or what follows it: it ends there.
     pub(super) fn fire(&mut self, firing: Firing, time: Time<T>, before: Vector<T>) {
+        if self.is_open() {
+            return;
+        }
         let solver = self.solver;
         let mode = self.graph.node(self.node).mode;
         self.events_in_instant = if firing.at_entry { self.events_in_instant + 1 } else { 1 };
@@ -27,6 +33,9 @@ impl<T: Number> Run<'_, T> {
         let exact = self.exact_before(mode, firing.zero, firing.at_entry);
         let exact = exact.map(|it| self.exact_after(mode, firing.until, &it));
         let successor = self.successor(mode, firing, &state, exact.as_ref());
+        if self.is_open() {
+            return;
+        }
         self.set_exact(exact);
         let arrival = self.graph.arrival(self.node, firing);
         let impact = arrival.impact;

@@ -16,8 +16,9 @@ pub enum What<T> {
     End(Ending<T>),
 }
 
-/// The ending of a run. An ending that has no instant of its own, as all but the first and the
-/// third, has the time and the state of the last event, watched ones included, or of the start.
+/// The ending of a run. The first and the third have an instant of their own. A run that follows
+/// its errors and is undecided has the latest time and state that are proved to lie before every
+/// crossing. Any other ending has those of the last event, watched ones included, or of the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending<T> {
     /// The horizon is reached.

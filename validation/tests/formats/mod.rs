@@ -111,6 +111,14 @@ fn events_of_a_system() {
     let value = json(&text(&output.stdout));
     assert_valid("events.schema.json", &value);
     assert!(value["accumulation"]["latest"].as_str().is_some_and(|it| it.starts_with('3')));
+    let value = json(&stdout(&[&ball[..], &["--until", "1", "--samples", "2"]].concat()));
+    assert_valid("events.schema.json", &value);
+    assert_eq!(value["rows"][1]["state"]["x"], "0.50000000000000000");
+    let output =
+        run(&["events", "relay-feedback", "--until", "9", "--max-events", "2", "--format", "json"]);
+    let value = json(&text(&output.stdout));
+    assert_valid("events.schema.json", &value);
+    assert_eq!(value["rows"][3]["event"], "stopped");
 }
 
 #[test]

@@ -3,10 +3,15 @@
 
 mod digits;
 mod draw;
+mod ending;
+mod no_progress;
+mod progress;
 mod rows;
+mod samples;
 mod write;
 
 use super::shared::format::OutputFlags;
+use super::shared::long_work::{self, Bar};
 use super::shared::names;
 use super::shared::parse::{self, Typed};
 use super::{DONE, OUT_OF_BOUNDS, note};
@@ -16,11 +21,16 @@ use crate::truth::DoubleDouble;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{ArgGroup, Args, ValueEnum};
 use percuss::affine::{Event, Solver, System, SystemFile};
-use rows::{Rows, RunEnd};
+use progress::RunEnd;
+use rows::{Limits, Rows};
 use std::path::{Path, PathBuf};
 
 /// The horizon of --events, in the system's units of time.
 const LONGEST: f64 = 1e9;
+
+/// The number of events after which a run is stopped, where neither --events nor --max-events is
+/// given.
+const USUAL_MAX_EVENTS: usize = 1_000_000;
 
 /// A picture of more events than this shows nothing.
 const MOST_DRAWN: usize = 20_000;
@@ -41,6 +51,13 @@ pub(super) struct Arguments {
     /// The most significant digits of a number, 17 or 25 [default: 17]
     #[arg(long, value_name = "D", value_parser = ["17", "25"])]
     digits: Option<String>,
+    /// Rows K times in the system's unit of time, or in a forcing period, instead of at events
+    #[arg(long, value_name = "K", value_parser = parse::whole::<u32>(1, u64::from(u32::MAX)), allow_hyphen_values = true)]
+    samples: Option<u32>,
+    /// Stops a run that has more events, with a last row `stopped` [default: 1000000, none with
+    /// --events]
+    #[arg(long, value_name = "N", value_parser = max_events, allow_hyphen_values = true)]
+    max_events: Option<usize>,
     /// A file whose [start] replaces the system's, and whose [parameters] replace some; a case of
     /// the system serves too
     #[arg(long, value_name = "FILE.toml")]
@@ -93,7 +110,34 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let Some(start) = &system.start else {
         return Err(without_start(&arguments.system, &system));
     };
-    let time = start.time.to_f64().value();
+    let limits = limits(arguments, &system, start.time.to_f64().value())?;
+    let solver = if arguments.backward { Solver::backward(&system) } else { Solver::new(&system) }?;
+    let digits = if arguments.digits.as_deref() == Some("25") { 25 } else { 17 };
+    let shown = draw::shown(&system, arguments.states.as_deref())?;
+    let destination = arguments.output.destination();
+    let bar = long_work::run_bar(!format.is_picture() && destination.is_terminal());
+    let rows = Rows { system: &system, solver: &solver, digits, limits, bar };
+    let mut end = RunEnd::default();
+    if format.is_picture() {
+        let run;
+        (run, end) = drawn(&rows)?;
+        draw::write(&solver, &run, &shown, &arguments.output, format)?;
+    } else {
+        destination.write(|out| {
+            end = match format {
+                Format::Json => write::json(&rows, arguments.samples, out)?,
+                _ => write::csv(&rows, arguments.samples, out)?,
+            };
+            Ok(())
+        })?;
+    }
+    rows.bar.iter().for_each(Bar::finish_and_clear);
+    end.notes.iter().for_each(|it| note(it));
+    Ok(if end.undecided { OUT_OF_BOUNDS } else { DONE })
+}
+
+/// The limits of a run that begins at a time.
+fn limits(arguments: &Arguments, system: &System, time: f64) -> Result<Limits> {
     let direction = if arguments.backward { -1.0 } else { 1.0 };
     let ahead = |until: f64| direction * (until - time);
     let until = match &arguments.until {
@@ -106,33 +150,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         }
         None => time + direction * LONGEST * system.time_scale,
     };
-    let solver = if arguments.backward { Solver::backward(&system) } else { Solver::new(&system) }?;
-    let digits = if arguments.digits.as_deref() == Some("25") { 25 } else { 17 };
-    let shown = draw::shown(&system, arguments.states.as_deref())?;
-    let rows = Rows { system: &system, solver: &solver, digits, most: arguments.events };
-    let destination = arguments.output.destination();
-    let mut end = RunEnd::default();
-    if format.is_picture() {
-        let run;
-        (run, end) = drawn(&rows, until)?;
-        draw::write(&solver, &run, &shown, &arguments.output, format)?;
-    } else {
-        destination.write(|out| {
-            end = match format {
-                Format::Json => write::json(&rows, until, out)?,
-                _ => write::csv(&rows, until, out)?,
-            };
-            Ok(())
-        })?;
-    }
-    end.notes.iter().for_each(|it| note(it));
-    Ok(if end.undecided { OUT_OF_BOUNDS } else { DONE })
+    let usual = arguments.events.is_none().then_some(USUAL_MAX_EVENTS);
+    Ok(Limits { until, events: arguments.events, most: arguments.max_events.or(usual) })
+}
+
+/// A number of events, which may have an exponent.
+fn max_events(text: &str) -> Result<usize, String> {
+    const MOST: f64 = 1e9;
+    let number = text.parse::<f64>().ok().filter(|it| it.fract() == 0.0);
+    let number = number.filter(|it| (1.0..=MOST).contains(it));
+    number.map(|it| it as usize).ok_or_else(|| "accepted is an integer, 1 to 1e9".to_owned())
 }
 
 /// The start and all events, for a picture.
-fn drawn(rows: &Rows<'_>, until: f64) -> Result<(Vec<Event<DoubleDouble>>, RunEnd)> {
+fn drawn(rows: &Rows<'_, DoubleDouble>) -> Result<(Vec<Event<DoubleDouble>>, RunEnd)> {
     let mut run = Vec::new();
-    let end = rows.each(until, &mut |_, event| {
+    let end = rows.each(&mut |_, event| {
         if run.len() > MOST_DRAWN {
             bail!(
                 "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format of csv or json is, or a shorter run"
@@ -146,6 +179,9 @@ fn drawn(rows: &Rows<'_>, until: f64) -> Result<(Vec<Event<DoubleDouble>>, RunEn
 
 /// Refuses flags that the run takes no notice of.
 fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
+    if let Some(samples) = arguments.samples.filter(|_| format.is_picture()) {
+        bail!("--samples {samples} has no effect on a picture: accepted is it with csv and json");
+    }
     match (&arguments.digits, &arguments.states) {
         (Some(digits), _) if format.is_picture() => {
             bail!("--digits {digits} has no effect on a picture: accepted is it with csv and json")

@@ -1,26 +1,38 @@
 //! The rows of `events`, made one by one: a long run costs no memory.
 
-use super::digits::{has_digits, proved};
-use crate::truth::DoubleDouble;
+use super::digits::{has_digits, proved, significant};
+use super::progress::{Passed, RunEnd};
+use crate::cli::shared::long_work::Bar;
 use anyhow::{Result, bail};
 use percuss::affine::{Ending, Event, Run, Solver, System, What};
 use percuss::number::Number;
 use serde::Serialize;
 
-/// The system, horizon and digits of a run.
-pub(super) struct Rows<'a> {
+/// The number of rows between two updates of the progress bar.
+const RARELY: usize = 64;
+
+/// A time of fewer digits is said to have few.
+const FEW: usize = 6;
+
+/// The system, limits and digits of a run.
+pub(super) struct Rows<'a, T> {
     pub(super) system: &'a System,
-    pub(super) solver: &'a Solver<DoubleDouble>,
+    pub(super) solver: &'a Solver<T>,
     pub(super) digits: usize,
-    pub(super) most: Option<usize>,
+    pub(super) limits: Limits,
+    /// The progress of the run, where it is shown.
+    pub(super) bar: Option<Bar>,
 }
 
-/// The ending of a run.
-#[derive(Default)]
-pub(super) struct RunEnd {
-    pub(super) accumulation: Option<Accumulation>,
-    pub(super) notes: Vec<String>,
-    pub(super) undecided: bool,
+/// The limits of a run.
+#[derive(Clone, Copy)]
+pub(super) struct Limits {
+    /// The time at which it ends.
+    pub(super) until: f64,
+    /// The number of events that are wanted.
+    pub(super) events: Option<usize>,
+    /// The number of events after which a run that wants more is stopped.
+    pub(super) most: Option<usize>,
 }
 
 /// Numbers are texts, because a reader's f64 would not hold their digits.
@@ -34,161 +46,162 @@ pub(super) struct EventRow {
     pub(super) state: Vec<(String, String)>,
 }
 
-#[derive(Serialize)]
-pub(super) struct Accumulation {
-    earliest: String,
-    latest: String,
-}
-
 /// Takes a row, and the event that it is of.
-type Taker<'a> = &'a mut dyn FnMut(EventRow, Event<DoubleDouble>) -> Result<()>;
+type Taker<'a, T> = &'a mut dyn FnMut(EventRow, Event<T>) -> Result<()>;
 
-impl Rows<'_> {
+impl<T: Number> Rows<'_, T> {
     /// Runs the system from its start, which is row 0.
-    pub(super) fn each(&self, until: f64, take: Taker<'_>) -> Result<RunEnd> {
-        let start = self.system.start.as_ref();
-        let run = start.and_then(|it| self.solver.run_enclosed(it, DoubleDouble::exact(until)));
-        let Some(mut run) = run else { bail!("{}: its start is not decided", self.system.name) };
-        let mut end = RunEnd::default();
-        let begin = run.start();
-        let most = self.most.map_or(usize::MAX, |most| most + 1);
-        for (n, event) in std::iter::once(begin).chain(run.by_ref()).take(most).enumerate() {
-            let name = self.name(&event, &mut end);
-            let row = self.row(n, &event, name)?;
-            if !has_digits(&row.time) && self.is_lost(&event) {
-                end.notes.push(format!(
-                    "after {} events no digit of the time is left: the run ends there",
-                    n.saturating_sub(1)
-                ));
+    pub(super) fn each(&self, take: Taker<'_, T>) -> Result<RunEnd> {
+        let mut run = self.run(T::exact(self.limits.until))?;
+        let (mut end, mut passed) = (RunEnd::default(), Passed::default());
+        let mut last = run.start();
+        take(self.row(0, &last, String::new())?, last.clone())?;
+        while self.limits.events.is_none_or(|wanted| passed.count < wanted) {
+            let Some(event) = run.next() else { break };
+            if self.is_stopped(&event, passed.count) {
+                let row = self.row(passed.count + 1, &last, self.stopped(&last, &mut end))?;
+                take(row, Event { what: What::End(Ending::Horizon), ..last })?;
                 break;
             }
-            take(row, event)?;
+            if !self.passes(&event, &mut passed, &mut end) {
+                break;
+            }
+            let name = self.name(&event, &passed, &mut end);
+            take(self.row(passed.count, &event, name)?, event.clone())?;
+            last = event;
         }
         end.notes.extend(self.cause(&run));
         Ok(end)
     }
 
-    /// Whether the error of an event's time, of which no digit is left, is more than a rounding of
-    /// the system's unit of time: a time next to zero has no digit either.
-    fn is_lost(&self, event: &Event<DoubleDouble>) -> bool {
+    /// A run from the system's start.
+    pub(super) fn run(&self, until: T) -> Result<Run<'_, T>> {
+        let start = self.system.start.as_ref();
+        let run = start.and_then(|it| self.solver.run_enclosed(it, until));
+        let Some(run) = run else { bail!("{}: its start is not decided", self.system.name) };
+        Ok(run)
+    }
+
+    /// Whether an event is one more than a run may have.
+    pub(super) fn is_stopped(&self, event: &Event<T>, passed: usize) -> bool {
+        let is_event = !matches!(event.what, What::End(_));
+        is_event && self.limits.most.is_some_and(|most| passed >= most)
+    }
+
+    /// Counts an event and says where the digits of its time become few. A run whose time has none
+    /// left does not pass it.
+    pub(super) fn passes(
+        &self,
+        event: &Event<T>,
+        passed: &mut Passed<T>,
+        end: &mut RunEnd,
+    ) -> bool {
+        passed.add(event.what, event.mode);
+        self.show_progress(event, passed.count);
+        if !self.has_large_error(event) {
+            return true;
+        }
+        let count = passed.count;
+        let time = self.time(event);
+        if !has_digits(&time) {
+            end.notes.push(format!(
+                "after {} events no digit of the time is left: the run ends there",
+                count - 1
+            ));
+            return false;
+        }
+        if !passed.few_digits && significant(&time).is_some_and(|it| it < FEW) {
+            passed.few_digits = true;
+            end.notes.push(format!(
+                "from event {count} on, at {time}, the time has fewer than {FEW} digits"
+            ));
+        }
+        true
+    }
+
+    /// Whether the error of an event's time is more than a rounding of the system's unit of time: a
+    /// time next to zero has few digits without that.
+    fn has_large_error(&self, event: &Event<T>) -> bool {
         let error = event.errors.as_ref().map_or(f64::INFINITY, |it| it.time);
         error.is_nan() || error > f64::EPSILON * self.system.time_scale
     }
 
-    /// What a run that had to end where it did says of it.
-    fn cause(&self, run: &Run<'_, DoubleDouble>) -> Option<String> {
-        match run.ending()? {
-            Ending::Undecided => Some(self.search_note(run)),
-            Ending::BeyondGuard => {
-                let guard = self.event_name(&run.beyond()?)?.to_owned();
-                Some(format!("the guard of \"{guard}\" is positive there"))
-            }
-            _ => None,
-        }
+    /// Shows the share of the run that is done: of its time, or of its events where that is more.
+    fn show_progress(&self, event: &Event<T>, count: usize) {
+        let Some(bar) = self.bar.as_ref().filter(|_| count.is_multiple_of(RARELY)) else { return };
+        let start = self.system.start.as_ref().map_or(0.0, |it| it.time.to_f64().value());
+        let Limits { until, events, most } = self.limits;
+        let of_time = (event.time.value().to_f64() - start) / (until - start);
+        let of = |limit: Option<usize>| limit.map_or(0.0, |limit| count as f64 / limit as f64);
+        bar.show_share(of_time.max(of(events)).max(of(most)).clamp(0.0, 1.0));
     }
 
-    /// How far the search for the next event of an undecided run came, and what it left open.
-    fn search_note(&self, run: &Run<'_, DoubleDouble>) -> String {
-        let searched = about(run.searched().value().to_f64());
-        if run.overflows() {
-            return format!(
-                "its state at about {searched} is too large for its bounds to be numbers"
-            );
-        }
-        format!("its search for the next event came to about {searched}{}", self.left_open(run))
+    /// The time of an event, with the digits that are proved.
+    pub(super) fn time(&self, event: &Event<T>) -> String {
+        let error = event.errors.as_ref().map_or(0.0, |it| it.time);
+        proved(event.time.value(), error, self.digits)
     }
 
-    /// What rounding left open where a search ended: which guard is first, or whether one crosses.
-    fn left_open(&self, run: &Run<'_, DoubleDouble>) -> String {
-        let quoted =
-            |it: &What<DoubleDouble>| self.event_name(it).map(|name| format!("\"{name}\""));
-        let tie: Vec<String> = run.tie().iter().filter_map(quoted).collect();
-        if let [others @ .., last] = &tie[..] {
-            let others = others.join(", ");
-            return format!(
-                ", where rounding leaves open which of the guards of {others} and {last} crosses \
-                 first"
-            );
-        }
-        let open = run.doubtful().as_ref().and_then(quoted);
-        open.map_or(String::new(), |name| {
-            format!(", where rounding leaves open whether the guard of {name} crosses")
-        })
+    fn row(&self, n: usize, event: &Event<T>, name: String) -> Result<EventRow> {
+        let mode = self.system.modes[event.mode].name.clone();
+        Ok(EventRow { n, time: self.time(event), event: name, mode, state: self.state(event)? })
     }
 
-    /// The name of an event, if it is none of a start or an ending.
-    fn event_name(&self, what: &What<DoubleDouble>) -> Option<&str> {
-        match what {
-            What::Until(mode, index) => Some(&self.system.modes[*mode].until[*index].name),
-            What::Watch(mode, index) => Some(&self.system.modes[*mode].watch[*index].name),
-            What::Start | What::End(_) => None,
-        }
-    }
-
-    fn row(&self, n: usize, event: &Event<DoubleDouble>, name: String) -> Result<EventRow> {
-        let Some(errors) = &event.errors else { bail!("event {n} has no enclosed errors") };
+    /// The states of an event by their names, with the digits that are proved.
+    pub(super) fn state(&self, event: &Event<T>) -> Result<Vec<(String, String)>> {
+        let Some(errors) = &event.errors else { bail!("a row has no enclosed errors") };
         let cells = event.state.iter().zip(&errors.state);
         let cells = cells.map(|(value, error)| proved(*value, *error, self.digits));
-        Ok(EventRow {
-            n,
-            time: proved(event.time.value(), errors.time, self.digits),
-            event: name,
-            mode: self.system.modes[event.mode].name.clone(),
-            state: self.system.states.iter().cloned().zip(cells).collect(),
-        })
-    }
-
-    /// The event's name, or that of the ending, which leaves a note.
-    fn name(&self, event: &Event<DoubleDouble>, end: &mut RunEnd) -> String {
-        let What::End(ending) = &event.what else {
-            return self.event_name(&event.what).unwrap_or_default().to_owned();
-        };
-        let time = event.time.value();
-        let (name, note, decided) = match ending {
-            Ending::Horizon => return "end".to_owned(),
-            Ending::Accumulation(from, to) => {
-                let error = event.errors.as_ref().map_or(0.0, |it| it.time);
-                let middle = time + (*from + *to) * DoubleDouble::exact(0.5);
-                let width = 0.5 * (*to - *from).to_f64() + error + 1e-29 * time.to_f64().abs();
-                let [earliest, latest] = [-width, width].map(|it| {
-                    let bound = middle + DoubleDouble::exact(it);
-                    proved(bound, 1e-30 * bound.to_f64().abs(), 30)
-                });
-                let note =
-                    format!("infinitely many impacts accumulate between {earliest} and {latest}");
-                end.accumulation = Some(Accumulation { earliest, latest });
-                ("accumulation", note, true)
-            }
-            Ending::LeavesDomain => {
-                ("leaves-domain", "the boundary of the mode is reached".to_owned(), true)
-            }
-            Ending::NoProgress => {
-                ("no-progress", "64 events fall on one instant".to_owned(), false)
-            }
-            Ending::BeyondGuard => {
-                ("beyond-guard", "the mode is entered beyond one of its guards".to_owned(), false)
-            }
-            Ending::Undecided => {
-                ("undecided", "what comes next is not decided by 106 bits".to_owned(), false)
-            }
-        };
-        let error = event.errors.as_ref().map_or(0.0, |it| it.time);
-        end.notes.push(format!("the run ends at {}: {note}", proved(time, error, self.digits)));
-        end.undecided = !decided;
-        name.to_owned()
+        Ok(self.system.states.iter().cloned().zip(cells).collect())
     }
 }
 
-/// A number to six digits, with an exponent where it is large.
-fn about(number: f64) -> String {
-    let rounded = format!("{number:.5e}").parse().unwrap_or(number);
-    let text = format!("{rounded:?}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
-}
-
-fn in_order<S: serde::Serializer>(
+/// Writes the states in the order of the file.
+pub(super) fn in_order<S: serde::Serializer>(
     state: &[(String, String)],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     serializer.collect_map(state.iter().map(|(name, cell)| (name, cell)))
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "a panic is a failed test")]
+mod tests {
+    use super::*;
+    use crate::truth::DoubleDouble;
+    use percuss::affine::{Errors, Time};
+
+    #[test]
+    fn few_digits_of_the_time_are_said_once_and_none_ends_the_run() {
+        let text = crate::systems::named("bouncing-ball").expect("a system");
+        let system = System::parse("bouncing-ball", text).expect("accepted");
+        let solver = Solver::<DoubleDouble>::new(&system).expect("prepared");
+        let limits = Limits { until: 1e9, events: None, most: None };
+        let rows = Rows { system: &system, solver: &solver, digits: 17, limits, bar: None };
+        let event = |time: f64, error: f64| Event {
+            what: What::Watch(0, 0),
+            time: Time::<DoubleDouble> {
+                high: DoubleDouble::exact(time),
+                low: DoubleDouble::exact(0.0),
+            },
+            state: vec![DoubleDouble::exact(0.0); 2],
+            mode: 0,
+            errors: Some(Errors { time: error, state: vec![0.0; 2] }),
+        };
+        let (mut end, mut passed) = (RunEnd::default(), Passed::default());
+        // A time next to zero has few digits and is known all the same.
+        for known in [event(1e-18, 1e-19), event(12.5, 1e-6), event(12.5, 0.0)] {
+            assert!(rows.passes(&known, &mut passed, &mut end) && end.notes.is_empty());
+        }
+        for known in [event(12.625, 1e-4), event(12.75, 1e-3)] {
+            assert!(rows.passes(&known, &mut passed, &mut end));
+        }
+        let said = "from event 4 on, at 12.625, the time has fewer than 6 digits";
+        assert_eq!(end.notes, [said]);
+        assert!(!rows.passes(&event(12.75, 100.0), &mut passed, &mut end));
+        assert_eq!(
+            end.notes[1..],
+            ["after 5 events no digit of the time is left: the run ends there"]
+        );
+    }
 }

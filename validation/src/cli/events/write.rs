@@ -1,19 +1,46 @@
 //! The rows of `events` as CSV and as JSON.
 
-use super::rows::{Rows, RunEnd};
+use super::progress::RunEnd;
+use super::rows::Rows;
 use crate::cli::shared::output::json_value;
 use anyhow::Result;
+use percuss::affine::System;
+use percuss::number::Number;
+use std::borrow::Cow;
 use std::io::Write;
 
+/// The columns beside those of the states.
+const COLUMNS: [&str; 4] = ["n", "time", "event", "mode"];
+
 /// Writes CSV, a row as soon as it is known.
-pub(super) fn csv(rows: &Rows<'_>, until: f64, out: &mut dyn Write) -> Result<RunEnd> {
-    let states = rows.system.states.iter().map(String::as_str);
-    line(out, ["n", "time", "event", "mode"].into_iter().chain(states))?;
-    rows.each(until, &mut |row, _| {
+pub(super) fn csv<T: Number>(
+    rows: &Rows<'_, T>,
+    samples: Option<u32>,
+    out: &mut dyn Write,
+) -> Result<RunEnd> {
+    let states = || rows.system.states.iter().map(|name| column(name));
+    let header = |names: &[&'static str], out: &mut dyn Write| {
+        let names: Vec<_> = names.iter().map(|name| Cow::from(*name)).chain(states()).collect();
+        line(out, names.iter().map(AsRef::as_ref))
+    };
+    if let Some(samples) = samples {
+        header(&["time", "mode"], out)?;
+        return rows.each_sample(samples, &mut |row| {
+            let first = [row.time.as_str(), &row.mode];
+            line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
+        });
+    }
+    header(&COLUMNS, out)?;
+    rows.each(&mut |row, _| {
         let n = row.n.to_string();
         let first = [n.as_str(), &row.time, &row.event, &row.mode];
         line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
     })
+}
+
+/// The column of a state: its name, unless that is another column's.
+fn column(state: &str) -> Cow<'_, str> {
+    if COLUMNS.contains(&state) { format!("state.{state}").into() } else { state.into() }
 }
 
 /// Writes a line of CSV; an error is the output's own, as a reader who has left.
@@ -24,19 +51,37 @@ fn line<'a>(out: &mut dyn Write, cells: impl Iterator<Item = &'a str>) -> Result
 }
 
 /// Writes JSON. What is known at the end only stands after the rows.
-pub(super) fn json(rows: &Rows<'_>, until: f64, out: &mut dyn Write) -> Result<RunEnd> {
-    let system = rows.system;
-    write!(out, "{{\"schema\":1,\"percuss\":\"{}\",\"system\":", env!("CARGO_PKG_VERSION"))?;
-    json_value(out, &system.name)?;
-    write!(out, ",\"parameters\":")?;
-    json_value(out, &system.parameters)?;
-    write!(out, ",\"rows\":[")?;
-    let end = rows.each(until, &mut |row, _| {
-        writeln!(out, "{}", if row.n == 0 { "" } else { "," })?;
-        json_value(out, &row)
-    })?;
+pub(super) fn json<T: Number>(
+    rows: &Rows<'_, T>,
+    samples: Option<u32>,
+    out: &mut dyn Write,
+) -> Result<RunEnd> {
+    begin_json(rows.system, out)?;
+    let mut is_first = true;
+    let mut separate = |out: &mut dyn Write| {
+        let separator = if std::mem::take(&mut is_first) { "" } else { "," };
+        writeln!(out, "{separator}")
+    };
+    let end = match samples {
+        Some(samples) => rows.each_sample(samples, &mut |row| {
+            separate(out)?;
+            json_value(out, &row)
+        })?,
+        None => rows.each(&mut |row, _| {
+            separate(out)?;
+            json_value(out, &row)
+        })?,
+    };
     write!(out, "],\"accumulation\":")?;
     json_value(out, &end.accumulation)?;
     writeln!(out, "}}")?;
     Ok(end)
+}
+
+fn begin_json(system: &System, out: &mut dyn Write) -> Result<()> {
+    write!(out, "{{\"schema\":1,\"percuss\":\"{}\",\"system\":", env!("CARGO_PKG_VERSION"))?;
+    json_value(out, &system.name)?;
+    write!(out, ",\"parameters\":")?;
+    json_value(out, &system.parameters)?;
+    Ok(write!(out, ",\"rows\":[")?)
 }

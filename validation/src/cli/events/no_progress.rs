@@ -1,0 +1,123 @@
+//! What is said of a run that makes no progress: which events take turns in one instant, why, and
+//! what to write in the system's file.
+
+use super::progress::AT_ONCE;
+use percuss::affine::{Rational, Row, System, Until, What};
+use std::collections::VecDeque;
+
+/// The largest number of events that are named.
+const MOST_NAMED: usize = 6;
+
+/// An `until` of a run, with its mode and the one that it begins.
+struct Turn<'a> {
+    until: &'a Until,
+    mode: usize,
+    next: usize,
+}
+
+/// The events that take turns, by their names and modes; `recent` are a run's last events with the
+/// modes that they begin, the last first.
+pub(super) fn note<T>(system: &System, recent: &VecDeque<(What<T>, usize)>) -> String {
+    let turns = turns(system, recent);
+    let name = |mode: usize| &system.modes[mode].name;
+    let named = turns.iter().take(MOST_NAMED).map(|turn| {
+        let Turn { until, mode, next } = turn;
+        if mode == next {
+            format!("\"{}\" (in {})", until.name, name(*mode))
+        } else {
+            format!("\"{}\" (from {} to {})", until.name, name(*mode), name(*next))
+        }
+    });
+    let (named, all) = (named.collect::<Vec<_>>().join(", "), turns.len());
+    match all {
+        1 => format!("{AT_ONCE} events fall on one instant, all of them {named}"),
+        2..=MOST_NAMED => format!("{AT_ONCE} events fall on one instant, in turn {named}"),
+        _ => format!("{AT_ONCE} events fall on one instant, among them {named}"),
+    }
+}
+
+/// Why the events take turns, and what to write.
+pub(super) fn remedy<T>(system: &System, recent: &VecDeque<(What<T>, usize)>) -> Option<String> {
+    let turns = turns(system, recent);
+    let text = match &turns[..] {
+        [] => return None,
+        [own] if own.mode == own.next && own.leaves_its_guard(system) => format!(
+            "it repeats a one-shot: the reset of \"{0}\" does not clear the guard of \"{0}\"; write \
+             a reset that makes its condition false, or a next mode without it",
+            own.until.name
+        ),
+        [own] => format!(
+            "the motion comes to rest on the guard of \"{}\"; write a mode in which it rests there, \
+             and choose it by `next = [{{ when = ..., mode = ... }}, ...]`",
+            own.until.name
+        ),
+        [one, other] if one.faces(other) => format!(
+            "the motion slides: {} and {} push it back to one guard from both sides; write a third \
+             mode whose equations keep it there, or set the two guards apart (a hysteresis)",
+            system.modes[one.mode].name, system.modes[other.mode].name
+        ),
+        _ => "the motion chatters: each of these events sets off the next; write one event whose \
+              reset has the outcome of them all, or set their guards apart (a hysteresis)"
+            .to_owned(),
+    };
+    Some(text)
+}
+
+/// The shortest list of events that a run repeats, in their order; all events where it repeats
+/// none.
+fn turns<'a, T>(system: &'a System, recent: &VecDeque<(What<T>, usize)>) -> Vec<Turn<'a>> {
+    let all: Vec<(usize, usize, usize)> = recent
+        .iter()
+        .rev()
+        .filter_map(|(what, next)| match what {
+            What::Until(mode, index) => Some((*mode, *index, *next)),
+            _ => None,
+        })
+        .collect();
+    let half = all.len() / 2;
+    let repeats = |length: &usize| (half..all.len()).all(|n| all[n] == all[n - length]);
+    let length = (1..=half).find(repeats).unwrap_or(all.len());
+    // From the first of its modes on, which is the earlier one in the file.
+    let last = &all[all.len() - length..];
+    let first = (0..length).min_by_key(|n| last[*n]).unwrap_or(0);
+    let order = last[first..].iter().chain(&last[..first]);
+    let turn = |(mode, index, next): &(usize, usize, usize)| Turn {
+        until: &system.modes[*mode].until[*index],
+        mode: *mode,
+        next: *next,
+    };
+    order.map(turn).collect()
+}
+
+impl Turn<'_> {
+    /// Whether the reset changes neither the guard nor its rate.
+    fn leaves_its_guard(&self, system: &System) -> bool {
+        let guard = &self.until.guard;
+        let rate = times(guard, &system.modes[self.mode].matrix);
+        times(guard, &self.until.reset) == *guard && times(&rate, &self.until.reset) == rate
+    }
+
+    /// Whether two events without resets have one guard, which they cross in opposite directions.
+    fn faces(&self, other: &Self) -> bool {
+        let rests = |it: &Self| it.until.reset.iter().enumerate().all(|(n, row)| is_unit(n, row));
+        let [own, others] = [&self.until.guard, &other.until.guard];
+        let Some(at) = own.iter().position(|it| !it.is_zero()) else { return false };
+        let factor = &others[at] / &own[at];
+        let is_multiple = own.iter().zip(others).all(|(a, b)| *b == a * &factor);
+        rests(self) && rests(other) && is_multiple && factor < Rational::ZERO
+    }
+}
+
+/// Whether a row of a reset leaves its entry as it is.
+fn is_unit(n: usize, row: &Row) -> bool {
+    row.iter().enumerate().all(|(k, it)| if k == n { it.is_one() } else { it.is_zero() })
+}
+
+/// A row times a matrix.
+fn times(row: &Row, matrix: &[Row]) -> Row {
+    let column = |n: usize| {
+        let terms = row.iter().zip(matrix).map(|(factor, row)| factor * &row[n]);
+        terms.fold(Rational::ZERO, |sum, term| sum + term)
+    };
+    (0..row.len()).map(column).collect()
+}
