@@ -23,5 +23,6 @@ pub use model::system::{
     Until, Watch,
 };
 pub use run::Run;
+pub use run::arithmetic::{Arithmetic, EnclosedRun};
 pub use solver::event::{Ending, Errors, Event, What};
 pub use solver::{Solver, Unprepared};

@@ -89,6 +89,7 @@ impl<T: Number> GuardedSegment<'_, T> {
                 ControlFlow::Continue(factor) => most = factor * length,
             }
         }
+        work.exhausted = true;
         SearchOutcome::GivenUp
     }
 

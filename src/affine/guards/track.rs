@@ -25,6 +25,8 @@ pub struct SearchWork {
     /// The first guard that rounding left open by itself, as its number among those of its mode:
     /// the events that end it come first, then the watched ones.
     pub doubtful: Option<usize>,
+    /// Whether a search was given up because it took too much work.
+    pub exhausted: bool,
 }
 
 impl SearchWork {

@@ -8,7 +8,7 @@ use crate::affine::guards::point::{Ends, GuardedPoint};
 use crate::affine::guards::row::ModalRow;
 use crate::affine::guards::track::{SearchWork, Track, live};
 use crate::affine::solver::event::{Ending, Event, What};
-use crate::numeric::number::{Bound, Number};
+use crate::numeric::number::Number;
 
 /// The number of times that the rest of the search is halved: what is open then is the last digits
 /// of an f64.

@@ -8,6 +8,7 @@
 //! file first, then `crossed` and `transition`.
 
 mod accumulation;
+pub mod arithmetic;
 mod begin;
 mod crossed;
 mod enclosure;
@@ -125,13 +126,34 @@ impl<'a, T: Number> Run<'a, T> {
         }
     }
 
+    /// Whether the run has ended as undecided because its search took too much work: more digits
+    /// would not help it.
+    #[must_use]
+    pub fn is_exhausted(&self) -> bool {
+        self.work.exhausted
+    }
+
+    /// A bound of the error of the guard that a run has ended for: closer to zero it is not known.
+    #[must_use]
+    pub fn resolution(&self) -> Option<T::Bound> {
+        let guard = self.work.doubtful.filter(|_| self.enclosure.is_some())?;
+        let at = |point: &GuardedPoint<T>| point.slack.get(guard).copied();
+        let [left, right] = [at(&self.ends.left), at(&self.ends.right)];
+        let largest = left.into_iter().chain(right).fold(T::Bound::ZERO, Bound::max);
+        (largest > 0.0 && largest.is_finite()).then_some(largest)
+    }
+
     /// Whether the run has ended as undecided where its state, or a bound of it, is too large for
     /// the number type.
     #[must_use]
     pub fn overflows(&self) -> bool {
         /// Room for the bounds of derivatives.
         const LARGEST: f64 = 1e280;
-        let within = |it: &T| it.bound().abs() <= LARGEST;
+        let has_exponents = T::Bound::UNDERFLOW == 0.0;
+        let within = |it: &T| match has_exponents {
+            true => it.bound().is_finite(),
+            false => it.bound().abs() <= LARGEST,
+        };
         let is_large = || self.present().is_none_or(|(_, state)| !state.iter().all(within));
         self.ending() == Some(&Ending::Undecided) && is_large()
     }

@@ -20,3 +20,5 @@ pub use replay::{Beginning, Replay, ReplayedPhase, Undecided};
 pub use system::{SystemTruth, SystemTruthRow};
 pub use system_replay::solver;
 pub use table::{Truth, TruthRow};
+
+percuss::affine_arithmetic!(DoubleDouble, 106);

@@ -1,32 +1,52 @@
 //! Decimals that hold only digits that are proved.
 
 use dashu_int::{IBig, UBig};
-use percuss::number::Number;
+use percuss::number::{Bound, Number};
 use std::cmp::Ordering;
 
 /// The largest power of ten that is looked at.
 const LARGEST: i32 = 400;
 
-/// The largest number of f64 whose sum a number is taken for: those of some 2,000 bits.
-const MOST_WORDS: usize = 40;
+/// The largest number of f64 whose sum a number is taken for: more than those of 3392 bits.
+const MOST_WORDS: usize = 80;
+
+/// Up to this exponent of two numbers are taken as they are; others are divided by a power of two,
+/// because f64 has no such exponents.
+const ORDINARY: i64 = 800;
+
+/// The least power of ten that is looked at.
+const LEAST_POWER: i32 = -1_300_000;
+
+/// Beyond this exponent of two no digits are printed, because powers of ten become too long.
+const LONGEST: i64 = 4_000_000;
 
 /// A value with a bound of its error, to at most `digits` significant digits: as many as all
 /// numbers within the error round to alike. Where that is none it is a zero with an exponent, such
 /// as `0e-28`: the value is less than that power of ten in size, which is larger than any number of
 /// f64 where nothing is known of it.
-pub(super) fn proved<T: Number>(value: T, error: f64, digits: usize) -> String {
-    let words = words(value);
+pub(super) fn proved<T: Number>(value: T, error: T::Bound, digits: usize) -> String {
+    let size = value.bound().abs();
+    let exponent = size.max(error).parts().1;
+    if exponent.abs() > LONGEST {
+        // The logarithm of two, rounded up.
+        return format!("0e{}", ((exponent + 1) as f64 * 0.301_029_995_663_981_3).ceil() + 1.0);
+    }
+    let shift = if exponent.abs() <= ORDINARY { 0 } else { exponent };
+    let words = words(value.scaled(-shift));
+    let error = error.scaled(-shift).to_f64();
     if !(error.is_finite() && words.iter().all(|it| it.is_finite())) {
         return format!("0e{LARGEST}");
     }
-    let ends = Ends::of(&words, error.abs());
+    // What a value has below the exponents of f64 is an error, too.
+    let error = if words.len() > 2 { error.abs() + f64::MIN_POSITIVE } else { error.abs() };
+    let ends = Ends::of(&words, error, shift as i32);
     if ends.least == IBig::ZERO && ends.most == IBig::ZERO {
         return "0".to_owned();
     }
-    let leading = ends.leading_power(&ends.middle, value.to_f64().abs());
+    let leading = ends.leading_power(&ends.middle, size);
     for count in (1..=digits).rev() {
         let last = leading - i32::try_from(count).unwrap_or(0) + 1;
-        if is_wider(error.abs(), last) {
+        if shift == 0 && is_wider(error, last) {
             continue;
         }
         let rounded = ends.rounded(&ends.least, last);
@@ -35,7 +55,7 @@ pub(super) fn proved<T: Number>(value: T, error: f64, digits: usize) -> String {
         }
     }
     let bound = [&ends.least, &ends.most].map(|it| it.clone().into_parts().1);
-    let size = value.to_f64().abs() + error.abs();
+    let size = size + T::Bound::of(error).scaled(shift);
     let bound = IBig::from(bound.into_iter().max().unwrap_or_default());
     format!("0e{}", ends.leading_power(&bound, size) + 1)
 }
@@ -84,7 +104,8 @@ struct Ends {
 }
 
 impl Ends {
-    fn of(words: &[f64], error: f64) -> Self {
+    /// The sum of words with an error, times a power of two.
+    fn of(words: &[f64], error: f64, shift: i32) -> Self {
         let exponents =
             words.iter().chain([&error]).filter(|it| **it != 0.0).map(|it| split(*it).1);
         let exponent = exponents.min().unwrap_or(0);
@@ -94,6 +115,7 @@ impl Ends {
         };
         let middle = words.iter().fold(IBig::ZERO, |sum, word| sum + units(*word));
         let error = units(error);
+        let exponent = exponent + shift;
         Self { least: &middle - &error, most: &middle + &error, middle, exponent }
     }
 
@@ -118,18 +140,19 @@ impl Ends {
 
     /// The largest power of ten that is not above the size of a number of the units, which is about
     /// `size`.
-    fn leading_power(&self, number: &IBig, size: f64) -> i32 {
+    fn leading_power<B: Bound>(&self, number: &IBig, size: B) -> i32 {
         /// A logarithm as near to an integer as this does not tell on which side it is.
-        const NEAR: f64 = 1e-9;
-        let logarithm = size.log10();
+        const NEAR: f64 = 1e-8;
+        let (mantissa, exponent) = size.parts();
+        let logarithm = mantissa.log10() + exponent as f64 * std::f64::consts::LOG10_2;
         let mut power = if logarithm.is_finite() { logarithm.floor() as i32 } else { -LARGEST };
         if logarithm.is_finite() && (logarithm - logarithm.round()).abs() > NEAR {
             return power;
         }
-        while power > -LARGEST && self.compare(number, power) == Ordering::Less {
+        while power > LEAST_POWER && self.compare(number, power) == Ordering::Less {
             power -= 1;
         }
-        while power < LARGEST && self.compare(number, power + 1) != Ordering::Less {
+        while power < -LEAST_POWER && self.compare(number, power + 1) != Ordering::Less {
             power += 1;
         }
         power

@@ -4,10 +4,10 @@ use super::digits::proved;
 use super::no_progress;
 use super::progress::{Accumulation, Passed, RunEnd};
 use super::rows::Rows;
-use percuss::affine::{Ending, Event, Run, What};
-use percuss::number::Number;
+use percuss::affine::{Arithmetic, EnclosedRun, Ending, Event, What};
+use percuss::number::{Bound, Number};
 
-impl<T: Number> Rows<'_, T> {
+impl<T: Arithmetic> Rows<'_, T> {
     /// The event's name, or that of the ending, which leaves a note.
     pub(super) fn name(&self, event: &Event<T>, passed: &Passed<T>, end: &mut RunEnd) -> String {
         let What::End(ending) = &event.what else {
@@ -30,7 +30,7 @@ impl<T: Number> Rows<'_, T> {
                 ("beyond-guard", "the mode is entered beyond one of its guards".to_owned(), false)
             }
             Ending::Undecided => {
-                ("undecided", "what comes next is not decided by 106 bits".to_owned(), false)
+                ("undecided", format!("what comes next is not decided by {} bits", T::BITS), false)
             }
         };
         end.notes.push(format!("the run ends at {}: {note}", self.time(event)));
@@ -50,7 +50,7 @@ impl<T: Number> Rows<'_, T> {
     }
 
     /// What a run that had to end where it did says of it.
-    pub(super) fn cause(&self, run: &Run<'_, T>) -> Option<String> {
+    pub(super) fn cause(&self, run: &dyn EnclosedRun<T>) -> Option<String> {
         match run.ending()? {
             Ending::Undecided => Some(self.search_note(run)),
             Ending::BeyondGuard => {
@@ -62,7 +62,7 @@ impl<T: Number> Rows<'_, T> {
     }
 
     /// How far the search for the next event of an undecided run came, and what it left open.
-    fn search_note(&self, run: &Run<'_, T>) -> String {
+    fn search_note(&self, run: &dyn EnclosedRun<T>) -> String {
         let searched = about(run.searched().value().to_f64());
         if run.overflows() {
             return format!(
@@ -73,7 +73,7 @@ impl<T: Number> Rows<'_, T> {
     }
 
     /// What rounding left open where a search ended: which guard is first, or whether one crosses.
-    fn left_open(&self, run: &Run<'_, T>) -> String {
+    fn left_open(&self, run: &dyn EnclosedRun<T>) -> String {
         let quoted = |it: &What<T>| self.event_name(it).map(|name| format!("\"{name}\""));
         let tie: Vec<String> = run.tie().iter().filter_map(quoted).collect();
         if let [others @ .., last] = &tie[..] {
@@ -84,8 +84,11 @@ impl<T: Number> Rows<'_, T> {
             );
         }
         let open = run.doubtful().as_ref().and_then(quoted);
+        let near = run.resolution().map_or(String::new(), |it| {
+            format!(": nearer to zero than {} it is not known", size(it))
+        });
         open.map_or(String::new(), |name| {
-            format!(", where rounding leaves open whether the guard of {name} crosses")
+            format!(", where rounding leaves open whether the guard of {name} crosses{near}")
         })
     }
 
@@ -102,15 +105,22 @@ impl<T: Number> Rows<'_, T> {
 /// The instant at which impacts accumulate, between two times after the last of them.
 fn accumulation<T: Number>(last: &Event<T>, from: T, to: T) -> (String, Accumulation) {
     let time = last.time.value();
-    let error = last.errors.as_ref().map_or(0.0, |it| it.time);
+    let error = last.errors.as_ref().map_or(0.0, |it| it.time.to_f64());
     let middle = time + (from + to) * T::exact(0.5);
     let width = 0.5 * (to - from).to_f64() + error + 1e-29 * time.to_f64().abs();
     let [earliest, latest] = [-width, width].map(|it| {
         let bound = middle + T::exact(it);
-        proved(bound, 1e-30 * bound.to_f64().abs(), 30)
+        proved(bound, bound.bound().abs() * 1e-30, 30)
     });
     let note = format!("infinitely many impacts accumulate between {earliest} and {latest}");
     (note, Accumulation { earliest, latest })
+}
+
+/// The order of a size, which may be beyond the exponents of f64.
+fn size<B: Bound>(size: B) -> String {
+    let (mantissa, exponent) = size.parts();
+    let power = mantissa.log10() + exponent as f64 * std::f64::consts::LOG10_2;
+    format!("1e{}", power.ceil())
 }
 
 /// A number to six digits, with an exponent where it is large.

@@ -5,6 +5,7 @@ mod digits;
 mod draw;
 mod ending;
 mod no_progress;
+mod precision;
 mod progress;
 mod rows;
 mod samples;
@@ -20,9 +21,10 @@ use crate::systems::{SYSTEMS, named};
 use crate::truth::DoubleDouble;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::{Event, Solver, System, SystemFile};
+use percuss::affine::{Arithmetic, Event, System, SystemFile};
+use precision::{InBits, Precision};
 use progress::RunEnd;
-use rows::{Limits, Rows};
+use rows::{Limits, Outcome, Rows};
 use std::path::{Path, PathBuf};
 
 /// The horizon of --events, in the system's units of time.
@@ -35,7 +37,7 @@ const USUAL_MAX_EVENTS: usize = 1_000_000;
 /// A picture of more events than this shows nothing.
 const MOST_DRAWN: usize = 20_000;
 
-/// Print the events of a piecewise-affine system, computed in 106 bits with enclosed errors
+/// Print the events of a piecewise-affine system, computed in 106 bits or more with enclosed errors
 #[derive(Args)]
 #[command(group(ArgGroup::new("length").required(true).args(["until", "events"])))]
 pub(super) struct Arguments {
@@ -58,6 +60,10 @@ pub(super) struct Arguments {
     /// --events]
     #[arg(long, value_name = "N", value_parser = max_events, allow_hyphen_values = true)]
     max_events: Option<usize>,
+    /// The most bits that a run may take; it begins with 106, and takes twice as many where these do
+    /// not decide or have too few digits [default: 3392]
+    #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(*precision::BITS.start(), *precision::BITS.end()), allow_hyphen_values = true)]
+    max_bits: Option<u32>,
     /// A file whose [start] replaces the system's, and whose [parameters] replace some; a case of
     /// the system serves too
     #[arg(long, value_name = "FILE.toml")]
@@ -111,27 +117,26 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         return Err(without_start(&arguments.system, &system));
     };
     let limits = limits(arguments, &system, start.time.to_f64().value())?;
-    let solver = if arguments.backward { Solver::backward(&system) } else { Solver::new(&system) }?;
-    let digits = if arguments.digits.as_deref() == Some("25") { 25 } else { 17 };
     let shown = draw::shown(&system, arguments.states.as_deref())?;
     let destination = arguments.output.destination();
     let bar = long_work::run_bar(!format.is_picture() && destination.is_terminal());
-    let rows = Rows { system: &system, solver: &solver, digits, limits, bar };
+    let precision = Precision::of(arguments, &system, limits, bar.as_ref());
     let mut end = RunEnd::default();
     if format.is_picture() {
         let run;
-        (run, end) = drawn(&rows)?;
+        (run, end) = drawn(&precision)?;
+        let solver = DoubleDouble::solver(&system, arguments.backward)?;
         draw::write(&solver, &run, &shown, &arguments.output, format)?;
     } else {
         destination.write(|out| {
             end = match format {
-                Format::Json => write::json(&rows, arguments.samples, out)?,
-                _ => write::csv(&rows, arguments.samples, out)?,
+                Format::Json => write::json(&precision, arguments.samples, out)?,
+                _ => write::csv(&precision, arguments.samples, out)?,
             };
             Ok(())
         })?;
     }
-    rows.bar.iter().for_each(Bar::finish_and_clear);
+    bar.iter().for_each(Bar::finish_and_clear);
     end.notes.iter().for_each(|it| note(it));
     Ok(if end.undecided { OUT_OF_BOUNDS } else { DONE })
 }
@@ -163,18 +168,27 @@ fn max_events(text: &str) -> Result<usize, String> {
 }
 
 /// The start and all events, for a picture.
-fn drawn(rows: &Rows<'_, DoubleDouble>) -> Result<(Vec<Event<DoubleDouble>>, RunEnd)> {
-    let mut run = Vec::new();
-    let end = rows.each(&mut |_, event| {
-        if run.len() > MOST_DRAWN {
-            bail!(
-                "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format of csv or json is, or a shorter run"
-            );
-        }
-        run.push(event);
-        Ok(())
-    })?;
-    Ok((run, end))
+fn drawn(precision: &Precision<'_>) -> Result<(Vec<Event<DoubleDouble>>, RunEnd)> {
+    let mut run = Drawn(Vec::new());
+    let end = precision.each(&mut run)?;
+    Ok((run.0, end))
+}
+
+/// The events of a picture.
+struct Drawn(Vec<Event<DoubleDouble>>);
+
+impl InBits for Drawn {
+    fn run<T: Arithmetic>(&mut self, rows: &Rows<'_, T>) -> Result<Outcome> {
+        rows.each(&mut |_, event| {
+            if self.0.len() > MOST_DRAWN {
+                bail!(
+                    "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format of csv or json is, or a shorter run"
+                );
+            }
+            self.0.push(event());
+            Ok(())
+        })
+    }
 }
 
 /// Refuses flags that the run takes no notice of.

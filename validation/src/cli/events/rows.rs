@@ -1,11 +1,13 @@
 //! The rows of `events`, made one by one: a long run costs no memory.
 
 use super::digits::{has_digits, proved, significant};
+use super::precision::Sizes;
 use super::progress::{Passed, RunEnd};
 use crate::cli::shared::long_work::Bar;
+use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};
-use percuss::affine::{Ending, Event, Run, Solver, System, What};
-use percuss::number::Number;
+use percuss::affine::{Arithmetic, EnclosedRun, Ending, Event, Solver, System, Time, What};
+use percuss::number::{Bound, Number};
 use serde::Serialize;
 
 /// The number of rows between two updates of the progress bar.
@@ -15,13 +17,25 @@ const RARELY: usize = 64;
 const FEW: usize = 6;
 
 /// The system, limits and digits of a run.
-pub(super) struct Rows<'a, T> {
+pub(super) struct Rows<'a, T: Number> {
     pub(super) system: &'a System,
     pub(super) solver: &'a Solver<T>,
     pub(super) digits: usize,
     pub(super) limits: Limits,
     /// The progress of the run, where it is shown.
-    pub(super) bar: Option<Bar>,
+    pub(super) bar: Option<&'a Bar>,
+    /// The number of rows that fewer bits have decided: they are not given out again.
+    pub(super) done: usize,
+    /// Whether more bits may go on where these do not decide, or have too few digits.
+    pub(super) may_go_on: bool,
+}
+
+/// The outcome of a run in one arithmetic.
+pub(super) enum Outcome {
+    /// The run has ended.
+    Ended(RunEnd),
+    /// More bits are needed after so many rows.
+    MoreBits(usize),
 }
 
 /// The limits of a run.
@@ -46,38 +60,75 @@ pub(super) struct EventRow {
     pub(super) state: Vec<(String, String)>,
 }
 
-/// Takes a row, and the event that it is of.
-type Taker<'a, T> = &'a mut dyn FnMut(EventRow, Event<T>) -> Result<()>;
+/// Takes a row, and the event that it is of, which is made in 106 bits if it is asked for.
+pub(super) type Taker<'a> =
+    &'a mut dyn FnMut(EventRow, &dyn Fn() -> Event<DoubleDouble>) -> Result<()>;
 
-impl<T: Number> Rows<'_, T> {
+impl<T: Arithmetic> Rows<'_, T> {
     /// Runs the system from its start, which is row 0.
-    pub(super) fn each(&self, take: Taker<'_, T>) -> Result<RunEnd> {
+    pub(super) fn each(&self, take: Taker<'_>) -> Result<Outcome> {
         let mut run = self.run(T::exact(self.limits.until))?;
         let (mut end, mut passed) = (RunEnd::default(), Passed::default());
+        let mut sizes = Sizes::new();
         let mut last = run.start();
-        take(self.row(0, &last, String::new())?, last.clone())?;
+        self.give(0, &last, |_| String::new(), take)?;
         while self.limits.events.is_none_or(|wanted| passed.count < wanted) {
             let Some(event) = run.next() else { break };
             if self.is_stopped(&event, passed.count) {
-                let row = self.row(passed.count + 1, &last, self.stopped(&last, &mut end))?;
-                take(row, Event { what: What::End(Ending::Horizon), ..last })?;
+                let ending = Event { what: What::End(Ending::Horizon), ..last.clone() };
+                self.give(passed.count + 1, &ending, |_| self.stopped(&last, &mut end), take)?;
                 break;
+            }
+            let row = passed.count + 1;
+            if row >= self.done && self.needs_more_bits(&*run, &event, &mut sizes) {
+                return Ok(Outcome::MoreBits(row));
             }
             if !self.passes(&event, &mut passed, &mut end) {
                 break;
             }
-            let name = self.name(&event, &passed, &mut end);
-            take(self.row(passed.count, &event, name)?, event.clone())?;
+            self.give(row, &event, |_| self.name(&event, &passed, &mut end), take)?;
             last = event;
         }
-        end.notes.extend(self.cause(&run));
-        Ok(end)
+        end.notes.extend(self.cause(&*run));
+        Ok(Outcome::Ended(end))
+    }
+
+    /// Gives out a row, unless fewer bits have given it out.
+    fn give(
+        &self,
+        n: usize,
+        event: &Event<T>,
+        name: impl FnOnce(&Event<T>) -> String,
+        take: Taker<'_>,
+    ) -> Result<()> {
+        if n < self.done {
+            return Ok(());
+        }
+        let row = self.row(n, event, name(event))?;
+        take(row, &|| narrowed(event))
+    }
+
+    /// Whether more bits are to go on from an event: they may, and these do not decide it, or have
+    /// not all of the digits.
+    pub(super) fn needs_more_bits(
+        &self,
+        run: &dyn EnclosedRun<T>,
+        event: &Event<T>,
+        sizes: &mut Sizes<T::Bound>,
+    ) -> bool {
+        if !self.may_go_on {
+            return false;
+        }
+        match event.what {
+            What::End(Ending::Undecided) => !run.is_exhausted(),
+            _ => sizes.have_too_few_digits(event, self.digits),
+        }
     }
 
     /// A run from the system's start.
-    pub(super) fn run(&self, until: T) -> Result<Run<'_, T>> {
+    pub(super) fn run(&self, until: T) -> Result<Box<dyn EnclosedRun<T> + '_>> {
         let start = self.system.start.as_ref();
-        let run = start.and_then(|it| self.solver.run_enclosed(it, until));
+        let run = start.and_then(|it| T::enclosed(self.solver, it, until));
         let Some(run) = run else { bail!("{}: its start is not decided", self.system.name) };
         Ok(run)
     }
@@ -122,13 +173,13 @@ impl<T: Number> Rows<'_, T> {
     /// Whether the error of an event's time is more than a rounding of the system's unit of time: a
     /// time next to zero has few digits without that.
     fn has_large_error(&self, event: &Event<T>) -> bool {
-        let error = event.errors.as_ref().map_or(f64::INFINITY, |it| it.time);
-        error.is_nan() || error > f64::EPSILON * self.system.time_scale
+        let error = event.errors.as_ref().map_or(T::Bound::INFINITY, |it| it.time);
+        !(error <= f64::EPSILON * self.system.time_scale)
     }
 
     /// Shows the share of the run that is done: of its time, or of its events where that is more.
     fn show_progress(&self, event: &Event<T>, count: usize) {
-        let Some(bar) = self.bar.as_ref().filter(|_| count.is_multiple_of(RARELY)) else { return };
+        let Some(bar) = self.bar.filter(|_| count.is_multiple_of(RARELY)) else { return };
         let start = self.system.start.as_ref().map_or(0.0, |it| it.time.to_f64().value());
         let Limits { until, events, most } = self.limits;
         let of_time = (event.time.value().to_f64() - start) / (until - start);
@@ -138,7 +189,7 @@ impl<T: Number> Rows<'_, T> {
 
     /// The time of an event, with the digits that are proved.
     pub(super) fn time(&self, event: &Event<T>) -> String {
-        let error = event.errors.as_ref().map_or(0.0, |it| it.time);
+        let error = event.errors.as_ref().map_or(T::Bound::ZERO, |it| it.time);
         proved(event.time.value(), error, self.digits)
     }
 
@@ -156,6 +207,30 @@ impl<T: Number> Rows<'_, T> {
     }
 }
 
+/// An event in 106 bits, without the bounds of its errors.
+fn narrowed<T: Number>(event: &Event<T>) -> Event<DoubleDouble> {
+    let number = |it: T| {
+        let high = it.to_f64();
+        DoubleDouble::new(high, (it - T::exact(high)).to_f64())
+    };
+    let what = match event.what {
+        What::Start => What::Start,
+        What::Until(mode, index) => What::Until(mode, index),
+        What::Watch(mode, index) => What::Watch(mode, index),
+        What::End(ending) => What::End(match ending {
+            Ending::Accumulation(from, to) => Ending::Accumulation(number(from), number(to)),
+            Ending::Horizon => Ending::Horizon,
+            Ending::LeavesDomain => Ending::LeavesDomain,
+            Ending::NoProgress => Ending::NoProgress,
+            Ending::BeyondGuard => Ending::BeyondGuard,
+            Ending::Undecided => Ending::Undecided,
+        }),
+    };
+    let time = Time { high: number(event.time.value()), low: DoubleDouble::exact(0.0) };
+    let state = event.state.iter().map(|it| number(*it)).collect();
+    Event { what, time, state, mode: event.mode, errors: None }
+}
+
 /// Writes the states in the order of the file.
 pub(super) fn in_order<S: serde::Serializer>(
     state: &[(String, String)],
@@ -168,8 +243,7 @@ pub(super) fn in_order<S: serde::Serializer>(
 #[allow(clippy::expect_used, reason = "a panic is a failed test")]
 mod tests {
     use super::*;
-    use crate::truth::DoubleDouble;
-    use percuss::affine::{Errors, Time};
+    use percuss::affine::Errors;
 
     #[test]
     fn few_digits_of_the_time_are_said_once_and_none_ends_the_run() {
@@ -177,7 +251,9 @@ mod tests {
         let system = System::parse("bouncing-ball", text).expect("accepted");
         let solver = Solver::<DoubleDouble>::new(&system).expect("prepared");
         let limits = Limits { until: 1e9, events: None, most: None };
-        let rows = Rows { system: &system, solver: &solver, digits: 17, limits, bar: None };
+        let (done, may_go_on) = (0, false);
+        let (system, solver) = (&system, &solver);
+        let rows = Rows { system, solver, digits: 17, limits, bar: None, done, may_go_on };
         let event = |time: f64, error: f64| Event {
             what: What::Watch(0, 0),
             time: Time::<DoubleDouble> {

@@ -1,9 +1,10 @@
 //! The rows of `events --samples K`: the state at equal steps of the time, not at events.
 
+use super::precision::Sizes;
 use super::progress::{Passed, RunEnd};
-use super::rows::{Limits, Rows, in_order};
+use super::rows::{Limits, Outcome, Rows, in_order};
 use anyhow::Result;
-use percuss::affine::{Ending, Event, Rational, Run, Time, What};
+use percuss::affine::{Arithmetic, EnclosedRun, Ending, Event, Rational, Time, What};
 use percuss::number::Number;
 use serde::Serialize;
 
@@ -16,46 +17,58 @@ pub(super) struct SampleRow {
     pub(super) state: Vec<(String, String)>,
 }
 
-impl<T: Number> Rows<'_, T> {
+impl<T: Arithmetic> Rows<'_, T> {
     /// Runs the system from its start, with a row `samples` times in each unit of its time; where
     /// it is forced, in each period.
     pub(super) fn each_sample(
         &self,
         samples: u32,
         take: &mut dyn FnMut(SampleRow) -> Result<()>,
-    ) -> Result<RunEnd> {
+    ) -> Result<Outcome> {
         let times = SampleTimes::of(self, samples);
         let mut run = self.run(times.at(0))?;
         let (mut end, mut passed) = (RunEnd::default(), Passed::default());
         let mut last = run.start();
+        let mut sizes = Sizes::new();
         for n in 1_u64.. {
-            let Some(row) = self.next_sample(&mut run, &mut last, &mut passed, &mut end)? else {
+            let sampled = self.next_sample(&mut *run, &mut last, &mut passed, &mut end)?;
+            let row = n as usize - 1;
+            let Some(sample) = sampled else {
+                let is_undecided = run.ending() == Some(&Ending::Undecided);
+                if is_undecided && self.may_go_on && !run.is_exhausted() {
+                    return Ok(Outcome::MoreBits(row.max(self.done)));
+                }
                 break;
             };
-            take(row)?;
+            if row >= self.done {
+                if self.needs_more_bits(&*run, &sample, &mut sizes) {
+                    return Ok(Outcome::MoreBits(row));
+                }
+                take(self.sample(&sample)?)?;
+            }
             let next = times.at(n);
             if !times.are_before_end(next) || !run.go_on(next) {
                 break;
             }
         }
-        end.notes.extend(self.cause(&run));
-        Ok(end)
+        end.notes.extend(self.cause(&*run));
+        Ok(Outcome::Ended(end))
     }
 
-    /// The row at the horizon of a run; none where the run ends before, or has the events that are
+    /// The event at the horizon of a run; none where the run ends before, or has the events that are
     /// wanted.
     fn next_sample(
         &self,
-        run: &mut Run<'_, T>,
+        run: &mut dyn EnclosedRun<T>,
         last: &mut Event<T>,
         passed: &mut Passed<T>,
         end: &mut RunEnd,
-    ) -> Result<Option<SampleRow>> {
+    ) -> Result<Option<Event<T>>> {
         for event in run {
             if event.what == What::End(Ending::Horizon) {
                 // The start itself has no rounding of modal co-ordinates.
                 let is_start = passed.count == 0 && event.time.value() == last.time.value();
-                return Ok(Some(self.sample(if is_start { last } else { &event })?));
+                return Ok(Some(if is_start { last.clone() } else { event }));
             }
             if self.is_stopped(&event, passed.count) {
                 self.stopped(last, end);

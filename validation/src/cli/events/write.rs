@@ -1,11 +1,12 @@
 //! The rows of `events` as CSV and as JSON.
 
+use super::precision::{InBits, Precision};
 use super::progress::RunEnd;
-use super::rows::Rows;
+use super::rows::{EventRow, Outcome, Rows};
+use super::samples::SampleRow;
 use crate::cli::shared::output::json_value;
 use anyhow::Result;
-use percuss::affine::System;
-use percuss::number::Number;
+use percuss::affine::{Arithmetic, System};
 use std::borrow::Cow;
 use std::io::Write;
 
@@ -13,29 +14,47 @@ use std::io::Write;
 const COLUMNS: [&str; 4] = ["n", "time", "event", "mode"];
 
 /// Writes CSV, a row as soon as it is known.
-pub(super) fn csv<T: Number>(
-    rows: &Rows<'_, T>,
+pub(super) fn csv(
+    run: &Precision<'_>,
     samples: Option<u32>,
     out: &mut dyn Write,
 ) -> Result<RunEnd> {
-    let states = || rows.system.states.iter().map(|name| column(name));
+    let states = || run.system.states.iter().map(|name| column(name));
     let header = |names: &[&'static str], out: &mut dyn Write| {
         let names: Vec<_> = names.iter().map(|name| Cow::from(*name)).chain(states()).collect();
         line(out, names.iter().map(AsRef::as_ref))
     };
     if let Some(samples) = samples {
         header(&["time", "mode"], out)?;
-        return rows.each_sample(samples, &mut |row| {
+        return run.each(&mut EachSample(samples, |row: SampleRow| {
             let first = [row.time.as_str(), &row.mode];
             line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
-        });
+        }));
     }
     header(&COLUMNS, out)?;
-    rows.each(&mut |row, _| {
+    run.each(&mut EachEvent(|row: EventRow| {
         let n = row.n.to_string();
         let first = [n.as_str(), &row.time, &row.event, &row.mode];
         line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
-    })
+    }))
+}
+
+/// What is done with each event.
+struct EachEvent<F>(F);
+
+impl<F: FnMut(EventRow) -> Result<()>> InBits for EachEvent<F> {
+    fn run<T: Arithmetic>(&mut self, rows: &Rows<'_, T>) -> Result<Outcome> {
+        rows.each(&mut |row, _| self.0(row))
+    }
+}
+
+/// What is done with each of so many samples in a unit of time.
+struct EachSample<F>(u32, F);
+
+impl<F: FnMut(SampleRow) -> Result<()>> InBits for EachSample<F> {
+    fn run<T: Arithmetic>(&mut self, rows: &Rows<'_, T>) -> Result<Outcome> {
+        rows.each_sample(self.0, &mut |row| self.1(row))
+    }
 }
 
 /// The column of a state: its name, unless that is another column's.
@@ -51,26 +70,26 @@ fn line<'a>(out: &mut dyn Write, cells: impl Iterator<Item = &'a str>) -> Result
 }
 
 /// Writes JSON. What is known at the end only stands after the rows.
-pub(super) fn json<T: Number>(
-    rows: &Rows<'_, T>,
+pub(super) fn json(
+    run: &Precision<'_>,
     samples: Option<u32>,
     out: &mut dyn Write,
 ) -> Result<RunEnd> {
-    begin_json(rows.system, out)?;
+    begin_json(run.system, out)?;
     let mut is_first = true;
     let mut separate = |out: &mut dyn Write| {
         let separator = if std::mem::take(&mut is_first) { "" } else { "," };
         writeln!(out, "{separator}")
     };
     let end = match samples {
-        Some(samples) => rows.each_sample(samples, &mut |row| {
+        Some(samples) => run.each(&mut EachSample(samples, |row: SampleRow| {
             separate(out)?;
             json_value(out, &row)
-        })?,
-        None => rows.each(&mut |row, _| {
+        }))?,
+        None => run.each(&mut EachEvent(|row: EventRow| {
             separate(out)?;
             json_value(out, &row)
-        })?,
+        }))?,
     };
     write!(out, "],\"accumulation\":")?;
     json_value(out, &end.accumulation)?;

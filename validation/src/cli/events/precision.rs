@@ -1,0 +1,104 @@
+//! The arithmetics of a run: 106 bits, and twice as many where these do not decide or have too few
+//! digits.
+
+use super::Arguments;
+use super::progress::RunEnd;
+use super::rows::{Limits, Outcome, Rows};
+use crate::cli::shared::long_work::Bar;
+use crate::truth::DoubleDouble;
+use anyhow::Result;
+use percuss::affine::{Arithmetic, Event, System};
+use percuss::affine::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
+use percuss::number::Bound;
+
+/// The fewest and the most bits of an arithmetic.
+pub(super) const BITS: std::ops::RangeInclusive<u64> = 106..=3392;
+
+/// A run in as many bits as it needs.
+pub(super) struct Precision<'a> {
+    pub(super) system: &'a System,
+    pub(super) is_backward: bool,
+    pub(super) digits: usize,
+    pub(super) limits: Limits,
+    pub(super) bar: Option<&'a Bar>,
+    /// The most bits that are used.
+    pub(super) most: u32,
+}
+
+/// Work that is done in one arithmetic after the other, as long as more bits are needed.
+pub(super) trait InBits {
+    /// Does the work that is not done yet.
+    fn run<T: Arithmetic>(&mut self, rows: &Rows<'_, T>) -> Result<Outcome>;
+}
+
+impl<'a> Precision<'a> {
+    /// The run that the arguments ask for.
+    pub(super) fn of(
+        arguments: &Arguments,
+        system: &'a System,
+        limits: Limits,
+        bar: Option<&'a Bar>,
+    ) -> Self {
+        let digits = if arguments.digits.as_deref() == Some("25") { 25 } else { 17 };
+        let most = arguments.max_bits.unwrap_or(*BITS.end() as u32);
+        Self { system, is_backward: arguments.backward, digits, limits, bar, most }
+    }
+
+    /// Does some work, in more bits where fewer do not suffice.
+    pub(super) fn each(&self, work: &mut impl InBits) -> Result<RunEnd> {
+        let mut done = 0;
+        let steps = [
+            Self::within::<DoubleDouble>,
+            Self::within::<Bits212>,
+            Self::within::<Bits424>,
+            Self::within::<Bits848>,
+            Self::within::<Bits1696>,
+            Self::within::<Bits3392>,
+        ];
+        for step in steps {
+            match step(self, done, work)? {
+                Outcome::Ended(end) => return Ok(end),
+                Outcome::MoreBits(rows) => done = rows,
+            }
+        }
+        Ok(RunEnd::default())
+    }
+
+    fn within<T: Arithmetic>(&self, done: usize, work: &mut impl InBits) -> Result<Outcome> {
+        let solver = T::solver(self.system, self.is_backward)?;
+        let may_go_on = 2 * T::BITS <= self.most;
+        let Self { system, digits, limits, bar, .. } = *self;
+        work.run(&Rows { system, solver: &solver, digits, limits, bar, done, may_go_on })
+    }
+}
+
+/// The largest size of each state so far, beside which a value may be zero.
+pub(super) struct Sizes<B>(Vec<B>);
+
+impl<B: Bound> Sizes<B> {
+    pub(super) fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    /// Whether the time or a state has fewer digits than are wanted. A value that may be zero has
+    /// enough of them if it is known that well beside the largest that the state has had: more bits
+    /// would not make it another one than zero.
+    pub(super) fn have_too_few_digits<T: Arithmetic<Bound = B>>(
+        &mut self,
+        event: &Event<T>,
+        digits: usize,
+    ) -> bool {
+        let Some(errors) = &event.errors else { return false };
+        let share = B::of(0.5 * 10_f64.powi(-(digits as i32)));
+        self.0.resize(event.state.len(), B::ZERO);
+        let time = event.time.value().bound().abs();
+        let mut too_few = time > errors.time && errors.time > time * share;
+        for ((value, error), size) in event.state.iter().zip(&errors.state).zip(&mut self.0) {
+            let value = value.bound().abs();
+            *size = size.max(value);
+            let beside = if value > *error { value } else { *size };
+            too_few |= *error > beside * share;
+        }
+        too_few
+    }
+}
