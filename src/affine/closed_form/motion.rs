@@ -44,6 +44,8 @@ pub(super) struct PowerTables<T> {
     /// exp(B step 16^j d) for d from 1 to 15.
     tables: Vec<Vec<Vec<Vector<T>>>>,
     pub matrix: Vec<Vector<T>>,
+    /// A bound of the logarithmic norm of B: negative where every state decays.
+    growth: f64,
 }
 
 fn words<T: Number>(value: &BigReal) -> SplitNumber<T> {
@@ -82,18 +84,26 @@ impl<T: Number> BlockMotion<T> {
         }
     }
 
-    /// An upper bound of the factor by which the norm of co-ordinates that only decay and rotate
-    /// shrinks in a time; 1 for other blocks.
+    /// An upper bound of the factor by which a row's bound of co-ordinates that decay shrinks in a
+    /// time; 1 for other blocks.
     pub fn decay(&self, time: f64) -> T::Bound {
         /// Room for the rounding of the exponential and of its exponent.
         const OUTWARD: f64 = 1.0 + 1e-9;
+        let one = T::Bound::of(1.0);
+        let by = |rate: f64, factor: f64| match rate < 0.0 {
+            true => (T::Bound::exp(rate * time * (1.0 - 1e-12)) * (OUTWARD * factor)).min(one),
+            false => one,
+        };
         match self {
             Self::Real { rate } | Self::Pair { rate: Some(rate), .. } => {
-                let exponent = rate.high.to_f64() * time;
-                let rounded = exponent * (1.0 - 1e-12);
-                if exponent < 0.0 { T::Bound::exp(rounded) * OUTWARD } else { T::Bound::of(1.0) }
+                by(rate.high.to_f64(), 1.0)
             }
-            _ => T::Bound::of(1.0),
+            // Half of the decay bounds the powers of the time, which are 2^j times as large then.
+            Self::Nilpotent { rate: Some(rate), powers, .. } => {
+                by(0.5 * rate.high.to_f64(), libm::exp2(*powers as f64))
+            }
+            Self::Cluster(powers) => by(powers.growth, 1.0),
+            _ => one,
         }
     }
 
@@ -267,6 +277,8 @@ impl<T: Number> PowerTables<T> {
     const MOST_STEPS: f64 = (1_u64 << (4 * Self::LEVELS)) as f64;
 
     fn of(matrix: &[Vec<BigReal>]) -> Self {
+        /// The rounding of a logarithmic norm, relative to the norm.
+        const ROOM: f64 = 1e-12;
         let size = modal::norm(matrix);
         let exponent = if size > 0.0 { -libm::ceil(libm::log2(size)) - 1.0 } else { 0.0 };
         let step = libm::exp2(exponent);
@@ -282,7 +294,8 @@ impl<T: Number> PowerTables<T> {
             tables.push(table.iter().map(rounded).collect());
             first = last.clone();
         }
-        Self { step, tables, matrix: matrix.iter().map(|row| vector(row)).collect() }
+        let growth = modal::logarithmic_norm(matrix) + ROOM * size;
+        Self { step, tables, matrix: matrix.iter().map(|row| vector(row)).collect(), growth }
     }
 
     /// The matrices of the tables whose product is exp(B t), but for the rest of the time.

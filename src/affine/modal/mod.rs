@@ -71,6 +71,23 @@ pub(super) struct Block {
 }
 
 impl Block {
+    /// The block of a part of the entries of z as one of all of them.
+    fn embedded(self, part: &[usize], size: usize) -> Self {
+        let width = self.matrix.len();
+        let mut columns = vec![vec![BigReal::zero(); width]; size];
+        let mut columns_off = vec![vec![ScaledF64::ZERO; width]; size];
+        let [own_columns_off, own_rows_off] = self.off;
+        for ((place, row), off) in part.iter().zip(self.columns).zip(own_columns_off) {
+            (columns[*place], columns_off[*place]) = (row, off);
+        }
+        let rows = self.rows.iter().map(|row| spread_over(part, row, &BigReal::zero(), size));
+        let rows_off = own_rows_off.iter();
+        let rows_off = rows_off.map(|row| spread_over(part, row, &ScaledF64::ZERO, size));
+        let off = [columns_off, rows_off.collect()];
+        let rows = rows.collect();
+        Self { kind: self.kind, columns, rows, matrix: self.matrix, off }
+    }
+
     /// The largest rate at which the co-ordinates move, relative to their sizes and to the largest
     /// part of a state that each of them makes: where a basis keeps couplings small, some
     /// co-ordinates are large beside what they add to a state.
@@ -88,9 +105,37 @@ impl Block {
     }
 }
 
-/// The blocks of a matrix: it stays whole if it cannot be taken apart at this precision.
-/// The numbers have so many bits.
+/// The blocks of a matrix, in numbers of so many bits. Entries of z that do not depend on each other
+/// are taken apart by themselves, so that no closeness of eigenvalues joins them.
 pub(super) fn blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> {
+    let embedded = |part: &Vec<usize>| {
+        let row = |i: &usize| part.iter().map(|j| exact[*i][*j].clone()).collect();
+        let own: Vec<Row> = part.iter().map(row).collect();
+        let blocks = connected_blocks(&own, time_scale, bits).into_iter();
+        blocks.map(|it| it.embedded(part, exact.len())).collect::<Vec<_>>()
+    };
+    components(exact).iter().flat_map(embedded).collect()
+}
+
+/// The entries of z by their couplings: none of a set depends on one of another set.
+fn components(exact: &[Row]) -> Vec<Vec<usize>> {
+    let mut parts: Vec<Vec<usize>> = Vec::new();
+    for n in 0..exact.len() {
+        let is_coupled = |part: &Vec<usize>| {
+            part.iter().any(|k| !(exact[n][*k].is_zero() && exact[*k][n].is_zero()))
+        };
+        let (joined, apart): (Vec<_>, Vec<_>) = parts.into_iter().partition(is_coupled);
+        let mut part: Vec<usize> = joined.into_iter().flatten().chain([n]).collect();
+        part.sort_unstable();
+        parts = apart;
+        parts.push(part);
+    }
+    parts
+}
+
+/// The blocks of a matrix of coupled entries: it stays whole if it cannot be taken apart at this
+/// precision.
+fn connected_blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> {
     let scales = scales(exact);
     let scaled = |(i, row): (usize, &Row)| -> Vec<BigReal> {
         let entries = row.iter().zip(&scales);
@@ -113,6 +158,13 @@ pub(super) fn derivatives(row: &[BigReal], block: &Block, count: usize) -> Vec<V
     let first = row_times(row, &block.columns);
     let next = |last: &Vec<BigReal>| Some(row_times(last, &block.matrix));
     std::iter::successors(Some(first), next).take(count).collect()
+}
+
+/// A row whose entries have these places among so many, and zeros elsewhere.
+fn spread_over<E: Clone>(part: &[usize], row: &[E], zero: &E, size: usize) -> Vec<E> {
+    let mut whole = vec![zero.clone(); size];
+    part.iter().zip(row).for_each(|(place, entry)| whole[*place] = entry.clone());
+    whole
 }
 
 /// A block of the scaled matrix as one of the matrix itself.

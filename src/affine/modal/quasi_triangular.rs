@@ -199,16 +199,21 @@ fn clear_below(matrix: &mut BigMatrix, places: &[Place]) -> Option<()> {
     Some(())
 }
 
-/// The couplings at which bounds grow little faster than the motion: below the rate at which
-/// everything decays, if it does.
+/// The couplings at which bounds grow little faster than the motion. Where everything decays they
+/// are below the slowest rate, unless that is tiny, so that bounds decay as well.
 fn wanted(cluster: &[Eigenvalue], time_scale: f64) -> f64 {
     let values = || cluster.iter().map(|it| &it.value);
+    /// A share of the fastest rate below which a decay counts for none.
+    const TINY: f64 = OF_THE_FASTEST * OF_THE_FASTEST;
     let decay = values().map(|it| -it.re.to_f64()).fold(f64::INFINITY, f64::min);
     let apart =
         |a: &BigComplex| -> Vec<f64> { values().map(|b| (a - b).norm().to_f64()).collect() };
     let spread = values().flat_map(apart).fold(0.0, f64::max);
     let fastest = values().map(|it| it.norm().to_f64()).fold(0.0, f64::max);
     let slow = OF_THE_SPREAD * SLOW / time_scale;
+    if decay > TINY * fastest {
+        return decay;
+    }
     decay.max(OF_THE_SPREAD * spread).max(OF_THE_FASTEST * fastest).max(slow)
 }
 

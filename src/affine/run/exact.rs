@@ -4,7 +4,7 @@
 use super::Run;
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::system::StartPoint;
-use crate::affine::zeros::exact::{Entries, ExactMode, Fate, entries_after};
+use crate::affine::zeros::exact::{Entries, ExactMode, Fate, entries_after, solve};
 use crate::affine::zeros::graph::ZeroGuards;
 use crate::numeric::number::Number;
 use dashu_ratio::RBig;
@@ -124,6 +124,10 @@ impl<T: Number> Run<'_, T> {
             let [cos, sin] = points[point].clone();
             (entries[at], entries[at + 1]) = (Some(cos), Some(sin));
         }
+        let system = &self.solver.system.modes[mode];
+        let guards = system.until.iter().map(|it| &it.guard);
+        let guards = guards.chain(system.watch.iter().map(|it| &it.guard)).enumerate();
+        guards.filter(|(n, _)| is_zero(n)).for_each(|(_, row)| solve(row, &mut entries));
         Some(entries)
     }
 

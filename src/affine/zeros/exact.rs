@@ -153,6 +153,17 @@ pub fn entries_after(reset: &[Row], entries: &Entries) -> Entries {
     reset.iter().map(|row| product(row, entries).filter(is_short)).collect()
 }
 
+/// Makes known the one entry that a row which is zero leaves open, if it is one.
+pub fn solve(row: &Row, entries: &mut Entries) {
+    let is_open = |n: &usize| !row[*n].is_zero() && entries[*n].is_none();
+    let open: Vec<usize> = (0..row.len()).filter(is_open).collect();
+    if let [n] = open[..] {
+        let mut others = row.clone();
+        others[n] = RBig::ZERO;
+        entries[n] = product(&others, entries).map(|sum| -sum / &row[n]);
+    }
+}
+
 /// The product of a row with the entries, if all that it needs are known.
 fn product(row: &Row, entries: &Entries) -> Option<RBig> {
     let needed = row.iter().zip(entries).filter(|(factor, _)| !factor.is_zero());

@@ -60,6 +60,16 @@ pub(super) fn proved<T: Number>(value: T, error: T::Bound, digits: usize) -> Str
     format!("0e{}", ends.leading_power(&bound, size) + 1)
 }
 
+/// A number that is not below (or not above) a value by more than its error, to some digits.
+pub(super) fn outward<T: Number>(value: T, is_upper: bool, digits: i32) -> String {
+    let ends = Ends::of(&words(value), 0.0, 0);
+    let last = ends.leading_power(&ends.middle, value.bound().abs()) - digits + 1;
+    let rounded = ends.rounded(&ends.middle, last);
+    // A unit of the last digit is more than the rounding.
+    let unit = if is_upper { IBig::ONE } else { -IBig::ONE };
+    decimal(&(rounded + unit).to_string(), last)
+}
+
 /// Whether a printed number has a digit.
 pub(super) fn has_digits(text: &str) -> bool {
     !text.starts_with("0e")

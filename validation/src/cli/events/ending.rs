@@ -1,6 +1,6 @@
 //! The ending of a run, and what is said of it on stderr.
 
-use super::digits::proved;
+use super::digits::outward;
 use super::no_progress;
 use super::progress::{Accumulation, Passed, RunEnd};
 use super::rows::Rows;
@@ -104,14 +104,14 @@ impl<T: Arithmetic> Rows<'_, T> {
 
 /// The instant at which impacts accumulate, between two times after the last of them.
 fn accumulation<T: Number>(last: &Event<T>, from: T, to: T) -> (String, Accumulation) {
+    /// The digits of each end, which is rounded away from the other.
+    const DIGITS: i32 = 30;
     let time = last.time.value();
     let error = last.errors.as_ref().map_or(0.0, |it| it.time.to_f64());
     let middle = time + (from + to) * T::exact(0.5);
     let width = 0.5 * (to - from).to_f64() + error + 1e-29 * time.to_f64().abs();
-    let [earliest, latest] = [-width, width].map(|it| {
-        let bound = middle + T::exact(it);
-        proved(bound, bound.bound().abs() * 1e-30, 30)
-    });
+    let [earliest, latest] =
+        [-width, width].map(|it| outward(middle + T::exact(it), it > 0.0, DIGITS));
     let note = format!("infinitely many impacts accumulate between {earliest} and {latest}");
     (note, Accumulation { earliest, latest })
 }
