@@ -14,7 +14,8 @@ use crate::numeric::number::Number;
 /// of an f64.
 const HALVINGS: usize = 50;
 
-/// The point and the guards from which a search begins, in a run that follows its errors.
+/// The point and the guards from which a search begins, in a run that follows its errors; boxed
+/// where it is kept, because most runs have none.
 pub(super) struct SearchStart<T: Number> {
     point: GuardedPoint<T>,
     tracks: Vec<Track>,
@@ -30,9 +31,10 @@ impl<T: Number> Run<'_, T> {
     /// The beginning of the search that follows: none where errors are not followed, or where no
     /// time passes before the next event.
     #[inline]
-    pub(super) fn search_start(&self) -> Option<SearchStart<T>> {
+    pub(super) fn search_start(&self) -> Option<Box<SearchStart<T>>> {
         let searches = self.enclosure.is_some() && self.at_entry == 0 && !self.is_open();
-        searches.then(|| SearchStart { point: self.ends.left.clone(), tracks: self.tracks.clone() })
+        let start = || SearchStart { point: self.ends.left.clone(), tracks: self.tracks.clone() };
+        searches.then(|| Box::new(start()))
     }
 
     /// The errors at the entry of the segment, where they may be asked for once a crossing has

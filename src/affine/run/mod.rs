@@ -415,8 +415,10 @@ impl<T: Number> Iterator for Run<'_, T> {
                 self.ended = false;
                 self.end(Ending::Undecided);
             }
-            if let Some(from) = from.filter(|_| unbounded.is_none()) {
-                self.show_known_motion(from);
+            if unbounded.is_none()
+                && let Some(from) = from
+            {
+                self.show_known_motion(*from);
             }
         }
     }

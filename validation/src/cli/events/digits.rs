@@ -14,9 +14,6 @@ const MOST_WORDS: usize = 80;
 /// because f64 has no such exponents.
 const ORDINARY: i64 = 800;
 
-/// The least power of ten that is looked at.
-const LEAST_POWER: i32 = -1_300_000;
-
 /// Beyond this exponent of two no digits are printed, because powers of ten become too long.
 const LONGEST: i64 = 4_000_000;
 
@@ -155,14 +152,17 @@ impl Ends {
         const NEAR: f64 = 1e-8;
         let (mantissa, exponent) = size.parts();
         let logarithm = mantissa.log10() + exponent as f64 * std::f64::consts::LOG10_2;
-        let mut power = if logarithm.is_finite() { logarithm.floor() as i32 } else { -LARGEST };
-        if logarithm.is_finite() && (logarithm - logarithm.round()).abs() > NEAR {
+        if !logarithm.is_finite() {
+            return -LARGEST;
+        }
+        let mut power = logarithm.floor() as i32;
+        if (logarithm - logarithm.round()).abs() > NEAR {
             return power;
         }
-        while power > LEAST_POWER && self.compare(number, power) == Ordering::Less {
+        while self.compare(number, power) == Ordering::Less {
             power -= 1;
         }
-        while power < -LEAST_POWER && self.compare(number, power + 1) != Ordering::Less {
+        while self.compare(number, power + 1) != Ordering::Less {
             power += 1;
         }
         power
