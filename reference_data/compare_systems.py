@@ -1,0 +1,326 @@
+"""`percuss events` beside the prover, on random systems: every event and every printed digit.
+
+    python compare_systems.py [--percuss PATH] [--kind KIND]... [--each N] [--first N]
+                              [--processes N] [--max-bits B] [--seconds S] [--out DIR]
+
+The program is asked for 25 digits of every row. A cell is right if the proved number rounds to it.
+Prints a table by kind and keeps in DIR every system that was not right, with both answers. Exit 1
+if anything is wrong, or undecided though the prover decides it in so many bits.
+"""
+
+import argparse
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from dataclasses import dataclass, field
+from decimal import Decimal
+from multiprocessing import Pool
+from pathlib import Path
+
+from flint import arb, ctx, fmpq
+
+import system_file
+from affine_expression import Refused
+from crossing import Undecided
+from proved_events import attempted, clock, states
+from random_systems import KINDS, written
+
+FIRST_BITS, LAST_BITS = 256, 1 << 14
+GIVEN_UP = ("undecided", "stopped")
+CLEAR = fmpq(1, 1000)  # of a printed unit: the radius of the ball that a cell is held against
+HERE = Path(__file__).resolve().parent
+NEITHER = ("excused", "both undecided", "prover slow", "prover refuses")
+ENCLOSURE = re.compile(r"accumulate between (\S+) and (\S+)")
+VERDICTS = (
+    "right", "wrong event", "wrong digit", "undecided", "digits gone", "accumulation", "crash",
+    "slow", *NEITHER,
+)  # fmt: skip
+FAILURES = VERDICTS[1:8]
+
+
+class Slow(Exception):
+    """The prover takes too long."""
+
+
+@dataclass
+class Answer:
+    """What the program printed: rows of cells, its last words and how it left."""
+
+    rows: list
+    words: str
+    code: int
+
+
+@dataclass
+class Result:
+    """One system's verdict."""
+
+    kind: str
+    number: int
+    verdict: str
+    why: str = ""
+    events: int = 0
+    bits: int = 0
+    seconds: tuple = (0.0, 0.0)
+    fewest: int = 25
+    text: str = ""
+    answer: Answer | None = None
+    proved: list = field(default_factory=list)
+
+
+def ask(percuss: str, path: Path, until: float, flags: list, seconds: float) -> Answer:
+    """The program's rows for a system file."""
+    command = [percuss, "events", str(path), "--until", repr(until), "--digits", "25", *flags]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)
+    rows = [line.split(",") for line in done.stdout.splitlines()[1:]]
+    return Answer(rows, done.stderr.strip(), done.returncode)
+
+
+def exactly(cell: str) -> fmpq:
+    numerator, denominator = Decimal(cell).as_integer_ratio()
+    return fmpq(numerator, denominator)
+
+
+def agrees(cell: str, ball: arb) -> bool:
+    """Does every number of the ball round to the cell? Raises `Undecided` where it may not."""
+    unit, value = unit_of(cell)
+    distance = abs(ball - arb(value))
+    if cell == "0" and ball != 0:
+        if distance > 0:
+            return False
+        raise Undecided("zero") if not distance < arb(10) ** -100 else None
+    if unit == 0:
+        return True
+    if distance > arb(unit):
+        return False
+    if not ball.rad() < arb(unit * CLEAR):
+        raise Undecided("digit")
+    return True
+
+
+def unit_of(cell: str) -> tuple:
+    """(how far the number may be from the printed one, the printed one)."""
+    if cell == "0":
+        return fmpq(0), fmpq(0)
+    if cell.startswith("0e"):
+        return ten(int(cell[2:])), fmpq(0)
+    places = Decimal(cell).as_tuple().exponent
+    return ten(places) / 2, exactly(cell)
+
+
+def ten(power: int) -> fmpq:
+    return fmpq(10) ** power if power >= 0 else 1 / fmpq(10) ** -power
+
+
+def digits(cell: str) -> int:
+    """The significant digits of a cell; an exact zero has them all."""
+    if cell == "0":
+        return 25
+    return 0 if cell.startswith("0e") else len(Decimal(cell).as_tuple().digits)
+
+
+class Comparison:
+    """The rows of the program beside those of the prover."""
+
+    def __init__(self, system, answer: Answer):
+        self.system, self.answer = system, answer
+        self.ending = answer.rows[-1][2] if answer.rows else ""
+        self.given_up = self.ending in GIVEN_UP or self.ending not in system_file.ENDINGS
+        self.rows = answer.rows[:-1] if self.ending in GIVEN_UP else answer.rows
+
+    def verdict(self, run, complete: bool) -> tuple:
+        """(verdict, why), given the run of the prover as far as it came."""
+        for index, (row, ours) in enumerate(zip(self.rows, run.rows, strict=False)):
+            if row[2] != ours.event or row[3] != ours.mode:
+                word = "accumulation" if "accumulation" in (row[2], ours.event) else "wrong event"
+                here = f"{row[2]} -> {row[3]} at {row[1]}"
+                there = f"{ours.event} -> {ours.mode} at {clock(self.system, ours).str(20)}"
+                return word, f"row {index} is {here}, proved {there}"
+            balls = [clock(self.system, ours), *states(self.system, ours.z)]
+            for cell, ball in zip([row[1], *row[4:]], balls, strict=True):
+                if not agrees(cell, ball):
+                    return "wrong digit", f"row {index} has {cell}, proved {ball.str(32)}"
+        if len(self.rows) > len(run.rows):
+            if complete:
+                return "wrong event", f"row {len(run.rows)} is beyond the proved end"
+            raise Undecided("rows")
+        if self.given_up and len(run.rows) > len(self.rows):
+            word = "undecided" if self.ending in GIVEN_UP else "digits gone"
+            return word, f"after row {len(self.rows) - 1}: {last_line(self.answer.words)}"
+        if complete and len(run.rows) > len(self.rows):
+            return "wrong event", f"row {len(self.rows)}, {run.rows[len(self.rows)].event}, is missing"
+        if not complete:
+            raise Undecided("rows")
+        return self.enclosure(run)
+
+    def enclosure(self, run) -> tuple:
+        """Do both enclosures of an accumulation hold an instant in common?"""
+        found = ENCLOSURE.search(self.answer.words)
+        if run.remaining is None or self.ending != "accumulation":
+            return "right", ""
+        if not found:
+            return "accumulation", f"no enclosure in {self.answer.words!r}"
+        last = clock(self.system, run.rows[-1])
+        ours = (last + run.remaining.least).union(last + run.remaining.most)
+        theirs = arb(exactly(found[1])).union(arb(exactly(found[2])))
+        if ours.overlaps(theirs):
+            return "right", ""
+        return "accumulation", f"between {found[1]} and {found[2]}, proved {ours.str(30)}"
+
+
+def last_line(words: str) -> str:
+    return words.splitlines()[-1] if words else ""
+
+
+def judged(system, until: float, answer: Answer, most: int | None) -> tuple:
+    """(verdict, why, bits, run): the precision doubles until everything is decided."""
+    comparison, bits, run, reason = Comparison(system, answer), FIRST_BITS, None, ""
+    if comparison.given_up and most is not None:
+        run, reason = attempted(system, until, most)
+        if reason and len(run.rows) <= len(comparison.rows):
+            return "excused", f"the prover, too, has {reason!r} in {most} bits", most, run
+    while bits <= LAST_BITS:
+        run, reason = attempted(system, until, bits)
+        try:
+            return *comparison.verdict(run, reason is None), bits, run
+        except Undecided as undecided:
+            reason, bits = reason or str(undecided), 2 * bits
+    return "both undecided" if comparison.given_up else "prover slow", str(reason), bits // 2, run
+
+
+def alarmed(*_):
+    raise Slow
+
+
+def limited(seconds: float, function, *arguments):
+    signal.signal(signal.SIGALRM, alarmed)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        return function(*arguments)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+def compared(task: tuple) -> Result:
+    """The verdict on one system."""
+    kind, number, arguments = task
+    text, until = written(kind, number)
+    result = Result(kind, number, "right", text=text)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{kind}-{number}.system.toml"
+        path.write_text(text)
+        started = time.perf_counter()
+        flags = [] if arguments.max_bits is None else ["--max-bits", str(arguments.max_bits)]
+        try:
+            answer = ask(arguments.percuss, path, until, flags, arguments.seconds)
+        except subprocess.TimeoutExpired:
+            result.verdict = "slow"
+            return result
+        asked = time.perf_counter() - started
+        return hold(result, answer, path, until, asked, arguments)
+
+
+def hold(result: Result, answer: Answer, path: Path, until: float, asked: float, arguments) -> Result:
+    """Holds an answer against the prover's, within the time that it has."""
+    result.answer, result.events = answer, max(len(answer.rows) - 2, 0)
+    if answer.code not in (0, 1) or not answer.rows:
+        result.verdict, result.why = "crash", f"exit {answer.code}: {answer.words[:200]}"
+    result.fewest = min((digits(row[1]) for row in answer.rows), default=0)
+    started = time.perf_counter()
+    try:
+        system = system_file.read(path)
+        judge = (system, until, answer, arguments.max_bits)
+        verdict, why, result.bits, run = limited(arguments.seconds, judged, *judge)
+        result.proved = [proved_row(system, row) for row in run.rows]
+    except Slow:
+        verdict, why = "prover slow", f"more than {arguments.seconds} s; {answer.rows[-1:]}"
+    except Refused as refusal:
+        verdict, why = "prover refuses", str(refusal)
+    if result.verdict != "crash":
+        result.verdict, result.why = verdict, why
+    result.seconds = (asked, time.perf_counter() - started)
+    return result
+
+
+def proved_row(system, row) -> str:
+    balls = [clock(system, row), *states(system, row.z)]
+    return ",".join([row.event, row.mode, *(ball.str(32) for ball in balls)])
+
+
+def keep(result: Result, out: Path) -> None:
+    """Writes a system that was not right down, with both answers."""
+    folder = out / result.verdict.replace(" ", "-")
+    folder.mkdir(parents=True, exist_ok=True)
+    name = f"{result.kind}-{result.number}"
+    (folder / f"{name}.system.toml").write_text(result.text)
+    rows = [",".join(row) for row in result.answer.rows] if result.answer else []
+    words = [result.answer.words] if result.answer else []
+    lines = [f"{result.verdict}: {result.why}", f"{result.bits} bits", "", "percuss:", *rows, *words]
+    (folder / f"{name}.txt").write_text("\n".join([*lines, "", "proved:", *result.proved, ""]))
+
+
+def summary(results: list) -> str:
+    """A line a kind: how many of each verdict, events, times."""
+    seen = [verdict for verdict in VERDICTS if any(r.verdict == verdict for r in results)]
+    lines = ["| kind | systems | events | " + " | ".join(seen) + " | s, percuss | s, prover | fewest digits of a time |"]
+    lines.append("|---|" + "--:|" * (len(seen) + 5))
+    for kind in [*KINDS, "all"]:
+        own = [r for r in results if kind in (r.kind, "all")]
+        if own:
+            counts = Counter(r.verdict for r in own)
+            cells = [kind, len(own), sum(r.events for r in own), *(counts[v] for v in seen)]
+            cells += [f"{max(r.seconds[i] for r in own):.1f}" for i in (0, 1)]
+            cells.append(min(r.fewest for r in own))
+            lines.append("| " + " | ".join(map(str, cells)) + " |")
+    return "\n".join(lines)
+
+
+def failures(results: list) -> str:
+    """A line for each system that was not right."""
+    poor = [r for r in results if r.verdict != "right"]
+    poor.sort(key=lambda r: (VERDICTS.index(r.verdict), list(KINDS).index(r.kind), r.number))
+    return "\n".join(
+        f"- {r.verdict}: {r.kind}-{r.number} ({r.events} events, {r.bits} bits): {r.why}" for r in poor
+    )
+
+
+def arguments_of() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    default = HERE.parent / "target" / "release" / "percuss"
+    parser.add_argument("--percuss", default=str(default), metavar="PATH")
+    parser.add_argument("--kind", action="append", choices=KINDS, metavar="KIND")
+    parser.add_argument("--each", type=int, default=400, metavar="N", help="systems of a kind")
+    parser.add_argument("--first", type=int, default=0, metavar="N", help="number of the first")
+    parser.add_argument("--processes", type=int, default=None, metavar="N")
+    parser.add_argument("--max-bits", type=int, default=None, metavar="B", help="handed to percuss")
+    parser.add_argument("--seconds", type=float, default=20.0, metavar="S", help="for each answer")
+    parser.add_argument("--out", type=Path, default=Path("random-systems"), metavar="DIR")
+    return parser.parse_args()
+
+
+def main() -> None:
+    arguments = arguments_of()
+    numbers = range(arguments.first, arguments.first + arguments.each)
+    tasks = [(kind, number, arguments) for number in numbers for kind in arguments.kind or KINDS]
+    results = []
+    with Pool(arguments.processes) as pool:
+        for result in pool.imap_unordered(compared, tasks):
+            results.append(result)
+            if result.verdict != "right":
+                keep(result, arguments.out)
+            if len(results) % 100 == 0:
+                poor = sum(r.verdict in FAILURES for r in results)
+                print(f"{len(results)} of {len(tasks)} systems, {poor} failures", file=sys.stderr)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    report = f"{summary(results)}\n\n{failures(results)}\n"
+    (arguments.out / "summary.md").write_text(report)
+    print(report)
+    sys.exit(1 if any(r.verdict in FAILURES for r in results) else 0)
+
+
+if __name__ == "__main__":
+    main()
