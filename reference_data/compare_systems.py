@@ -1,11 +1,12 @@
 """`percuss events` beside the prover, on random systems: every event and every printed digit.
 
     python compare_systems.py [--percuss PATH] [--kind KIND]... [--each N] [--first N]
-                              [--processes N] [--max-bits B] [--seconds S] [--out DIR]
+                              [--processes N] [--max-bits B] [--seconds S] [--out DIR] [FILE]...
 
 The program is asked for 25 digits of every row. A cell is right if the proved number rounds to it.
-Prints a table by kind and keeps in DIR every system that was not right, with both answers. Exit 1
-if anything is wrong, or undecided though the prover decides it in so many bits.
+Prints a table by kind and keeps in DIR every system that was not right, with both answers. FILEs
+are system files whose first line is `# until = TIME`, as those kept are: they are compared instead.
+Exit 1 if anything is wrong, or undecided though the prover decides it in so many bits.
 """
 
 import argparse
@@ -20,6 +21,7 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from multiprocessing import Pool
 from pathlib import Path
+from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
@@ -34,6 +36,7 @@ GIVEN_UP = ("undecided", "stopped")
 CLEAR = fmpq(1, 1000)  # of a printed unit: the radius of the ball that a cell is held against
 HERE = Path(__file__).resolve().parent
 NEITHER = ("excused", "both undecided", "prover slow", "prover refuses")
+UNTIL = re.compile(r"# until = (\S+)")
 ENCLOSURE = re.compile(r"accumulate between (\S+) and (\S+)")
 VERDICTS = (
     "right", "wrong event", "wrong digit", "undecided", "digits gone", "accumulation", "crash",
@@ -55,19 +58,26 @@ class Answer:
     code: int
 
 
+class Task(NamedTuple):
+    """A system to compare."""
+
+    kind: str
+    name: str
+    text: str
+    until: float
+
+
 @dataclass
 class Result:
     """One system's verdict."""
 
-    kind: str
-    number: int
+    task: Task
     verdict: str
     why: str = ""
     events: int = 0
     bits: int = 0
     seconds: tuple = (0.0, 0.0)
     fewest: int = 25
-    text: str = ""
     answer: Answer | None = None
     proved: list = field(default_factory=list)
 
@@ -205,35 +215,46 @@ def limited(seconds: float, function, *arguments):
         signal.setitimer(signal.ITIMER_REAL, 0)
 
 
-def compared(task: tuple) -> Result:
+def tasks(arguments: argparse.Namespace):
+    """The systems that are asked for, the kinds in turn."""
+    for path in arguments.files:
+        text = path.read_text()
+        name = path.name.removesuffix(".system.toml")
+        yield Task("files", name, text, float(UNTIL.match(text)[1])), arguments
+    if not arguments.files:
+        for number in range(arguments.first, arguments.first + arguments.each):
+            for kind in arguments.kind or KINDS:
+                yield Task(kind, f"{kind}-{number}", *written(kind, number)), arguments
+
+
+def compared(asked_for: tuple) -> Result:
     """The verdict on one system."""
-    kind, number, arguments = task
-    text, until = written(kind, number)
-    result = Result(kind, number, "right", text=text)
+    task, arguments = asked_for
+    result = Result(task, "right")
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"{kind}-{number}.system.toml"
-        path.write_text(text)
+        path = Path(folder) / f"{task.name}.system.toml"
+        path.write_text(task.text)
         started = time.perf_counter()
         flags = [] if arguments.max_bits is None else ["--max-bits", str(arguments.max_bits)]
         try:
-            answer = ask(arguments.percuss, path, until, flags, arguments.seconds)
+            answer = ask(arguments.percuss, path, task.until, flags, arguments.seconds)
         except subprocess.TimeoutExpired:
             result.verdict = "slow"
             return result
         asked = time.perf_counter() - started
-        return hold(result, answer, path, until, asked, arguments)
+        return hold(result, answer, path, asked, arguments)
 
 
-def hold(result: Result, answer: Answer, path: Path, until: float, asked: float, arguments) -> Result:
+def hold(result: Result, answer: Answer, path: Path, asked: float, arguments) -> Result:
     """Holds an answer against the prover's, within the time that it has."""
     result.answer, result.events = answer, max(len(answer.rows) - 2, 0)
-    if answer.code not in (0, 1) or not answer.rows:
-        result.verdict, result.why = "crash", f"exit {answer.code}: {answer.words[:200]}"
+    if not answer.rows or answer.code != expected_code(answer.rows[-1][2]):
+        result.verdict, result.why = "crash", f"exit {answer.code}: {' '.join(answer.words.split())[:160]}"
     result.fewest = min((digits(row[1]) for row in answer.rows), default=0)
     started = time.perf_counter()
     try:
         system = system_file.read(path)
-        judge = (system, until, answer, arguments.max_bits)
+        judge = (system, result.task.until, answer, arguments.max_bits)
         verdict, why, result.bits, run = limited(arguments.seconds, judged, *judge)
         result.proved = [proved_row(system, row) for row in run.rows]
     except Slow:
@@ -251,12 +272,16 @@ def proved_row(system, row) -> str:
     return ",".join([row.event, row.mode, *(ball.str(32) for ball in balls)])
 
 
+def expected_code(ending: str) -> int:
+    return int(ending in ("undecided", "no-progress", "beyond-guard"))
+
+
 def keep(result: Result, out: Path) -> None:
     """Writes a system that was not right down, with both answers."""
     folder = out / result.verdict.replace(" ", "-")
     folder.mkdir(parents=True, exist_ok=True)
-    name = f"{result.kind}-{result.number}"
-    (folder / f"{name}.system.toml").write_text(result.text)
+    name = result.task.name
+    (folder / f"{name}.system.toml").write_text(result.task.text)
     rows = [",".join(row) for row in result.answer.rows] if result.answer else []
     words = [result.answer.words] if result.answer else []
     lines = [f"{result.verdict}: {result.why}", f"{result.bits} bits", "", "percuss:", *rows, *words]
@@ -268,8 +293,8 @@ def summary(results: list) -> str:
     seen = [verdict for verdict in VERDICTS if any(r.verdict == verdict for r in results)]
     lines = ["| kind | systems | events | " + " | ".join(seen) + " | s, percuss | s, prover | fewest digits of a time |"]
     lines.append("|---|" + "--:|" * (len(seen) + 5))
-    for kind in [*KINDS, "all"]:
-        own = [r for r in results if kind in (r.kind, "all")]
+    for kind in [*KINDS, "files", "all"]:
+        own = [r for r in results if kind in (r.task.kind, "all")]
         if own:
             counts = Counter(r.verdict for r in own)
             cells = [kind, len(own), sum(r.events for r in own), *(counts[v] for v in seen)]
@@ -282,9 +307,10 @@ def summary(results: list) -> str:
 def failures(results: list) -> str:
     """A line for each system that was not right."""
     poor = [r for r in results if r.verdict != "right"]
-    poor.sort(key=lambda r: (VERDICTS.index(r.verdict), list(KINDS).index(r.kind), r.number))
+    order = [*KINDS, "files"]
+    poor.sort(key=lambda r: (VERDICTS.index(r.verdict), order.index(r.task.kind), r.task.name))
     return "\n".join(
-        f"- {r.verdict}: {r.kind}-{r.number} ({r.events} events, {r.bits} bits): {r.why}" for r in poor
+        f"- {r.verdict}: {r.task.name} ({r.events} events, {r.bits} bits): {r.why}" for r in poor
     )
 
 
@@ -299,22 +325,21 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument("--max-bits", type=int, default=None, metavar="B", help="handed to percuss")
     parser.add_argument("--seconds", type=float, default=20.0, metavar="S", help="for each answer")
     parser.add_argument("--out", type=Path, default=Path("random-systems"), metavar="DIR")
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE")
     return parser.parse_args()
 
 
 def main() -> None:
     arguments = arguments_of()
-    numbers = range(arguments.first, arguments.first + arguments.each)
-    tasks = [(kind, number, arguments) for number in numbers for kind in arguments.kind or KINDS]
-    results = []
+    results, count = [], len(arguments.files) or arguments.each * len(arguments.kind or KINDS)
     with Pool(arguments.processes) as pool:
-        for result in pool.imap_unordered(compared, tasks):
+        for result in pool.imap_unordered(compared, tasks(arguments)):
             results.append(result)
             if result.verdict != "right":
                 keep(result, arguments.out)
             if len(results) % 100 == 0:
                 poor = sum(r.verdict in FAILURES for r in results)
-                print(f"{len(results)} of {len(tasks)} systems, {poor} failures", file=sys.stderr)
+                print(f"{len(results)} of {count} systems, {poor} failures", file=sys.stderr)
     arguments.out.mkdir(parents=True, exist_ok=True)
     report = f"{summary(results)}\n\n{failures(results)}\n"
     (arguments.out / "summary.md").write_text(report)

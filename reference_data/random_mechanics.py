@@ -246,8 +246,8 @@ def relays(c: Chance) -> Draft:
     start = {"mode": "on"} | {name: 0 for name in names}
     largest = max(value for key, value in parameters.items() if key.startswith("T"))
     least = min(value for key, value in parameters.items() if key.startswith("T"))
-    dwell = (parameters["high"] - parameters["low"]) * parameters["T1"] / (parameters["K"] + 2)
-    until = c.horizon(min(c.between(1, 3) * (largest if n == 1 else least + largest), 80 * dwell + least))
+    dwell = (parameters["high"] - parameters["low"]) * least / (3 * (parameters["K"] + 1))
+    until = c.horizon(min(c.between(1, 3) * (largest if n == 1 else least + largest), 100 * dwell + (least if n > 1 and measured == "y1" else 0)))
     return Draft(names, modes, start, until, parameters, omega=c.number(0.3, 5) if forced else None)
 
 
