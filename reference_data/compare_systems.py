@@ -16,33 +16,26 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import Counter
 from dataclasses import dataclass, field
-from decimal import Decimal
 from multiprocessing import Pool
 from pathlib import Path
 from typing import NamedTuple
 
-from flint import arb, ctx, fmpq
+from flint import arb
 
 import system_file
 from affine_expression import Refused
 from crossing import Undecided
+from printed_cells import agrees, digits, exactly
 from proved_events import attempted, clock, states
 from random_systems import KINDS, written
+from verdicts import WRONG, failures, summary
 
 FIRST_BITS, LAST_BITS = 256, 1 << 14
 GIVEN_UP = ("undecided", "stopped")
-CLEAR = fmpq(1, 1000)  # of a printed unit: the radius of the ball that a cell is held against
 HERE = Path(__file__).resolve().parent
-NEITHER = ("excused", "both undecided", "prover slow", "prover refuses")
 UNTIL = re.compile(r"# until = (\S+)")
 ENCLOSURE = re.compile(r"accumulate between (\S+) and (\S+)")
-VERDICTS = (
-    "right", "wrong event", "wrong digit", "undecided", "digits gone", "accumulation", "crash",
-    "slow", *NEITHER,
-)  # fmt: skip
-FAILURES = VERDICTS[1:8]
 
 
 class Slow(Exception):
@@ -90,49 +83,6 @@ def ask(percuss: str, path: Path, until: float, flags: list, seconds: float) -> 
     return Answer(rows, done.stderr.strip(), done.returncode)
 
 
-def exactly(cell: str) -> fmpq:
-    numerator, denominator = Decimal(cell).as_integer_ratio()
-    return fmpq(numerator, denominator)
-
-
-def agrees(cell: str, ball: arb) -> bool:
-    """Does every number of the ball round to the cell? Raises `Undecided` where it may not."""
-    unit, value = unit_of(cell)
-    distance = abs(ball - arb(value))
-    if cell == "0" and ball != 0:
-        if distance > 0:
-            return False
-        raise Undecided("zero") if not distance < arb(10) ** -100 else None
-    if unit == 0:
-        return True
-    if distance > arb(unit):
-        return False
-    if not ball.rad() < arb(unit * CLEAR):
-        raise Undecided("digit")
-    return True
-
-
-def unit_of(cell: str) -> tuple:
-    """(how far the number may be from the printed one, the printed one)."""
-    if cell == "0":
-        return fmpq(0), fmpq(0)
-    if cell.startswith("0e"):
-        return ten(int(cell[2:])), fmpq(0)
-    places = Decimal(cell).as_tuple().exponent
-    return ten(places) / 2, exactly(cell)
-
-
-def ten(power: int) -> fmpq:
-    return fmpq(10) ** power if power >= 0 else 1 / fmpq(10) ** -power
-
-
-def digits(cell: str) -> int:
-    """The significant digits of a cell; an exact zero has them all."""
-    if cell == "0":
-        return 25
-    return 0 if cell.startswith("0e") else len(Decimal(cell).as_tuple().digits)
-
-
 class Comparison:
     """The rows of the program beside those of the prover."""
 
@@ -162,7 +112,10 @@ class Comparison:
             word = "undecided" if self.ending in GIVEN_UP else "digits gone"
             return word, f"after row {len(self.rows) - 1}: {last_line(self.answer.words)}"
         if complete and len(run.rows) > len(self.rows):
-            return "wrong event", f"row {len(self.rows)}, {run.rows[len(self.rows)].event}, is missing"
+            return (
+                "wrong event",
+                f"row {len(self.rows)}, {run.rows[len(self.rows)].event}, is missing",
+            )
         if not complete:
             raise Undecided("rows")
         return self.enclosure(run)
@@ -249,7 +202,10 @@ def hold(result: Result, answer: Answer, path: Path, asked: float, arguments) ->
     """Holds an answer against the prover's, within the time that it has."""
     result.answer, result.events = answer, max(len(answer.rows) - 2, 0)
     if not answer.rows or answer.code != expected_code(answer.rows[-1][2]):
-        result.verdict, result.why = "crash", f"exit {answer.code}: {' '.join(answer.words.split())[:160]}"
+        result.verdict, result.why = (
+            "crash",
+            f"exit {answer.code}: {' '.join(answer.words.split())[:160]}",
+        )
     result.fewest = min((digits(row[1]) for row in answer.rows), default=0)
     started = time.perf_counter()
     try:
@@ -284,34 +240,15 @@ def keep(result: Result, out: Path) -> None:
     (folder / f"{name}.system.toml").write_text(result.task.text)
     rows = [",".join(row) for row in result.answer.rows] if result.answer else []
     words = [result.answer.words] if result.answer else []
-    lines = [f"{result.verdict}: {result.why}", f"{result.bits} bits", "", "percuss:", *rows, *words]
+    lines = [
+        f"{result.verdict}: {result.why}",
+        f"{result.bits} bits",
+        "",
+        "percuss:",
+        *rows,
+        *words,
+    ]
     (folder / f"{name}.txt").write_text("\n".join([*lines, "", "proved:", *result.proved, ""]))
-
-
-def summary(results: list) -> str:
-    """A line a kind: how many of each verdict, events, times."""
-    seen = [verdict for verdict in VERDICTS if any(r.verdict == verdict for r in results)]
-    lines = ["| kind | systems | events | " + " | ".join(seen) + " | s, percuss | s, prover | fewest digits of a time |"]
-    lines.append("|---|" + "--:|" * (len(seen) + 5))
-    for kind in [*KINDS, "files", "all"]:
-        own = [r for r in results if kind in (r.task.kind, "all")]
-        if own:
-            counts = Counter(r.verdict for r in own)
-            cells = [kind, len(own), sum(r.events for r in own), *(counts[v] for v in seen)]
-            cells += [f"{max(r.seconds[i] for r in own):.1f}" for i in (0, 1)]
-            cells.append(min(r.fewest for r in own))
-            lines.append("| " + " | ".join(map(str, cells)) + " |")
-    return "\n".join(lines)
-
-
-def failures(results: list) -> str:
-    """A line for each system that was not right."""
-    poor = [r for r in results if r.verdict != "right"]
-    order = [*KINDS, "files"]
-    poor.sort(key=lambda r: (VERDICTS.index(r.verdict), order.index(r.task.kind), r.task.name))
-    return "\n".join(
-        f"- {r.verdict}: {r.task.name} ({r.events} events, {r.bits} bits): {r.why}" for r in poor
-    )
 
 
 def arguments_of() -> argparse.Namespace:
@@ -338,13 +275,13 @@ def main() -> None:
             if result.verdict != "right":
                 keep(result, arguments.out)
             if len(results) % 100 == 0:
-                poor = sum(r.verdict in FAILURES for r in results)
+                poor = sum(r.verdict in WRONG for r in results)
                 print(f"{len(results)} of {count} systems, {poor} failures", file=sys.stderr)
     arguments.out.mkdir(parents=True, exist_ok=True)
     report = f"{summary(results)}\n\n{failures(results)}\n"
     (arguments.out / "summary.md").write_text(report)
     print(report)
-    sys.exit(1 if any(r.verdict in FAILURES for r in results) else 0)
+    sys.exit(1 if any(r.verdict in WRONG for r in results) else 0)
 
 
 if __name__ == "__main__":

@@ -60,7 +60,7 @@ def since_entry(row: fmpq_mat, matrix: fmpq_mat, state: fmpq_mat, space: Space) 
 
 
 def of_forcing(row: fmpq_mat, space: Space, omega: fmpq, theta: arb) -> Harmonic | None:
-    """The sine of a row in which, but for what stays zero, no state is; `theta` is that at entry."""
+    """The sine of a row that holds no state but for what stays zero; `theta` is that at entry."""
     rest, size = space.rest(row), row.ncols()
     if any(rest[0, j] != 0 for j in range(size - 3)):
         return None

@@ -162,7 +162,9 @@ def belt(c: Chance) -> Draft:
     parameters["Fk"] = parameters["Fs"] * c.one_of(0.3, 0.5, 0.75, 1)
     parameters["belt"] = float(f"{c.number(0.1, 1) * parameters['Fs'] / natural:.1g}")
     slip = "(-k*x - c*v + {})/m"
-    stick = mode("stick", ["x' = belt", "v' = 0"], event("slips", "k*x + c*belt > Fs", follows="slip"))
+    stick = mode(
+        "stick", ["x' = belt", "v' = 0"], event("slips", "k*x + c*belt > Fs", follows="slip")
+    )
     caught = event(
         "sticks", "v > belt", ["v = belt"],
         [("k*x + c*belt > Fs", "slip"), ("k*x + c*belt + Fs < 0", "fast"), (None, "stick")],
@@ -184,7 +186,12 @@ def belt(c: Chance) -> Draft:
 
 
 def dry_friction(c: Chance) -> Draft:
-    parameters = {"A": c.between(0.5, 4), "Fs": 1, "Fk": c.one_of(1, 0.8, 0.5), "z": c.between(0.01, 0.2)}
+    parameters = {
+        "A": c.between(0.5, 4),
+        "Fs": 1,
+        "Fk": c.one_of(1, 0.8, 0.5),
+        "z": c.between(0.01, 0.2),
+    }
     lets = {"force": c.one_of("A*cos - x", "A*sin - x")}
     drag = c.one_of("", " - z*v")
     stop = "stop"
@@ -194,9 +201,11 @@ def dry_friction(c: Chance) -> Draft:
         mode("right", ["x' = v", f"v' = force - Fk{drag}"], right),
         mode("left", ["x' = v", f"v' = force + Fk{drag}"], left),
         mode(
-            "stick", ["x' = 0", "v' = 0"], event("slip-right", "force > Fs", follows="right"),
+            "stick",
+            ["x' = 0", "v' = 0"],
+            event("slip-right", "force > Fs", follows="right"),
             event("slip-left", "force + Fs < 0", follows="left"),
-        ),  # fmt: skip
+        ),
     ]
     start = {"mode": "right", "x": c.between(-1, 1), "v": c.between(0.1, 2)}
     omega = c.number(0.2, 2.5)
@@ -206,12 +215,18 @@ def dry_friction(c: Chance) -> Draft:
 
 def drill_string(c: Chance) -> Draft:
     parameters = {
-        "J": c.one_of(374, 100, 40, 7), "k": c.one_of(473, 300, 30, 41), "c": c.one_of(23, 10, 1, 0.5),
-        "drive": c.one_of(1, 2, 3, 5), "Ts": c.one_of(300, 100, 500), "Tk": 0,
-    }  # fmt: skip
+        "J": c.one_of(374, 100, 40, 7),
+        "k": c.one_of(473, 300, 30, 41),
+        "c": c.one_of(23, 10, 1, 0.5),
+        "drive": c.one_of(1, 2, 3, 5),
+        "Ts": c.one_of(300, 100, 500),
+        "Tk": 0,
+    }
     parameters["Tk"] = parameters["Ts"] * c.one_of(0.4, 0.5, 0.6, 0.75)
     torque = "(k*a + c*(drive - w)"
-    stick = mode("stick", ["a' = drive", "w' = 0"], event("breaks", "k*a + c*drive > Ts", follows="slip"))
+    stick = mode(
+        "stick", ["a' = drive", "w' = 0"], event("breaks", "k*a + c*drive > Ts", follows="slip")
+    )
     back = event("stops", "w < 0", ["w = 0"], [("k*a + c*drive > Ts", "slip"), (None, "stick")])
     slip = mode("slip", ["a' = drive - w", f"w' = {torque} - Tk)/J"], back)
     start = {"mode": "stick", "a": 0, "w": 0}
@@ -225,14 +240,19 @@ def relays(c: Chance) -> Draft:
     """A process of order one to three under a switch with hysteresis."""
     n = c.count(1, 3)
     names = [f"y{i}" for i in range(1, n + 1)]
-    parameters = {f"T{i}": c.one_of(0.3, 0.5, 1, 2, 3, 7, 10, c.number(0.1, 10)) for i in range(1, n + 1)}
+    parameters = {
+        f"T{i}": c.one_of(0.3, 0.5, 1, 2, 3, 7, 10, c.number(0.1, 10)) for i in range(1, n + 1)
+    }
     parameters |= {"high": c.between(0.3, 0.8), "low": 0.0, "K": c.one_of(1, 2, 5, 3)}
     parameters["low"] = parameters["high"] - c.one_of(0.1, 0.2, 0.05, 0.01, c.number(1e-4, 0.1))
     measured = "y1" if n == 1 or c.happens(0.7) else f"y1 + {c.one_of('y2/4', '2*y2', 'y2')}"
 
     def equations(drive: str) -> list:
         inputs = [*names[1:], drive]
-        return [f"{y}' = ({u} - {y})/T{i}" for i, (y, u) in enumerate(zip(names, inputs, strict=True), 1)]
+        return [
+            f"{y}' = ({u} - {y})/T{i}"
+            for i, (y, u) in enumerate(zip(names, inputs, strict=True), 1)
+        ]
 
     forced = c.happens(0.3)
     on, off = c.one_of("K", "K + 1"), c.one_of("0", "-K", "-1")
@@ -247,7 +267,12 @@ def relays(c: Chance) -> Draft:
     largest = max(value for key, value in parameters.items() if key.startswith("T"))
     least = min(value for key, value in parameters.items() if key.startswith("T"))
     dwell = (parameters["high"] - parameters["low"]) * least / (3 * (parameters["K"] + 1))
-    until = c.horizon(min(c.between(1, 3) * (largest if n == 1 else least + largest), 100 * dwell + (least if n > 1 and measured == "y1" else 0)))
+    until = c.horizon(
+        min(
+            c.between(1, 3) * (largest if n == 1 else least + largest),
+            100 * dwell + (least if n > 1 and measured == "y1" else 0),
+        )
+    )
     return Draft(names, modes, start, until, parameters, omega=c.number(0.3, 5) if forced else None)
 
 
@@ -260,7 +285,11 @@ def bilinear(c: Chance) -> Draft:
     free = "-x - 2*z*v + A*cos"
     modes = [
         mode("free", ["x' = v", f"v' = {free}"], event("touch", "x > e", follows="contact")),
-        mode("contact", ["x' = v", f"v' = {free} - k*(x - e)"], event("leave", "x < e", follows="free")),
+        mode(
+            "contact",
+            ["x' = v", f"v' = {free} - k*(x - e)"],
+            event("leave", "x < e", follows="free"),
+        ),
     ]
     start = {"mode": "free", "x": c.one_of(-1, -0.5), "v": c.one_of(0, 0.25)}
     omega = c.one_of(0.8, 0.5, 1.3, c.between(0.4, 2.2))

@@ -73,7 +73,10 @@ def stiff_pairs(c: Chance) -> Draft:
     modes = thermostat(c, states, equations, "high", "low")
     if c.happens(0.5):
         for one in modes:
-            one["events"] = (*one["events"], watch("second", c.one_of("y > x", "y > high", "x > y + b")))
+            one["events"] = (
+                *one["events"],
+                watch("second", c.one_of("y > x", "y > high", "x > y + b")),
+            )
     start = {"mode": "on", "x": c.one_of(0, 0.3), "y": c.one_of(0, 1, -2)}
     until = c.horizon(c.between(1, 8) / parameters["a"])
     return Draft(states, modes, start, until, parameters, time_scale=c.one_of(None, None, 1e-3))
@@ -93,7 +96,10 @@ def ladder(c: Chance, gap: bool) -> Draft:
     parameters |= {"high": c.between(0.2, 0.7), "low": c.between(-0.3, 0.15)}
 
     def equations(drive: str) -> list:
-        return [f"{x}' = {r}*({u} - {x})" for x, r, u in zip(names, rates, [*names[1:], drive], strict=True)]
+        return [
+            f"{x}' = {r}*({u} - {x})"
+            for x, r, u in zip(names, rates, [*names[1:], drive], strict=True)
+        ]
 
     modes = thermostat(c, names, equations, "high", "low")
     start = {"mode": "on"} | {name: c.one_of(0, 0, 0.1, -1) for name in names}
@@ -103,7 +109,9 @@ def ladder(c: Chance, gap: bool) -> Draft:
         omega = c.number(0.3, 4)
         for one in modes:
             one["equations"][-1] += " + a*cos/4"
-    return Draft(names, modes, start, c.horizon(c.between(3, 14) / parameters["a"]), parameters, omega=omega)
+    return Draft(
+        names, modes, start, c.horizon(c.between(3, 14) / parameters["a"]), parameters, omega=omega
+    )
 
 
 def critical(c: Chance, gap: bool) -> Draft:
@@ -113,7 +121,9 @@ def critical(c: Chance, gap: bool) -> Draft:
     pull = "-a^2*x - 2*a*v"
     if gap:
         parameters["d"] = c.signed(1e-12, 1e-3)
-        pull = c.one_of("-a*(a + d)*x - (2*a + d)*v", "-a^2*x - 2*(a + d)*v", "-(a^2 + d)*x - 2*a*v")
+        pull = c.one_of(
+            "-a*(a + d)*x - (2*a + d)*v", "-a^2*x - 2*(a + d)*v", "-(a^2 + d)*x - 2*a*v"
+        )
     hit = event("hit", "x > stop", ["x = stop", "v = -r*v"])
     equations = ["x' = v", f"v' = {pull} + F*cos"]
     start = {"mode": "free", "x": 0, "v": c.one_of(0, 1)}
@@ -149,10 +159,7 @@ def integrators(c: Chance, _gap: bool) -> Draft:
     marks = [event("floor", "x1 < 0", ["x1 = 0", *[f"{x} = -r*{x}" for x in names[1:2]]])]
     marks += [watch("level", "x1 > level")] if c.happens(0.6) else []
     start = {"mode": "only"} | {name: c.between(0.2, 2) for name in names}
-    if n > 2:
-        until = c.horizon(c.between(2, 5))
-    else:
-        until = c.horizon(c.between(2, 8))
+    until = c.horizon(c.between(2, 5 if n > 2 else 8))
     return Draft(names, [mode("only", chain, *marks)], start, until, parameters)
 
 

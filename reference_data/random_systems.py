@@ -11,6 +11,7 @@ import random
 from pathlib import Path
 
 import random_aimed as aimed
+import random_exact
 import random_mechanics as mechanics
 import random_spectra as spectra
 from system_text import Chance, Draft
@@ -32,7 +33,7 @@ KINDS = {
     "relays": mechanics.relays,
     "decays": spectra.decays,
     "bilinear": mechanics.bilinear,
-    "exact": aimed.exact,
+    "exact": random_exact.exact,
 }
 
 
