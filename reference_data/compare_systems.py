@@ -1,12 +1,14 @@
 """`percuss events` beside the prover, on random systems: every event and every printed digit.
 
     python compare_systems.py [--percuss PATH] [--kind KIND]... [--each N] [--first N]
-                              [--processes N] [--max-bits B] [--seconds S] [--out DIR] [FILE]...
+                              [--processes N] [--max-bits B] [--seconds S] [--out DIR] [--power]
+                              [FILE]...
 
 The program is asked for 25 digits of every row. A cell is right if the proved number rounds to it.
 Prints a table by kind and keeps in DIR every system that was not right, with both answers. FILEs
 are system files whose first line is `# until = TIME`, as those kept are: they are compared instead.
-Exit 1 if anything is wrong, or undecided though the prover decides it in so many bits.
+Exit 1 if anything is wrong, or undecided though the prover decides it in so many bits. --power
+spoils one thing in each answer: then exit 1 if that is not noticed in one of them.
 """
 
 import argparse
@@ -25,6 +27,7 @@ from flint import arb
 
 import system_file
 from affine_expression import Refused
+from altered_answers import altered
 from crossing import Undecided
 from printed_cells import agrees, digits, exactly
 from proved_events import attempted, clock, states
@@ -195,7 +198,18 @@ def compared(asked_for: tuple) -> Result:
             result.verdict = "slow"
             return result
         asked = time.perf_counter() - started
+        if arguments.power:
+            return spoiled(result, answer, path, arguments)
         return hold(result, answer, path, asked, arguments)
+
+
+def spoiled(result: Result, answer: Answer, path: Path, arguments) -> Result:
+    """The verdict on an answer in which one thing is wrong."""
+    rows = altered(answer.rows, result.task.name)
+    if rows is None:
+        result.verdict = "not spoiled"
+        return result
+    return hold(result, Answer(rows, answer.words, answer.code), path, 0.0, arguments)
 
 
 def hold(result: Result, answer: Answer, path: Path, asked: float, arguments) -> Result:
@@ -262,6 +276,7 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument("--max-bits", type=int, default=None, metavar="B", help="handed to percuss")
     parser.add_argument("--seconds", type=float, default=20.0, metavar="S", help="for each answer")
     parser.add_argument("--out", type=Path, default=Path("random-systems"), metavar="DIR")
+    parser.add_argument("--power", action="store_true", help="spoil each answer")
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE")
     return parser.parse_args()
 
@@ -281,7 +296,8 @@ def main() -> None:
     report = f"{summary(results)}\n\n{failures(results)}\n"
     (arguments.out / "summary.md").write_text(report)
     print(report)
-    sys.exit(1 if any(r.verdict in WRONG for r in results) else 0)
+    bad = ("right", "undecided", "crash") if arguments.power else WRONG
+    sys.exit(1 if any(r.verdict in bad for r in results) else 0)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from collections import Counter
 
 from random_systems import KINDS
 
-NEITHER = ("excused", "both undecided", "prover slow", "prover refuses")
+NEITHER = ("excused", "both undecided", "prover slow", "prover refuses", "not spoiled")
 WRONG = ("wrong event", "wrong digit", "undecided", "digits gone", "accumulation", "crash", "slow")
 VERDICTS = ("right", *WRONG, *NEITHER)
 ORDER = [*KINDS, "files"]
