@@ -44,19 +44,30 @@ class Harmonic:
         return (angle + 2 * arb.pi() * whole) / self.turn
 
 
-def since_entry(row: fmpq_mat, matrix: fmpq_mat, state: fmpq_mat, space: Space) -> Harmonic | None:
-    """The sine of `row` exp(`matrix` t) `state`, if it is one, for a rational state."""
+def since_entry(row: fmpq_mat, matrix: fmpq_mat, known, kept: Space) -> Harmonic | None:
+    """The sine of `row` exp(`matrix` t) z, if it is one from a rational start.
+
+    `known(row)` is the rational value of a row at entry, or None; `kept` stays zero.
+    """
     rate = row * matrix
-    first, third = space.rest(rate), space.rest(rate * matrix * matrix)
+    first, third = kept.rest(rate), kept.rest(rate * matrix * matrix)
     pivot = next((j for j in range(first.ncols()) if first[0, j] != 0), None)
     if pivot is None:
         return None
     square = -third[0, pivot] / first[0, pivot]
     if not square > 0 or third != first * -square:
         return None
-    value, slope, bend = ((r * state)[0, 0] for r in (row, rate, rate * matrix))
+    value, slope, bend = (known(r) for r in (row, rate, rate * matrix))
+    if value is None or slope is None or bend is None:
+        return None
     a = -bend / square
     return Harmonic(value - a, a, slope, square, arb(square).sqrt(), arb(0))
+
+
+def structural_value(row: fmpq_mat, space: Space) -> fmpq | None:
+    """The rational number that a row is by what is structurally zero, if it is one."""
+    rest, last = space.rest(row), row.ncols() - 1
+    return rest[0, last] if all(rest[0, j] == 0 for j in range(last)) else None
 
 
 def of_forcing(row: fmpq_mat, space: Space, omega: fmpq, theta: arb) -> Harmonic | None:

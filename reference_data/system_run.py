@@ -9,7 +9,7 @@ import modal
 from accumulation import Remaining, accumulation
 from affine_expression import Refused
 from crossing import Undecided
-from harmonic import Harmonic, of_forcing, since_entry
+from harmonic import Harmonic, of_forcing, since_entry, structural_value
 from structural import Space, left_kernel, multiplicity
 from system_case import SystemCase
 from system_crossing import Guard, Time, crossings, evaluated, exact_polynomial, nilpotent
@@ -168,13 +168,18 @@ class Run:
     def harmonic(self, event: Event, state: HybridState) -> Harmonic | None:
         """The guard's sine, if it is one: of the angle since entry, or of the forcing."""
         matrix = self.matrices[state.mode]
-        space = state.space.carried(matrix)
-        if state.exact is not None:
-            return since_entry(event.guard, matrix, state.exact, space)
-        if not self.system.forced or self.case.backward:
-            return None
+        kept = state.space.carried(matrix)
+
+        def known(row: fmpq_mat) -> fmpq | None:
+            if state.exact is not None:
+                return (row * state.exact)[0, 0]
+            return structural_value(row, state.space)
+
+        sine = since_entry(event.guard, matrix, known, kept)
+        if sine is not None or not self.system.forced or self.case.backward:
+            return sine
         theta = self.system.omega * self.case.clock(self.elapsed.ball) + self.system.phi
-        return of_forcing(event.guard, space, self.system.omega, theta)
+        return of_forcing(event.guard, kept, self.system.omega, theta)
 
     def advanced(self, state: HybridState, time: Time, space: Space) -> HybridState:
         """The state after a time within the segment."""
