@@ -275,7 +275,9 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument("--processes", type=int, default=None, metavar="N")
     parser.add_argument("--max-bits", type=int, default=None, metavar="B", help="handed to percuss")
     parser.add_argument("--seconds", type=float, default=20.0, metavar="S", help="for each answer")
-    parser.add_argument("--out", type=Path, default=Path("random-systems"), metavar="DIR")
+    parser.add_argument(
+        "--out", type=Path, default=HERE.parent / "target" / "random-systems", metavar="DIR"
+    )
     parser.add_argument("--power", action="store_true", help="spoil each answer")
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE")
     return parser.parse_args()
