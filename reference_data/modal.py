@@ -8,20 +8,25 @@ where the Z_rj follow from the powers of M by inverting a confluent Vandermonde 
 matrix and a stiff one are treated alike. Roots and Z_rj are balls; nothing else is approximate.
 """
 
+from itertools import product
 from math import comb, factorial
 from typing import NamedTuple
 
-from flint import acb, acb_mat, arb, arb_mat, arb_series, fmpq_mat
+from flint import acb, acb_mat, arb, arb_mat, arb_series, fmpq_mat, fmpq_poly
 
 from crossing import Undecided
 
 
 class Root(NamedTuple):
-    """A root of the minimal polynomial; of a complex pair the one above the real axis."""
+    """A root of the minimal polynomial; of a complex pair the one above the real axis.
+
+    `factor` is the irreducible factor of which it is a root.
+    """
 
     value: acb
     multiplicity: int
     real: bool
+    factor: fmpq_poly
 
 
 def roots(matrix: fmpq_mat) -> list:
@@ -29,15 +34,26 @@ def roots(matrix: fmpq_mat) -> list:
     found = []
     for factor, multiplicity in matrix.minpoly().factor()[1]:
         if factor.degree() == 1:
-            found.append(Root(acb(-factor[0] / factor[1]), multiplicity, True))
+            found.append(Root(acb(-factor[0] / factor[1]), multiplicity, True, factor))
         elif factor.degree() == 2:
-            found += [Root(r, multiplicity, r.imag == 0) for r in quadratic(factor)]
+            found += [Root(r, multiplicity, r.imag == 0, factor) for r in quadratic(factor)]
         else:
             upper = [r for r, _ in factor.numer().complex_roots() if not r.imag < 0]
             if any(not (r.imag == 0 or r.imag > 0) for r in upper):
                 raise Undecided("roots")
-            found += [Root(r, multiplicity, r.imag == 0) for r in upper]
+            found += [Root(r, multiplicity, r.imag == 0, factor) for r in upper]
     return found
+
+
+def projection(matrix: fmpq_mat, factor: fmpq_poly, multiplicity: int) -> fmpq_mat:
+    """The exact projection onto the states that the factor's roots move, along all others."""
+    power = factor**multiplicity
+    rest = matrix.minpoly() // power
+    _, inverse, _ = rest.xgcd(power)
+    polynomial, result = inverse * rest, fmpq_mat(matrix.nrows(), matrix.nrows())
+    for k in range(polynomial.degree(), -1, -1):
+        result = result * matrix + identity(matrix.nrows()) * polynomial[k]
+    return result
 
 
 def quadratic(factor) -> list:
@@ -89,9 +105,25 @@ class Flow:
                 for k, power in enumerate(powers):
                     total += power * weights[row + j, k]
                 block.append(total if root.real else total * 2)
-            components.append(block)
+            components.append(self.sharpened(block, root))
             row += root.multiplicity * (1 if root.real else 2)
         return components
+
+    def sharpened(self, block: list, root: Root) -> list:
+        """The Z_rj of a root, exact where the root is rational, else with their zeros exact."""
+        exact = projection(self.matrix, root.factor, root.multiplicity)
+        if root.factor.degree() == 1:
+            shift = self.matrix + identity(self.size) * (root.factor[0] / root.factor[1])
+            powers = [exact]
+            for _ in block[1:]:
+                powers.append(powers[-1] * shift)
+            return [acb_mat(power) for power in powers]
+        rows, columns = exact.tolist(), exact.transpose().tolist()
+        for i, j in product(range(self.size), repeat=2):
+            if not any(rows[i]) or not any(columns[j]):
+                for part in block:
+                    part[i, j] = 0
+        return block
 
     def matrix_at(self, d: arb) -> arb_mat:
         """exp(M d). States that stay constant in the mode do so exactly."""

@@ -12,8 +12,13 @@ from typing import NamedTuple
 from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly
 
 from crossing import Undecided, derivatives, refine
+from harmonic import Harmonic, meet
 from structural import Space
 from system_file import Event
+
+
+TINY = arb(2) ** -30  # of the first step
+MOST_TINY = 4000  # steps so small in one segment: a guard too vague to pass shortens all of them
 
 
 class Time(NamedTuple):
@@ -36,13 +41,15 @@ class Time(NamedTuple):
 class Guard:
     """A guard in a segment. `zeros` of its derivatives vanish structurally at entry.
 
-    `value` is a function of the elapsed time, `exact` its polynomial where that is rational.
+    `value` is a function of the elapsed time, `exact` its polynomial where that is rational,
+    `harmonic` its sine with a rational level where it is one.
     """
 
     event: Event
     zeros: int
     value: object
     exact: fmpq_poly | None
+    harmonic: Harmonic | None = None
 
     def wanted(self, rising: bool) -> bool:
         """Whether a crossing in this direction is an event."""
@@ -95,16 +102,22 @@ def together(a: tuple, b: tuple, space: Space) -> bool:
         return a[0].exact == b[0].exact
     if not a[0].ball.overlaps(b[0].ball):
         return False
-    return a[1] is b[1] or space.with_rows([b[1].event.guard]).holds(a[1].event.guard)
+    if a[1] is b[1] or space.with_rows([b[1].event.guard]).holds(a[1].event.guard):
+        return True
+    return meet(a[1].harmonic, b[1].harmonic, a[0].ball, b[0].ball)
 
 
 def swept(guards: list, span: Time, first_step: arb):
     """Batches of roots (time, guard), one a step, each batch after the one before."""
     smallest = first_step * arb(2) ** -(ctx.prec // 2)
+    tiny, patience = first_step * TINY, MOST_TINY
     left, end, step, entering = arb(0), span.ball.upper(), first_step, True
     while left < end:
         right = (left + step).mid()
         right = right if right < end else end
+        patience -= bool(step < tiny)
+        if patience == 0:
+            raise Undecided("crossing")
         try:
             look = entry_roots if entering else step_roots
             found = [root for guard in guards for root in look(guard, left, right)]
@@ -131,6 +144,9 @@ def entry_roots(guard: Guard, left: arb, right: arb) -> list:
 
 def step_roots(guard: Guard, left: arb, right: arb) -> list:
     """The root of `guard` on a step after entry: at most one, and simple."""
+    plain = guard.value(left.union(right))
+    if plain < 0 or plain > 0:
+        return []
     value, slope = derivatives(guard.value, left, right, 2)
     if value < 0 or value > 0:
         return []

@@ -9,6 +9,7 @@ import modal
 from accumulation import Remaining, accumulation
 from affine_expression import Refused
 from crossing import Undecided
+from harmonic import Harmonic, of_forcing, since_entry, structural_value
 from structural import Space, left_kernel, multiplicity
 from system_case import SystemCase
 from system_crossing import Guard, Time, crossings, evaluated, exact_polynomial, nilpotent
@@ -156,10 +157,29 @@ class Run:
         for event in mode.until + mode.watch:
             zeros = multiplicity(event.guard, matrix, state.space)
             if zeros is not None:
+                sine = self.harmonic(event, state)
+                if sine is not None and sine.keeps_its_sign():
+                    continue
                 polynomial = exact_polynomial(event.guard, matrix, state.exact) if exact else None
                 curve = self.flow(state.mode).curve(event.guard, state.z)
-                found.append(Guard(event, zeros, curve, polynomial))
+                found.append(Guard(event, zeros, curve, polynomial, sine))
         return found
+
+    def harmonic(self, event: Event, state: HybridState) -> Harmonic | None:
+        """The guard's sine, if it is one: of the angle since entry, or of the forcing."""
+        matrix = self.matrices[state.mode]
+        kept = state.space.carried(matrix)
+
+        def known(row: fmpq_mat) -> fmpq | None:
+            if state.exact is not None:
+                return (row * state.exact)[0, 0]
+            return structural_value(row, state.space)
+
+        sine = since_entry(event.guard, matrix, known, kept)
+        if sine is not None or not self.system.forced or self.case.backward:
+            return sine
+        theta = self.system.omega * self.case.clock(self.elapsed.ball) + self.system.phi
+        return of_forcing(event.guard, kept, self.system.omega, theta)
 
     def advanced(self, state: HybridState, time: Time, space: Space) -> HybridState:
         """The state after a time within the segment."""
