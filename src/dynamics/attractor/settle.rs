@@ -103,8 +103,8 @@ impl AttractorSearch<'_> {
         Spectrum::within(self.map.model(), from, periods, horizon(&from.instant, periods))
     }
 
-    /// The stable orbit that a motion reaches while its exponents are taken: chaos may end then, and
-    /// what lay on the way would be taken for an attractor of no kind.
+    /// The stable orbit that a motion reaches while its exponents are taken. Chaos may end then,
+    /// and what lies on the way would be taken for an attractor of no kind.
     fn late_orbit(&self, from: Entry) -> Option<Settled> {
         let mut settled = from;
         for _ in 0..LATE_LOOKS {
