@@ -1,7 +1,8 @@
 //! Attractors and basins: the paper's cases, and what must hold of any labelling.
 
 use percuss::dynamics::attractor::{
-    Attractor, AttractorCatalog, AttractorKind, Basins, Grid, Label, Window,
+    Attractor, AttractorCatalog, AttractorKind, Basins, Grid, Label, SearchLimits, UnresolvedStart,
+    Window,
 };
 use percuss::dynamics::lyapunov::Spectrum;
 use percuss::dynamics::section::Section;
@@ -176,4 +177,35 @@ fn what_cannot_be_told_is_unresolved() {
     );
     let unresolved = basins.fraction(Label::Unresolved);
     assert!(unresolved > 0.01 && unresolved < 0.1, "{unresolved}");
+}
+
+/// Chaos of some 30,000 periods, and then an orbit of period 240 that passes so near a graze that
+/// its traps are 1e-8 wide. It is found; below its period its starts are described.
+#[test]
+fn an_orbit_of_a_long_period_after_long_chaos() {
+    let parameters =
+        Parameters { a: 0.42, b: 0.18, xi: 0.08, g: 0.05, omega: 0.74, ..Parameters::default() };
+    let map = map_at(parameters, 0);
+    let window = Window { p: [-1.0, 1.0], y: [-1.0, 1.0] };
+    let grid = Grid { window, columns: 3, rows: 2, q: 0.0 };
+    let basins = Basins::of(&map, &grid, 200, &|_| {});
+    assert_eq!(kinds(&basins), [(AttractorKind::Periodic, Some(240))]);
+    assert_eq!(basins.fraction(Label::Unresolved), 0.0);
+    assert!(basins.unresolved_examples(&map, 200).is_empty());
+    let limits = SearchLimits { transient: 200, max_period: 239 };
+    let short = Basins::of(&map, &grid, limits, &|_| {});
+    assert_eq!(short.fraction(Label::Unresolved), 1.0);
+    let examples = short.unresolved_examples(&map, limits);
+    assert_eq!(examples.len(), 3);
+    for (example, start) in examples.iter().zip([0, 2, 5]) {
+        assert_eq!((example.point, example.recurrence), (grid.starts()[start], None));
+    }
+    // Some are in chaos still after 3,000 periods; after 300,000 all are on the orbit.
+    assert!(examples.iter().any(|it| it.lyapunov_per_period > 0.01), "{examples:?}");
+    let late = SearchLimits { transient: 20_000, max_period: 240 };
+    let settled = short.unresolved_examples(&map, late);
+    let on_orbit = |it: &UnresolvedStart| {
+        it.recurrence == Some(240) && (it.lyapunov_per_period + 0.004_213).abs() < 0.001
+    };
+    assert!(settled.iter().all(on_orbit), "{settled:?}");
 }

@@ -1,6 +1,7 @@
 //! Diagrams and sections against the runs they are made of.
 
 use percuss::dynamics::diagram::{Diagram, Follow};
+use percuss::dynamics::lyapunov::Spectrum;
 use percuss::dynamics::section::section;
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::{Model, Parameter, Parameters, Start};
@@ -75,6 +76,93 @@ fn a_carried_diagram_stays_on_its_attractor() {
     assert!(carried.iter().all(|step| repeats_after_four(&step.points)));
     let reset = plan(1.5, 1.42, Follow::Reset, start).steps(|| {}).unwrap();
     assert!(reset.iter().any(|step| !repeats_after_four(&step.points)));
+}
+
+/// The motion leaves for good below b = 0: those values are left out, and no other starts from
+/// where they went. So every value that stays is as near to the slider as one of its own start.
+#[test]
+fn a_value_that_escapes_is_left_out_and_not_carried_on() {
+    let plan = |from, to, follow| Diagram {
+        parameters: Parameters { a: 0.42, xi: 0.08, omega: 0.9, g: 0.05, ..Parameters::default() },
+        start: Start::default(),
+        parameter: Parameter::B,
+        from,
+        to,
+        steps: 400,
+        transient: 300,
+        periods: 60,
+        follow,
+    };
+    for (from, to) in [(-0.05, 0.5), (0.5, -0.05)] {
+        for follow in [Follow::Carry, Follow::Reset] {
+            let steps = plan(from, to, follow).steps(|| {}).unwrap();
+            assert_eq!(steps.len(), 400);
+            for step in &steps {
+                assert_eq!(step.escapes, step.value < 0.0, "{}", step.value);
+                assert_eq!(step.points.is_empty(), step.escapes);
+                assert_eq!(step.drift_per_period.is_nan(), step.escapes);
+            }
+            let far = steps.iter().flat_map(|step| &step.points).map(|it| it[0].abs());
+            assert!(far.fold(0.0, f64::max) < 600.0);
+        }
+    }
+    // Above b = 1 the slider never stops: its speed grows, its state does not.
+    let fast = plan(0.9, 1.1, Follow::Carry).steps(|| {}).unwrap();
+    assert!(!fast[0].escapes && fast[399].escapes && fast[399].points.is_empty());
+}
+
+/// A value's start is the last strobe of the last value that stayed, wherever that was.
+#[test]
+fn what_follows_an_escape_starts_from_the_last_that_stayed() {
+    let plan = |from, to, steps, start| Diagram {
+        parameters: Parameters { xi: 0.1, ..Parameters::default() },
+        start,
+        parameter: Parameter::B,
+        from,
+        to,
+        steps,
+        transient: 3,
+        periods: 2,
+        follow: Follow::Carry,
+    };
+    // b = 0.1, -0.05, -0.2: only the first stays.
+    let there = plan(0.1, -0.2, 3, Start::default()).steps(|| {}).unwrap();
+    assert_eq!(there.iter().map(|it| it.escapes).collect::<Vec<_>>(), [false, true, true]);
+    // b = -0.2, -0.05, 0.1: the last starts from the start given.
+    let back = plan(-0.2, 0.1, 3, Start::default()).steps(|| {}).unwrap();
+    let alone = plan(0.1, 0.1, 1, Start::default()).steps(|| {}).unwrap();
+    assert_eq!(back[2].points, alone[0].points);
+    assert_eq!(back[2].points, there[0].points);
+}
+
+/// The error of a diagram's mean drift is that of [`Spectrum`] over the same strobes.
+#[test]
+fn drifts_have_the_errors_of_their_scatter() {
+    // An orbit of period 2, in batches of odd lengths.
+    let parameters = Parameters { omega: 0.1, ..Parameters::default() };
+    let plan = Diagram {
+        parameters,
+        start: Start::default(),
+        parameter: Parameter::B,
+        from: 0.1,
+        to: 0.1,
+        steps: 1,
+        transient: 200,
+        periods: 100,
+        follow: Follow::Reset,
+    };
+    let step = plan.steps(|| {}).unwrap().remove(0);
+    let model = Model::new(parameters).unwrap();
+    let spectrum = Spectrum::of(&model, model.start(&plan.start).unwrap(), 200, 100);
+    let pairs = [
+        (step.drift_per_period, spectrum.drift_per_period),
+        (step.drift_standard_error, spectrum.drift_standard_error),
+    ];
+    for (found, expected) in pairs {
+        assert!(expected > 0.1 && (found - expected).abs() < 1e-10, "{found} {expected}");
+    }
+    let single = Diagram { periods: 1, ..plan }.steps(|| {}).unwrap().remove(0);
+    assert!(single.drift_standard_error.is_nan());
 }
 
 fn repeats_after_four(points: &[[f64; 3]]) -> bool {

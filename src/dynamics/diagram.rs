@@ -3,7 +3,12 @@
 //! Fig. 10a follows an attractor by starting each value from where the last one ended
 //! ([`Follow::Carry`]); Fig. 10b starts every value from the same state ([`Follow::Reset`]) and
 //! jumps wherever that state changes basins.
+//!
+//! A motion escapes whose state passes [`FARTHEST`] at a strobe, or is proved to pass it sooner or
+//! later: the mass never returns, or the slider never stops. Its strobes are no part of a diagram,
+//! and no value starts from where it went.
 
+use super::batches::Batches;
 use super::ensemble::{self, Member};
 use super::section::{KeptStrobes, Section};
 use super::strobe::{StrobeMap, StrobePoint};
@@ -12,13 +17,15 @@ use crate::model::Model;
 use crate::model::entry::Entry;
 use crate::model::instant::Instant;
 use crate::model::start::Start;
+use crate::numeric::two_word::TwoWord;
 use crate::parameters::{Parameter, Parameters};
 use crate::run::exit::Endless;
 
 /// How each value is started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Follow {
-    /// Each value starts from the last strobe of the value before.
+    /// Each value starts from the last strobe of the value before that did not escape; from the
+    /// start given where there is none.
     Carry,
     /// Each value starts from the start given.
     Reset,
@@ -52,16 +59,23 @@ pub struct Diagram {
 pub struct DiagramStep {
     /// The parameter's value.
     pub value: f64,
-    /// Strobes at the start's `tau` modulo the forcing period.
+    /// Strobes at the start's `tau` modulo the forcing period; none where the motion escapes.
     pub points: Vec<StrobePoint>,
-    /// Mean drift per forcing period over these strobes.
+    /// Mean drift per forcing period over these strobes; NaN where the motion escapes.
     pub drift_per_period: f64,
+    /// The standard error of the mean drift, from the scatter of [`Batches`].
+    pub drift_standard_error: f64,
+    /// Whether the motion escapes.
+    pub escapes: bool,
     /// Why the motion ends in a phase that never ends, where it does.
     pub endless: Option<Endless>,
     /// Whether rounding hides how a phase ends before the last strobe; the points are those before
     /// it.
     pub undecidable: bool,
 }
+
+/// A state farther away than this in p, y or q has escaped: starts are accepted up to there.
+pub const FARTHEST: f64 = 1e9;
 
 /// Values that are looked at in one go: their models and strobes are held in memory meanwhile.
 const BLOCK: usize = 1024;
@@ -99,14 +113,14 @@ impl Diagram {
                     let model = self.model(step)?;
                     let entry = match last {
                         None => model.start(&self.start)?,
-                        // A motion that has left for good leaves the range of starts too.
+                        // p = q + g with a larger g may leave the range of starts.
                         Some(point) => StrobeMap::new(model, self.instant(&model))
                             .entry(point)
                             .or_else(|_| model.start(&self.start))?,
                     };
                     let kept = ensemble::follow_alone(self.motion(&model, entry, &seen));
                     let next = self.step(&model, step, &kept.strobes);
-                    last = next.points.last().copied();
+                    last = next.points.last().copied().or(last);
                     done.push(next);
                 }
                 Ok(done)
@@ -157,13 +171,26 @@ impl Diagram {
 
     fn step(&self, model: &Model, step: u32, strobes: &[Entry]) -> DiagramStep {
         let shown = self.periods as usize;
-        let drift_per_period = match strobes {
-            [first, .., last] if strobes.len() > shown => (last.v() - first.v()) / shown as f64,
-            _ => f64::NAN,
-        };
-        let points = strobes.iter().take(shown).map(Entry::point).collect();
         let endless = strobes.last().and_then(|last| Section::endless_at(model, last));
-        let undecidable = strobes.len() <= shown;
-        DiagramStep { value: self.value(step), points, drift_per_period, endless, undecidable }
+        let leaves = matches!(endless, Some(Endless::NeverReturns | Endless::NeverStops));
+        let escapes = leaves || strobes.iter().any(is_far);
+        let drifts: Vec<TwoWord> = strobes.iter().map(|strobe| strobe.drift).collect();
+        let [drift_per_period, drift_standard_error] =
+            if escapes { [f64::NAN; 2] } else { Batches::of(shown as u64).drift(&drifts) };
+        let points = strobes.iter().take(if escapes { 0 } else { shown }).map(Entry::point);
+        DiagramStep {
+            value: self.value(step),
+            points: points.collect(),
+            drift_per_period,
+            drift_standard_error,
+            escapes,
+            endless,
+            undecidable: strobes.len() <= shown,
+        }
     }
+}
+
+/// Whether a state has gone farther than any start.
+fn is_far(strobe: &Entry) -> bool {
+    strobe.point().iter().any(|x| x.is_nan() || x.abs() > FARTHEST)
 }

@@ -37,17 +37,16 @@
 //! difference of vectors it would be lost in rounding wherever a phase on the slider contracts by
 //! more than 1e16, which one progression does where xi is small.
 
+use super::batches::{Batches, Stationarity, standard_error};
 use super::section::Section;
 use super::tangent::{TangentVector, contact_rates};
 use crate::model::Model;
 use crate::model::entry::{Entry, Motion};
 use crate::model::instant::Instant;
+use crate::numeric::two_word::TwoWord;
 use crate::phase::Phase;
 use crate::run::exit::{Endless, Exit};
 use crate::run::trajectory::Segment;
-
-/// Batches for the standard error.
-pub const BATCHES: u64 = 32;
 
 /// Lyapunov exponents of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,15 +54,20 @@ pub struct Spectrum {
     /// The exponents per forcing period, largest first; minus infinity where an impact annihilates
     /// a direction.
     pub exponents_per_period: [f64; 3],
-    /// The standard errors of the exponents, from the scatter of the means over [`BATCHES`] batches
-    /// of equal length: honest as soon as a batch is longer than the motion remembers. NaN of what
-    /// is not finite, and where there is one period only.
+    /// The standard errors of the exponents, from the scatter of the means over [`Batches`] of
+    /// equal length: honest as soon as a batch is longer than the motion remembers. NaN of what is
+    /// not finite, and where there is one period only.
     pub standard_error: [f64; 3],
+    /// Whether the exponents and the drift of the batches scatter about one value each; a phase
+    /// that never ends has its own exponents, which are known.
+    pub stationarity: Stationarity,
     /// Mean growth of the area per forcing period, from durations and impacts alone: the sum of the
     /// first two exponents.
     pub contraction_per_period: f64,
     /// Mean drift per forcing period.
     pub drift_per_period: f64,
+    /// The standard error of the mean drift, from the same batches.
+    pub drift_standard_error: f64,
     /// Why the motion ends in a phase that never ends, where it does.
     pub endless: Option<Endless>,
     /// Whether rounding hides how a phase ends before the last period does; nothing else is known
@@ -111,7 +115,20 @@ impl Spectrum {
 struct BatchMark {
     length: f64,
     size: f64,
-    drift: f64,
+    drift: TwoWord,
+}
+
+impl BatchMark {
+    /// The growth of an error, and that of the area less it, up to a later mark.
+    fn growth(&self, later: &Self) -> [f64; 2] {
+        let length = later.length - self.length;
+        [length, later.size - self.size - length]
+    }
+
+    /// The drift gained up to a later mark.
+    fn drift(&self, later: &Self) -> f64 {
+        later.drift.minus(self.drift).value()
+    }
 }
 
 /// A run that is followed segment by segment.
@@ -120,7 +137,7 @@ struct ExponentRun {
     two_xi: f64,
     transient: u64,
     periods: u64,
-    batches: u64,
+    batches: Batches,
     start: Instant,
     next: Instant,
     marks: Vec<BatchMark>,
@@ -139,7 +156,7 @@ impl ExponentRun {
             two_xi: model.constants().two_xi,
             transient,
             periods,
-            batches: periods.min(BATCHES),
+            batches: Batches::of(periods),
             start: from.instant,
             next: from.instant.after_periods(transient, 1),
             marks: Vec::new(),
@@ -166,10 +183,10 @@ impl ExponentRun {
 
     fn pass(&mut self, segment: &Segment) {
         let mut done = 0.0;
-        while self.marks.len() as u64 <= self.batches && !segment.ends_by(&self.next) {
+        while self.marks.len() as u64 <= self.batches.count() && !segment.ends_by(&self.next) {
             let here = segment.elapsed_at(&self.next).max(done);
             self.go(segment, done, here);
-            self.mark(segment, here);
+            self.mark(segment);
             done = here;
         }
         if let Exit::Switch(next) = segment.exit() {
@@ -201,10 +218,11 @@ impl ExponentRun {
         }
     }
 
-    fn mark(&mut self, segment: &Segment, here: f64) {
+    fn mark(&mut self, segment: &Segment) {
         let TangentVector { length, size, .. } = self.tangent;
-        self.marks.push(BatchMark { length, size, drift: segment.at(here).v });
-        let passed = batch_end(self.marks.len() as u64, self.periods, self.batches);
+        let drift = segment.entry_at(&self.next).drift;
+        self.marks.push(BatchMark { length, size, drift });
+        let passed = self.batches.end(self.marks.len() as u64);
         self.next = self.start.after_periods(self.transient + passed, 1);
     }
 
@@ -212,48 +230,37 @@ impl ExponentRun {
         let periods = self.periods as f64;
         // A motion that is decided to its end has a mark at either end of every batch.
         let [first, .., end] = self.marks.as_slice() else { return Spectrum::UNKNOWN };
-        if self.marks.len() as u64 <= self.batches {
+        if self.marks.len() as u64 <= self.batches.count() {
             return Spectrum::UNKNOWN;
         }
-        let drift_per_period = (end.drift - first.drift) / periods;
+        let drift = self.batches.means(&self.marks, BatchMark::drift);
         let third =
             if self.touched { f64::NEG_INFINITY } else { -model.period() * model.constants().rate };
-        if let Some(endless) = self.endless(model) {
-            return endless_spectrum(model, endless, third, drift_per_period);
-        }
-        let growth = |a: &BatchMark, b: &BatchMark| {
-            let length = b.length - a.length;
-            [length, b.size - a.size - length]
-        };
-        let per_batch: Vec<[f64; 2]> = self
-            .marks
-            .windows(2)
-            .zip(1..)
-            .map(|(pair, k)| {
-                let length = self.batch(k) - self.batch(k - 1);
-                growth(&pair[0], &pair[1]).map(|sum| sum / length as f64)
-            })
-            .collect();
-        let mut finite: Vec<(f64, f64)> = growth(first, end)
-            .into_iter()
-            .enumerate()
-            .map(|(i, sum)| (sum / periods, standard_error(per_batch.iter().map(|it| it[i]))))
-            .collect();
-        let error = if third.is_finite() { 0.0 } else { f64::NAN };
-        finite.push((third, error));
-        finite.sort_by(|a, b| b.0.total_cmp(&a.0));
-        Spectrum {
-            exponents_per_period: [finite[0].0, finite[1].0, finite[2].0],
-            standard_error: [finite[0].1, finite[1].1, finite[2].1],
-            contraction_per_period: self.contraction / periods,
-            drift_per_period,
-            endless: None,
+        let unknown = Spectrum {
+            drift_per_period: first.drift(end) / periods,
+            drift_standard_error: standard_error(&drift),
             undecidable: false,
+            ..Spectrum::UNKNOWN
+        };
+        if let Some(endless) = self.endless(model) {
+            return unknown.of_endless(model, endless, third);
         }
-    }
-
-    fn batch(&self, k: u64) -> u64 {
-        batch_end(k, self.periods, self.batches)
+        let growths =
+            [0, 1].map(|i| self.batches.means(&self.marks, |a, b| BatchMark::growth(a, b)[i]));
+        let error = if third.is_finite() { 0.0 } else { f64::NAN };
+        let mut exponents = [(f64::NAN, f64::NAN), (f64::NAN, f64::NAN), (third, error)];
+        for ((sum, means), exponent) in first.growth(end).iter().zip(&growths).zip(&mut exponents) {
+            *exponent = (sum / periods, standard_error(means));
+        }
+        exponents.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let [length, rest] = growths;
+        Spectrum {
+            exponents_per_period: exponents.map(|it| it.0),
+            standard_error: exponents.map(|it| it.1),
+            stationarity: self.batches.stationarity(&[length, rest, drift]),
+            contraction_per_period: self.contraction / periods,
+            ..unknown
+        }
     }
 
     /// Why the last phase has no end, if it has none.
@@ -266,11 +273,6 @@ impl ExponentRun {
         };
         Section::along(solved, entry.instant).endless()
     }
-}
-
-/// The period, counted from the transient's end, at which a batch ends.
-fn batch_end(k: u64, periods: u64, batches: u64) -> u64 {
-    (u128::from(k) * u128::from(periods) / u128::from(batches)) as u64
 }
 
 /// The factor by which the impact that ends a flight changes an area that was dp ^ dy at
@@ -288,42 +290,36 @@ fn impact_factor(segment: &Segment, next: Phase, two_xi: f64) -> f64 {
     }
 }
 
-/// The standard error of the mean of batch means; NaN for a single batch.
-fn standard_error(batches: impl Iterator<Item = f64> + Clone) -> f64 {
-    let count = batches.clone().count() as f64;
-    let mean = batches.clone().sum::<f64>() / count;
-    let scatter: f64 = batches.map(|it| (it - mean).powi(2)).sum();
-    (scatter / (count * (count - 1.0))).sqrt()
-}
-
-/// The exponents of a phase that never ends.
-fn endless_spectrum(model: &Model, endless: Endless, third: f64, drift: f64) -> Spectrum {
-    let period = model.period();
-    let slider_returns = -period * model.constants().rate;
-    let [fast, slow] = contact_rates(model.parameters().xi).map(|rate| -period * rate);
-    let (exponents, contraction) = match endless {
-        Endless::NeverReturns => ([0.0, 0.0, third], 0.0),
-        Endless::NeverStops => ([0.0, slider_returns, f64::NEG_INFINITY], slider_returns),
-        Endless::RestsForEver => ([slow, fast, f64::NEG_INFINITY], slow + fast),
-    };
-    Spectrum {
-        exponents_per_period: exponents,
-        standard_error: exponents.map(|it| if it.is_finite() { 0.0 } else { f64::NAN }),
-        contraction_per_period: contraction,
-        drift_per_period: drift,
-        endless: Some(endless),
-        undecidable: false,
-    }
-}
-
 impl Spectrum {
     /// The spectrum of a motion that is not decided to its end.
     const UNKNOWN: Self = Self {
         exponents_per_period: [f64::NAN; 3],
         standard_error: [f64::NAN; 3],
+        stationarity: Stationarity::Unknown,
         contraction_per_period: f64::NAN,
         drift_per_period: f64::NAN,
+        drift_standard_error: f64::NAN,
         endless: None,
         undecidable: true,
     };
+
+    /// This spectrum with the exponents of a phase that never ends.
+    fn of_endless(self, model: &Model, endless: Endless, third: f64) -> Self {
+        let period = model.period();
+        let slider_returns = -period * model.constants().rate;
+        let [fast, slow] = contact_rates(model.parameters().xi).map(|rate| -period * rate);
+        let (exponents, contraction) = match endless {
+            Endless::NeverReturns => ([0.0, 0.0, third], 0.0),
+            Endless::NeverStops => ([0.0, slider_returns, f64::NEG_INFINITY], slider_returns),
+            Endless::RestsForEver => ([slow, fast, f64::NEG_INFINITY], slow + fast),
+        };
+        Self {
+            exponents_per_period: exponents,
+            standard_error: exponents.map(|it| if it.is_finite() { 0.0 } else { f64::NAN }),
+            stationarity: Stationarity::Stationary,
+            contraction_per_period: contraction,
+            endless: Some(endless),
+            ..self
+        }
+    }
 }

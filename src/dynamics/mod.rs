@@ -1,6 +1,7 @@
 //! The nonlinear dynamics of Section 5, built on the exact strobe map.
 
 pub mod attractor;
+pub mod batches;
 pub mod continuation;
 pub mod diagram;
 pub mod ensemble;

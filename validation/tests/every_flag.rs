@@ -110,6 +110,7 @@ const ROWS: &[Row] = &[
     (&["bifurcation", "continue"], "--from", NUMBERS, "accepted"),
     (&["bifurcation", "continue"], "--to", NUMBERS, "accepted"),
     (&["orbit", "continue"], "--period", INTEGERS, "1 to 10000"),
+    (&["attractors", "basins"], "--max-period", INTEGERS, "1 to 10000"),
     (&[], "--format", WORDS, "possible values"),
     (&["validate"], "--suite", WORDS, "quick, full"),
     (&["validate"], "--tolerance", NUMBERS, "accepted is a tolerance"),

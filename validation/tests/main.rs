@@ -29,6 +29,7 @@ mod horizon;
 #[cfg(unix)]
 mod interrupted;
 mod junit;
+mod motions_told;
 mod orbits;
 mod own_cases;
 mod power;
@@ -39,6 +40,7 @@ mod reproduce;
 mod restart;
 mod restart_systems;
 mod rig;
+mod rounding_promise;
 mod score;
 mod score_your_integrator;
 mod scoreboard;

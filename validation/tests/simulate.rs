@@ -131,7 +131,7 @@ fn endless_regimes_end_at_the_horizon_and_say_so() {
     let cases = [
         ("--b -0.02 --omega 1.3 --p -0.05 --y 0.4", "never returns"),
         ("--b 1.1 --xi 0.1 --omega 0.8 --p -0.3", "never stops"),
-        ("--a 0.05 --b 0.5 --xi 0.1 --omega 0.7", "rests on the slider for ever"),
+        ("--a 0.05 --b 0.5 --xi 0.1 --omega 0.7", "stays on the slider for ever"),
     ];
     for (flags, wanted) in cases {
         for length in
@@ -154,8 +154,8 @@ fn endless_regimes_end_at_the_horizon_and_say_so() {
 #[test]
 fn contacts_that_die_out_are_decided() {
     let cases = [
-        ("--b 1e-40 --xi 1.2 --p=-0.1 --y 0.1 --q=-0.12", "rests on the slider for ever"),
-        ("--b 1e-17 --xi 1.459 --p=-3.069 --y 1 --q=-3.05", "rests on the slider for ever"),
+        ("--b 1e-40 --xi 1.2 --p=-0.1 --y 0.1 --q=-0.12", "stays on the slider for ever"),
+        ("--b 1e-17 --xi 1.459 --p=-3.069 --y 1 --q=-3.05", "stays on the slider for ever"),
         ("--b=-1e-40 --xi 1.2 --p=-0.1 --y 0.1 --q=-0.12", "after tau = 164.87"),
     ];
     for (flags, wanted) in cases {

@@ -7,6 +7,7 @@ use super::Attractor;
 use super::catalog::AttractorCatalog;
 use super::grid::{Basins, Grid};
 use super::known::{KnownAttractor, Label};
+use super::limits::SearchLimits;
 use super::settle::LONG_RUN;
 use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use std::ops::Range;
@@ -67,8 +68,8 @@ impl Grid {
 impl BlockLabeller {
     /// Looks for attractors from a coarse lattice of the grid's window, as [`Basins::of`] does.
     #[must_use]
-    pub fn new(map: &StrobeMap, grid: &Grid, transient: u64) -> Self {
-        let mut shared = AttractorCatalog::new(*map, transient);
+    pub fn new(map: &StrobeMap, grid: &Grid, limits: impl Into<SearchLimits>) -> Self {
+        let mut shared = AttractorCatalog::new(*map, limits);
         let lattice = Grid { columns: LATTICE, rows: LATTICE, ..*grid };
         shared.label_all(&lattice.starts(), &|_| {});
         Self { grid: *grid, shared }
@@ -114,11 +115,16 @@ impl BlockLabeller {
 impl Basins {
     /// Labels every start of a grid.
     ///
-    /// `transient` is how many forcing periods a start is followed at first (see
-    /// [`AttractorCatalog::new`]); `seen` is told of how many starts more the label is known.
+    /// `limits` say how many forcing periods a start is followed at first (a number alone is that),
+    /// and how long orbits may be; `seen` is told of how many starts more the label is known.
     #[must_use]
-    pub fn of(map: &StrobeMap, grid: &Grid, transient: u64, seen: &(dyn Fn(u64) + Sync)) -> Self {
-        let labeller = BlockLabeller::new(map, grid, transient);
+    pub fn of(
+        map: &StrobeMap,
+        grid: &Grid,
+        limits: impl Into<SearchLimits>,
+        seen: &(dyn Fn(u64) + Sync),
+    ) -> Self {
+        let labeller = BlockLabeller::new(map, grid, limits);
         Self::joined(*grid, (0..grid.blocks()).map(|block| labeller.label(block, seen)))
     }
 
@@ -172,12 +178,14 @@ mod tests {
             orbit: None,
             points: vec![[p, 0.0, 0.0]],
             drift_per_period: 0.0,
+            drift_standard_error: 0.0,
             lyapunov_per_period: -1.0,
             lyapunov_error: 0.0,
         };
         KnownAttractor {
             attractor,
             evidence: Evidence::Traps(vec![Trap::ball([p, 0.0, 0.0], 1e-3)]),
+            transient: None,
         }
     }
 

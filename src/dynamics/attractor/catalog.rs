@@ -1,6 +1,7 @@
 //! The attractors that are known so far, and where starts lead.
 
 use super::known::{KnownAttractor, Label};
+use super::limits::SearchLimits;
 use super::recognition::Recognition;
 use super::settle::{AttractorSearch, Settled};
 use super::{Attractor, horizon};
@@ -13,7 +14,7 @@ use crate::model::entry::Entry;
 #[derive(Clone, Debug)]
 pub struct AttractorCatalog {
     map: StrobeMap,
-    transient: u64,
+    limits: SearchLimits,
     known: Vec<KnownAttractor>,
 }
 
@@ -22,14 +23,13 @@ const BLOCK: usize = 1 << 14;
 /// Most starts that are settled between two looks at what has been found.
 const LARGEST_BATCH: usize = 64;
 /// How often a transient is doubled before a start is given up.
-const EXTENSIONS: u32 = 3;
+pub(super) const EXTENSIONS: u32 = 3;
 
 impl AttractorCatalog {
-    /// A catalog that has no attractor yet. A start is followed for `transient` forcing periods (at
-    /// least one), and for 2, 4 and 8 times that more where it is not recognised by then.
+    /// A catalog that has no attractor yet.
     #[must_use]
-    pub fn new(map: StrobeMap, transient: u64) -> Self {
-        Self { map, transient: transient.max(1), known: Vec::new() }
+    pub fn new(map: StrobeMap, limits: impl Into<SearchLimits>) -> Self {
+        Self { map, limits: limits.into().clamped(), known: Vec::new() }
     }
 
     /// The map whose attractors they are.
@@ -53,7 +53,7 @@ impl AttractorCatalog {
         let Ok(mut entry) = self.map.entry(start) else { return 0 };
         let mut events = 0;
         for extension in 0..=EXTENSIONS {
-            let recognition = self.recognition(entry, self.transient << extension);
+            let recognition = self.recognition(entry, self.limits.transient << extension);
             events += recognition.events();
             match recognition.outcome() {
                 Ok(_) => break,
@@ -67,7 +67,7 @@ impl AttractorCatalog {
     #[must_use]
     pub fn label(&self, start: StrobePoint) -> Label {
         let Ok(entry) = self.map.entry(start) else { return Label::Unresolved };
-        self.extended(entry, Result::ok).unwrap_or(Label::Unresolved)
+        self.extended(entry, |recognised, _| recognised.ok()).unwrap_or(Label::Unresolved)
     }
 
     /// The labels of many starts; attractors not met before are added. `seen` is told how many
@@ -113,27 +113,28 @@ impl AttractorCatalog {
 
     /// The attractor on which a motion settles.
     fn settled(&self, from: Entry) -> Settled {
-        let search = AttractorSearch { map: &self.map, known: &self.known };
-        let settled = self.extended(from, |recognised| match recognised {
+        let search = AttractorSearch { map: &self.map, known: &self.known, limits: self.limits };
+        let settled = self.extended(from, |recognised, extension| match recognised {
             Ok(label) => Some(Settled::Label(label)),
-            Err(last) => search.identified(last),
+            Err(last) => search.identified(last, extension == EXTENSIONS),
         });
         settled.unwrap_or(Settled::Label(Label::Unresolved))
     }
 
     /// Follows a motion for its transient, and for the extensions of that as long as nothing is
-    /// `made` of the label that it has by then, or of where it is without one.
+    /// `made` of the label that it has by then, or of where it is without one, and of the number of
+    /// the extension.
     fn extended<T>(
         &self,
         mut from: Entry,
-        made: impl Fn(Result<Label, Entry>) -> Option<T>,
+        made: impl Fn(Result<Label, Entry>, u32) -> Option<T>,
     ) -> Option<T> {
         (0..=EXTENSIONS).find_map(|extension| {
-            let recognised = self.recognised(from, self.transient << extension);
+            let recognised = self.recognised(from, self.limits.transient << extension);
             if let Err(last) = recognised {
                 from = last;
             }
-            made(recognised)
+            made(recognised, extension)
         })
     }
 
@@ -164,8 +165,8 @@ impl AttractorCatalog {
         }
         let recognitions = ensemble::follow(motions.len(), |number| {
             let from = motions[number].1;
-            let watcher = Recognition::new(&self.known, from, self.transient, seen);
-            self.motion(from, self.transient, watcher)
+            let watcher = Recognition::new(&self.known, from, self.limits.transient, seen);
+            self.motion(from, self.limits.transient, watcher)
         });
         let mut open = Vec::new();
         for ((place, _), recognition) in motions.into_iter().zip(recognitions) {

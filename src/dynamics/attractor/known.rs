@@ -3,6 +3,8 @@
 use super::Attractor;
 use super::cells::CellSet;
 use super::trap::Trap;
+use crate::dynamics::orbit::Orbit;
+use crate::dynamics::strobe::StrobePoint;
 
 /// The place to which a start leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,6 +37,9 @@ impl Label {
 pub(super) struct KnownAttractor {
     pub attractor: Attractor,
     pub evidence: Evidence,
+    /// What the motion that led to an orbit had visited before, where that took long: chaos there
+    /// ends, and is no attractor.
+    pub transient: Option<CellSet>,
 }
 
 /// The evidence by which a motion is recognised.
@@ -47,9 +52,6 @@ pub(super) enum Evidence {
 
 /// Two runs are on one attractor when this share of one lies in the cells of the other.
 const SAME: f64 = 0.5;
-/// A motion is at rest on an orbit when the square of its distance is so small a share of the
-/// trap's radius: it need not come closer still.
-pub(super) const AT_REST: f64 = 1e-12;
 
 impl KnownAttractor {
     /// Whether both are the same attractor.
@@ -57,9 +59,7 @@ impl KnownAttractor {
         match (&self.evidence, &other.evidence) {
             (Evidence::Traps(traps), Evidence::Traps(_)) => {
                 self.attractor.period() == other.attractor.period()
-                    && traps.iter().any(|trap| {
-                        other.attractor.points.iter().any(|point| trap.size(point) < AT_REST)
-                    })
+                    && traps.iter().any(|trap| trap.is_at_rest_at(&other.attractor.points))
             }
             (Evidence::Cells(cells), Evidence::Cells(others)) => {
                 cells.share(&other.attractor.points) > SAME
@@ -67,6 +67,18 @@ impl KnownAttractor {
             }
             _ => false,
         }
+    }
+
+    /// Whether a long run has gone where the motion that led here was before it settled.
+    pub fn is_led_to_by(&self, run: &[StrobePoint]) -> bool {
+        self.transient.as_ref().is_some_and(|cells| cells.share(run) > SAME)
+    }
+
+    /// Whether the attractor is this orbit.
+    pub fn is_orbit(&self, orbit: &Orbit) -> bool {
+        let Evidence::Traps(traps) = &self.evidence else { return false };
+        self.attractor.period() == Some(orbit.period())
+            && traps.iter().any(|trap| trap.is_at_rest_at(&orbit.points))
     }
 
     /// The orbit's period in forcing periods; one where the attractor is no orbit.

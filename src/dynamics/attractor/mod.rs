@@ -9,8 +9,9 @@
 //! - **Quasi-periodic**: neither, with a largest exponent and a contraction below 1e-3.
 //! - **Escaping**: a phase that provably never ends: the mass never returns or the slider never
 //!   stops.
-//! - Whatever is none of these after the last extension of its transient stays **unresolved**:
-//!   above all an orbit next to a bifurcation, which attracts too slowly for a trap to be found.
+//! - Whatever is none of these after the last extension of its transient stays **unresolved**, and
+//!   is described ([`UnresolvedStart`]): above all an orbit next to a bifurcation, which attracts
+//!   too slowly for a trap to be found, and one of a longer period than is looked for.
 //!
 //! A chaotic set of which a motion leaves after some 10^5 periods on average cannot be told from an
 //! attractor by any run of that length.
@@ -21,15 +22,19 @@ mod cells;
 mod fractal;
 mod grid;
 mod known;
+mod limits;
 mod recognition;
 mod settle;
 mod trap;
+mod unresolved;
 
 pub use block::{BlockLabeller, LabelledBlock};
 pub use catalog::AttractorCatalog;
 pub use fractal::{Entropy, Scale, Uncertainty, entropy, uncertainty, uncertainty_of};
 pub use grid::{Basins, Grid, Window};
 pub use known::Label;
+pub use limits::{MAX_PERIOD, SearchLimits};
+pub use unresolved::UnresolvedStart;
 
 use super::lyapunov::Spectrum;
 use super::orbit::Orbit;
@@ -103,6 +108,8 @@ pub struct Attractor {
     pub points: Vec<StrobePoint>,
     /// Mean drift per forcing period.
     pub drift_per_period: f64,
+    /// The standard error of the mean drift; zero for an orbit.
+    pub drift_standard_error: f64,
     /// The largest exponent per forcing period; of an orbit from its multipliers.
     pub lyapunov_per_period: f64,
     /// The standard error of the exponent; zero for an orbit.
@@ -134,6 +141,7 @@ impl Attractor {
             kind: AttractorKind::Periodic,
             points: orbit.points.clone(),
             drift_per_period: orbit.drift_per_period,
+            drift_standard_error: 0.0,
             lyapunov_per_period: libm::log(libm::hypot(re, im)) / f64::from(orbit.period()),
             lyapunov_error: 0.0,
             orbit: Some(orbit),
@@ -146,6 +154,7 @@ impl Attractor {
             orbit: None,
             points: run[run.len().saturating_sub(POINTS)..].to_vec(),
             drift_per_period: spectrum.drift_per_period,
+            drift_standard_error: spectrum.drift_standard_error,
             lyapunov_per_period: spectrum.exponents_per_period[0],
             lyapunov_error: spectrum.standard_error[0],
         }

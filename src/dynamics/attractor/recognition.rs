@@ -1,7 +1,7 @@
 //! The recognition of a motion that approaches a known attractor.
 
 use super::cells::RECURRENCES;
-use super::known::{AT_REST, Evidence, KnownAttractor, Label};
+use super::known::{Evidence, KnownAttractor, Label};
 use super::trap::Trap;
 use crate::dynamics::ensemble::Watcher;
 use crate::dynamics::strobe::StrobePoint;
@@ -108,7 +108,7 @@ impl<'a> Recognizer<'a> {
             && entered.due == n
         {
             let size = entered.trap.size(point);
-            let closer = size < entered.size || size < AT_REST;
+            let closer = size < entered.size || entered.trap.is_at_rest(size);
             entered.turns += 1;
             if closer && entered.turns >= TURNS {
                 return Some(entered.known);
@@ -162,10 +162,15 @@ mod tests {
             orbit: None,
             points: vec![[0.0; 3]],
             drift_per_period: 0.0,
+            drift_standard_error: 0.0,
             lyapunov_per_period: -1.0,
             lyapunov_error: 0.0,
         };
-        KnownAttractor { attractor, evidence: Evidence::Traps(vec![Trap::ball([0.0; 3], 1.0)]) }
+        KnownAttractor {
+            attractor,
+            evidence: Evidence::Traps(vec![Trap::ball([0.0; 3], 1.0)]),
+            transient: None,
+        }
     }
 
     /// How many strobes at these distances it takes to recognise a motion.

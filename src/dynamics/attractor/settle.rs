@@ -2,6 +2,7 @@
 
 use super::cells::{CellSet, REFERENCE};
 use super::known::{Evidence, KnownAttractor, Label};
+use super::limits::SearchLimits;
 use super::recognition::{Recognizer, escapes};
 use super::trap::Trap;
 use super::{Attractor, AttractorKind, ERRORS, horizon};
@@ -11,8 +12,9 @@ use crate::dynamics::section::Section;
 use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use crate::model::entry::Entry;
 
-/// The longest period that is looked for.
-const LONGEST: usize = 128;
+/// The longest period that is looked for at once: a longer one only where a motion has nearly no
+/// other place to go, so that ordinary starts do not pay for it.
+const SHORT: u32 = 128;
 /// Strobes that repeat this closely (relative to their size) are handed to Newton's method.
 const CLOSE: f64 = 1e-3;
 /// The least number of pairs of strobes that must repeat.
@@ -25,6 +27,10 @@ const GLANCE: u64 = 512;
 const DECISION: u64 = 1 << 14;
 /// Forcing periods of all runs that decide about an attractor that is no orbit.
 pub(super) const LONG_RUN: u64 = GLANCE + REFERENCE + DECISION;
+/// How often a motion of no kind is looked at again, [`DECISION`] later each time.
+const LATE_LOOKS: u32 = 8;
+/// Strobes after which chaos that is known to end has to have ended.
+const OUTLASTING: u64 = 8 * REFERENCE;
 /// A largest exponent, and a contraction, that are no larger are taken for zero.
 const NEUTRAL: f64 = 1e-3;
 
@@ -40,18 +46,31 @@ pub(super) enum Settled {
     New(Box<KnownAttractor>),
 }
 
+impl Settled {
+    /// A new orbit with the run that led to it.
+    fn after(self, run: &[StrobePoint]) -> Self {
+        match self {
+            Self::New(new) => {
+                Self::New(Box::new(KnownAttractor { transient: Some(CellSet::of(run)), ..*new }))
+            }
+            known @ Self::Label(_) => known,
+        }
+    }
+}
+
 /// Looks for attractors of a map that are not known yet.
 pub(super) struct AttractorSearch<'a> {
     pub map: &'a StrobeMap,
     pub known: &'a [KnownAttractor],
+    pub limits: SearchLimits,
 }
 
 impl AttractorSearch<'_> {
-    /// What a motion settles on; none where that does not show so early.
-    pub fn identified(&self, from: Entry) -> Option<Settled> {
-        let strobes: Vec<Entry> =
-            self.section(from, 2 * LONGEST as u64).take(2 * LONGEST).collect();
-        if let Some(orbit) = self.orbit(&strobes) {
+    /// What a motion settles on; none where that does not show so early. The `last` look takes
+    /// orbits of long periods too.
+    pub fn identified(&self, from: Entry, last: bool) -> Option<Settled> {
+        let short = self.limits.max_period.min(SHORT);
+        if let Some(orbit) = self.orbit_from(from, short) {
             return Some(orbit);
         }
         let glance = self.spectrum(from, GLANCE);
@@ -59,7 +78,18 @@ impl AttractorSearch<'_> {
         let full = self.known.len() >= MOST;
         let contracts =
             glance.exponents_per_period[0] < -ERRORS * glance.standard_error[0].max(NEUTRAL);
-        if contracts || full { None } else { self.reference(from) }
+        match (contracts, full) {
+            (true, _) if last => self.orbit_from(from, self.limits.max_period),
+            (false, false) => self.reference(from),
+            _ => None,
+        }
+    }
+
+    /// The stable orbit, of at most so many periods, that the motion repeats from here on.
+    fn orbit_from(&self, from: Entry, longest: u32) -> Option<Settled> {
+        let count = 2 * u64::from(longest);
+        let strobes: Vec<Entry> = self.section(from, count).take(count as usize).collect();
+        self.orbit(&strobes)
     }
 
     /// The motion's strobes, of which so many are looked at.
@@ -73,24 +103,46 @@ impl AttractorSearch<'_> {
         Spectrum::within(self.map.model(), from, periods, horizon(&from.instant, periods))
     }
 
+    /// The stable orbit that a motion reaches while its exponents are taken. Chaos may end then,
+    /// and what lies on the way would be taken for an attractor of no kind.
+    fn late_orbit(&self, from: Entry) -> Option<Settled> {
+        let mut settled = from;
+        for _ in 0..LATE_LOOKS {
+            settled = self.section(settled, DECISION).nth(DECISION as usize)?;
+            let orbit = self.orbit_from(settled, self.limits.max_period);
+            if orbit.is_some() {
+                return orbit;
+            }
+        }
+        None
+    }
+
     /// The stable orbit that some strobes repeat, if the motion is seen to enter its trap.
     fn orbit(&self, strobes: &[Entry]) -> Option<Settled> {
         let points: Vec<StrobePoint> = strobes.iter().map(Entry::point).collect();
         let last = strobes.last()?;
-        let orbit = Orbit::find(self.map, last.point(), repeats(&points)?).ok()?;
+        let longest = self.limits.max_period as usize;
+        let orbit = Orbit::find(self.map, last.point(), repeats(&points, longest)?).ok()?;
         if !orbit.is_stable() {
             return None;
+        }
+        if self.known.iter().any(|known| known.is_orbit(&orbit)) {
+            let place = self.arrival(*last, self.known, TURNS * u64::from(orbit.period()))?;
+            return Some(Settled::Label(Label::Attractor(place)));
         }
         let traps = Trap::all(self.map, &orbit);
         let period = u64::from(orbit.period());
         let attractor = Attractor::periodic(self.map, orbit);
-        let new = KnownAttractor { attractor, evidence: Evidence::Traps(traps) };
-        let known = std::slice::from_ref(&new);
+        let new = KnownAttractor { attractor, evidence: Evidence::Traps(traps), transient: None };
+        self.arrival(*last, std::slice::from_ref(&new), TURNS * period)?;
+        Some(Settled::New(Box::new(new)))
+    }
+
+    /// The attractor of these that a motion is seen to approach within so many strobes.
+    fn arrival(&self, from: Entry, known: &[KnownAttractor], strobes: u64) -> Option<usize> {
         let mut recognizer = Recognizer::new(known);
-        let mut ahead = self.section(*last, TURNS * period);
-        let arrives = (0..TURNS * period)
-            .any(|n| ahead.next().is_some_and(|it| recognizer.see(n, &it.point()).is_some()));
-        arrives.then(|| Settled::New(Box::new(new)))
+        let ahead = self.section(from, strobes);
+        (0..strobes).zip(ahead).find_map(|(n, it)| recognizer.see(n, &it.point()))
     }
 
     /// A long run that may turn out to be on an attractor without period.
@@ -108,15 +160,27 @@ impl AttractorSearch<'_> {
             }
             run.push(strobe);
         }
-        if let Some(orbit) = self.orbit(&run[run.len() - 2 * LONGEST..]) {
-            return Some(orbit);
-        }
-        let spectrum = self.spectrum(*run.last()?, DECISION);
+        let late = run.len().saturating_sub(self.limits.strobes() as usize);
         let points: Vec<StrobePoint> = run.iter().map(Entry::point).collect();
-        let kind = kind_of(&spectrum, repeats(&points).is_some());
+        if let Some(orbit) = self.orbit(&run[late..]) {
+            return Some(orbit.after(&points));
+        }
+        let last = *run.last()?;
+        if self.known.iter().any(|known| known.is_led_to_by(&points)) {
+            let place = self.arrival(last, self.known, OUTLASTING)?;
+            return Some(Settled::Label(Label::Attractor(place)));
+        }
+        let spectrum = self.spectrum(last, DECISION);
+        let longest = self.limits.max_period as usize;
+        let kind = kind_of(&spectrum, repeats(&points, longest).is_some());
+        if kind == AttractorKind::Unidentified
+            && let Some(settled) = self.late_orbit(last)
+        {
+            return Some(settled.after(&points));
+        }
         let attractor = Attractor::of_run(kind, &points, &spectrum);
         let evidence = Evidence::Cells(CellSet::of(&points));
-        Some(Settled::New(Box::new(KnownAttractor { attractor, evidence })))
+        Some(Settled::New(Box::new(KnownAttractor { attractor, evidence, transient: None })))
     }
 }
 
@@ -132,14 +196,14 @@ fn kind_of(spectrum: &Spectrum, repeats: bool) -> AttractorKind {
     }
 }
 
-/// The least period with which the last strobes repeat.
-fn repeats(points: &[StrobePoint]) -> Option<u32> {
+/// The least period, up to a longest one, with which the last strobes repeat.
+pub(super) fn repeats(points: &[StrobePoint], longest: usize) -> Option<u32> {
     let repeats = |period: usize| {
         let pairs = period.max(PAIRS);
         let end = points.len();
         end >= period + pairs && (end - pairs..end).all(|i| near(&points[i], &points[i - period]))
     };
-    (1..=LONGEST).find(|period| repeats(*period)).and_then(|period| u32::try_from(period).ok())
+    (1..=longest).find(|period| repeats(*period)).and_then(|period| u32::try_from(period).ok())
 }
 
 fn near(a: &StrobePoint, b: &StrobePoint) -> bool {

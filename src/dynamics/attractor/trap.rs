@@ -21,6 +21,8 @@ pub(super) struct Trap {
     centre: StrobePoint,
     metric: Jacobian,
     radius: f64,
+    /// The distance, by the metric, within which a motion is at rest for all that rounding does.
+    rest: f64,
     /// The gap, where the strobe is on the slider.
     slider: Option<f64>,
 }
@@ -38,6 +40,15 @@ const DIRECTIONS: u32 = 48;
 const SHELLS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
 /// About how many strobes of an orbit get a trap at most.
 const TRAPS: usize = 12;
+/// A motion is at rest on an orbit when the square of its distance is so small a share of the
+/// trap's radius.
+const AT_REST: f64 = 1e-12;
+/// Turns over which is measured how far rounding moves a motion on the orbit. Of an orbit of
+/// hundreds of periods that can be 1e-11, which in a trap of 1e-9 next to a graze is more than that
+/// share.
+const RESTING_TURNS: u64 = 8;
+/// How many times that distance a motion may be away and still at rest.
+const RESTING: f64 = 4.0;
 /// The sum S is doubled in length so often: multipliers up to 1 - 1e-8 are summed up.
 const DOUBLINGS: usize = 32;
 
@@ -56,7 +67,7 @@ impl Trap {
     /// A ball, for tests of what is done with a trap.
     #[cfg(test)]
     pub const fn ball(centre: StrobePoint, radius: f64) -> Self {
-        Self { centre, metric: IDENTITY, radius, slider: None }
+        Self { centre, metric: IDENTITY, radius, rest: 0.0, slider: None }
     }
 
     fn around(map: &StrobeMap, centre: StrobePoint, period: u64) -> Option<Self> {
@@ -68,13 +79,24 @@ impl Trap {
         let largest = metric[0][0] + metric[1][1] + metric[2][2];
         let shrinks = 1.0 - 0.5 / largest;
         let upper = upper_factor(&metric)?;
+        let unit = Self { centre: entry.point(), metric, radius: 1.0, rest: 0.0, slider };
+        let rest = unit.rest_of(map, period);
         let attempt = |halving: i32| {
             let radius = LARGEST * 0.5_f64.powi(halving);
-            let trap = Self { centre: entry.point(), metric, radius, slider };
+            let trap = Self { radius, rest, ..unit };
             let returns = |shell: &f64| trap.shell_returns(map, period, &upper, *shell, shrinks);
             SHELLS.iter().all(returns).then_some(trap)
         };
         (0..=HALVINGS).find_map(attempt)
+    }
+
+    /// How far rounding may move a motion that begins at the centre of this ellipsoid of radius 1.
+    fn rest_of(&self, map: &StrobeMap, period: u64) -> f64 {
+        let Ok(entry) = map.entry(self.centre) else { return 0.0 };
+        let strobes = map.strobes(entry, RESTING_TURNS * period);
+        let turns = strobes.step_by(usize::try_from(period).unwrap_or(usize::MAX));
+        let moved = turns.map(|strobe| self.distance(&strobe.point())).fold(0.0, f64::max);
+        if moved.is_finite() { RESTING * moved.sqrt() } else { 0.0 }
     }
 
     fn shell_returns(
@@ -104,6 +126,17 @@ impl Trap {
         // The metric is not below the identity.
         let outside = (0..2).any(|i| (point[i] - self.centre[i]).abs() > self.radius);
         if outside { f64::INFINITY } else { self.distance(point) }
+    }
+
+    /// Whether a motion at this [`Self::size`] is at rest on the orbit: it need not come closer
+    /// still, or cannot for rounding.
+    pub fn is_at_rest(&self, size: f64) -> bool {
+        size < AT_REST || size.sqrt() * self.radius <= self.rest
+    }
+
+    /// Whether one of these strobes of an orbit is at rest on the orbit of the trap.
+    pub fn is_at_rest_at(&self, points: &[StrobePoint]) -> bool {
+        points.iter().any(|point| self.is_at_rest(self.size(point)))
     }
 
     fn distance(&self, point: &StrobePoint) -> f64 {

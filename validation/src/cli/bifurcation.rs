@@ -63,6 +63,7 @@ const MAX_SVG: u64 = 20_000;
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
     let diagram = diagram(arguments, &arguments.model)?;
+    arguments.model.check_varied(arguments.parameter)?;
     let most = if format == Format::Svg { MAX_SVG } else { MAX_ROWS };
     check_size(arguments, most)?;
     let bar = long_work::bar(u64::from(arguments.steps), "values");
@@ -75,6 +76,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
         Format::Png => Ok(out.write_all(&picture::png(&drawing(&diagram, &steps))?)?),
         Format::Svg => Ok(out.write_all(picture::svg(&drawing(&diagram, &steps)).as_bytes())?),
     })?;
+    tell_escapes(&diagram, &steps);
     tell_endless(&steps);
     Ok(tell_undecidable(diagram.parameter, &steps))
 }
@@ -122,12 +124,13 @@ pub(super) fn check_size(arguments: &Arguments, most: u64) -> Result<()> {
 }
 
 fn write_csv(steps: &[DiagramStep], out: &mut dyn Write) -> Result<()> {
-    writeln!(out, "parameter,n,p,y,q,drift_per_period")?;
+    writeln!(out, "parameter,n,p,y,q,drift_per_period,drift_standard_error")?;
     for step in steps {
-        let [value, drift] = [step.value, step.drift_per_period].map(shortest);
+        let DiagramStep { value, drift_per_period, drift_standard_error, .. } = *step;
+        let [value, drift, error] = [value, drift_per_period, drift_standard_error].map(shortest);
         for (n, point) in step.points.iter().enumerate() {
             let [p, y, q] = point.map(shortest);
-            writeln!(out, "{value},{n},{p},{y},{q},{drift}")?;
+            writeln!(out, "{value},{n},{p},{y},{q},{drift},{error}")?;
         }
     }
     Ok(())
@@ -140,6 +143,10 @@ fn drawing(diagram: &Diagram, steps: &[DiagramStep]) -> Figure {
         Follow::Carry => "each value starts where the last one ended",
         Follow::Reset => "each value starts from the start given",
     };
+    let left_out = match steps.iter().filter(|step| step.escapes).count() {
+        0 => String::new(),
+        count => format!("; {count} values that escape are left out"),
+    };
     let symbol = picture::symbol(diagram.parameter);
     let plot = |name: &str, points: Vec<[f64; 2]>| Plot {
         title: String::new(),
@@ -147,11 +154,12 @@ fn drawing(diagram: &Diagram, steps: &[DiagramStep]) -> Figure {
         window: None,
         layers: vec![Layer::cloud(points, picture::INK)],
     };
-    let drift = steps.iter().map(|step| [step.value, step.drift_per_period]);
+    let stays = steps.iter().filter(|step| !step.escapes);
+    let drift = stays.map(|step| [step.value, step.drift_per_period]);
     Figure {
         title: picture::caption_without(&diagram.parameters, Some(diagram.parameter)),
         caption: format!(
-            "{} values of {symbol}, {} strobes each after {} forcing periods; {how}",
+            "{} values of {symbol}, {} strobes each after {} forcing periods; {how}{left_out}",
             diagram.steps, diagram.periods, diagram.transient
         ),
         columns: 1,
@@ -178,9 +186,28 @@ fn tell_undecidable(parameter: Parameter, steps: &[DiagramStep]) -> bool {
     false
 }
 
-/// One line where motions end in a phase without end.
+/// One line where values are left out because their motions escape.
+fn tell_escapes(diagram: &Diagram, steps: &[DiagramStep]) {
+    let escaped = || steps.iter().filter(|step| step.escapes);
+    let Some(first) = escaped().next() else { return };
+    let why = first.endless.map_or("its state passes 1e9", endless_words);
+    let next = match diagram.follow {
+        Follow::Carry => "; the next value starts from the last that did not escape",
+        Follow::Reset => "",
+    };
+    note(&format!(
+        "{} of {} values escape and are left out (first: {} = {}, {why}){next}",
+        escaped().count(),
+        steps.len(),
+        diagram.parameter.as_str(),
+        shortest(first.value)
+    ));
+}
+
+/// One line where motions that stay end in a phase without end.
 fn tell_endless(steps: &[DiagramStep]) {
-    let ended: Vec<_> = steps.iter().filter_map(|step| step.endless).collect();
+    let stays = steps.iter().filter(|step| !step.escapes);
+    let ended: Vec<_> = stays.filter_map(|step| step.endless).collect();
     if let Some(first) = ended.first() {
         let values = format!("{} of {} values", ended.len(), steps.len());
         note(&format!(

@@ -12,7 +12,8 @@ use crate::case::Problem;
 use anyhow::Result;
 use clap::Args;
 use percuss::Segment;
-use percuss::dynamics::lyapunov::{BATCHES, Spectrum};
+use percuss::dynamics::batches::{BATCHES, Batches, LEAST_COUNT, LEAST_LENGTH, Stationarity};
+use percuss::dynamics::lyapunov::Spectrum;
 use serde::Serialize;
 
 /// Lyapunov exponents with saltation
@@ -38,8 +39,11 @@ struct Json {
     exponents_per_period: [f64; 3],
     standard_error: [f64; 3],
     batches: u64,
+    /// Null where too few batches tell.
+    stationary: Option<bool>,
     contraction_per_period: f64,
     drift_per_period: f64,
+    drift_standard_error: f64,
 }
 
 /// Writes the exponents; whether the motion was decided to its end.
@@ -54,9 +58,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
         parameters: problem.model.parameters().into(),
         exponents_per_period: found.exponents_per_period,
         standard_error: found.standard_error,
-        batches: arguments.periods.min(BATCHES),
+        batches: Batches::of(arguments.periods).count(),
+        stationary: match found.stationarity {
+            Stationarity::Unknown => None,
+            Stationarity::Stationary => Some(true),
+            Stationarity::ChangesAfter(_) => Some(false),
+        },
         contraction_per_period: found.contraction_per_period,
         drift_per_period: found.drift_per_period,
+        drift_standard_error: found.drift_standard_error,
     };
     arguments.output.destination().json(&json)?;
     if found.undecidable {
@@ -66,8 +76,37 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
         );
     } else if let Some(endless) = found.endless {
         note(&endless_notice(endless));
+    } else {
+        tell_errors(arguments, found.stationarity);
     }
     Ok(!found.undecidable)
+}
+
+/// One line where the means and their errors are not those of a motion that has settled, or the
+/// run is too short for errors that hold.
+fn tell_errors(arguments: &Arguments, stationarity: Stationarity) {
+    let Arguments { transient, periods, .. } = *arguments;
+    if let Stationarity::ChangesAfter(after) = stationarity {
+        let settled = rounded_up(transient + after + periods / BATCHES);
+        note(&format!(
+            "the motion changes on the way: the means of its batches differ before and after \
+             {after} of {periods} forcing periods; --transient {settled} leaves that out"
+        ));
+    } else if periods < SHORT {
+        note(&format!(
+            "standard errors hold from {SHORT} forcing periods on: here they are of the right order \
+             only"
+        ));
+    }
+}
+
+/// Runs of fewer forcing periods have errors of the right order only.
+const SHORT: u64 = LEAST_COUNT * LEAST_LENGTH;
+
+/// The next number with at most two digits that are not zero.
+fn rounded_up(number: u64) -> u64 {
+    let unit = 10_u64.pow(number.max(1).ilog10().saturating_sub(1));
+    number.div_ceil(unit) * unit
 }
 
 fn spectrum(arguments: &Arguments, problem: &Problem) -> Spectrum {

@@ -99,7 +99,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let words: Vec<OsString> = arguments.into_iter().collect();
     let color = terminal::stated_color(&words);
     terminal::configure(false, color);
-    let parsed = command().color(color).try_get_matches_from(words);
+    let parsed = command().color(color).try_get_matches_from(&words);
+    let parsed = parsed.map_err(|error| missing_value(&words).unwrap_or(error));
     let code = match parsed.and_then(|it| Arguments::from_arg_matches(&it)) {
         Ok(arguments) => {
             terminal::configure(arguments.quiet, arguments.color);
@@ -176,6 +177,20 @@ fn usage(error: &clap::Error) -> u8 {
             REFUSED
         }
     }
+}
+
+/// The objection to a flag whose value is missing, where the next flag was taken for it: what
+/// follows would be blamed otherwise.
+fn missing_value(words: &[OsString]) -> Option<clap::Error> {
+    let is_flag = |word: &OsString| word.to_str().is_some_and(|it| it.starts_with("--"));
+    let pairs = words.windows(2).zip(1..);
+    let mut pairs = pairs.filter(|(pair, _)| pair.iter().all(is_flag));
+    pairs.find_map(|(pair, read)| {
+        let error = command().try_get_matches_from(&words[..=read]).err()?;
+        let told = error.get(ContextKind::InvalidValue)?.to_string();
+        let is_it = error.kind() == ErrorKind::ValueValidation && told == pair[1].to_str()?;
+        is_it.then_some(error)
+    })
 }
 
 /// What clap objects to, and its tip, without what it says of usage.

@@ -55,10 +55,15 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     Ok(findings)
 }
 
+/// The least error that is printed, which is below the digits of the value: smaller ones are
+/// rounding, and differ from machine to machine.
+pub(super) const PRINTED: f64 = 1e-12;
+
 /// A bifurcation in words.
 fn said(met: &Bifurcation) -> String {
     let Bifurcation { kind, value, error, orbit, .. } = met;
     let (kind, period) = (kind.as_str(), orbit.period());
+    let error = error.max(PRINTED);
     format!("{kind} of period {period} at omega = {value:.10} +- {error:.0e}")
 }
 

@@ -5,6 +5,7 @@ use super::attractors::{found, of_period};
 use super::continued::branch;
 use super::item_work::{Findings, ItemWork};
 use crate::engine::Failure;
+use crate::number::shortest;
 use crate::picture::Colour;
 use crate::picture::{Figure, INK, KeyEntry, Layer, Plot, Stroke};
 use percuss::dynamics::continuation::{Bifurcation, BifurcationKind, Branch, BranchPoint};
@@ -45,7 +46,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     findings.csv("figure-10-branches", &["family", "omega", "stable", "p", "y", "q"], rows)?;
     let met = branches.iter().flat_map(|(period, _, branch)| {
         branch.bifurcations.iter().map(move |it| {
-            let numbers = [it.value, it.error].map(|number| number.to_string());
+            let numbers = [it.value, it.error].map(shortest);
             [period.to_string(), it.kind.as_str().to_owned()].into_iter().chain(numbers).collect()
         })
     });
@@ -56,8 +57,8 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
 fn rows(period: u32, point: &BranchPoint) -> impl Iterator<Item = Vec<String>> + '_ {
     point.orbit.points.iter().map(move |[p, y, q]| {
         let stable = point.orbit.is_stable().to_string();
-        let numbers = [*p, *y, *q].map(|it| it.to_string());
-        [period.to_string(), point.value.to_string(), stable].into_iter().chain(numbers).collect()
+        let numbers = [*p, *y, *q].map(shortest);
+        [period.to_string(), shortest(point.value), stable].into_iter().chain(numbers).collect()
     })
 }
 

@@ -1,6 +1,7 @@
 //! A run as lines in the paper's notation: no contact dash-dotted, contact solid, progression
 //! dotted.
 
+use crate::number::shortest;
 use crate::picture::{KeyEntry, Layer, MotionPiece, Stroke, phase_colour};
 use percuss::{Exit, Instant, Phase, Segment};
 
@@ -57,7 +58,7 @@ pub(super) fn key() -> Layer {
 pub(super) fn rows(pieces: &[MotionPiece]) -> impl Iterator<Item = Vec<String>> {
     pieces.iter().flat_map(|piece| {
         piece.points.iter().map(|point| {
-            let numbers = point.iter().map(f64::to_string);
+            let numbers = point.iter().copied().map(shortest);
             std::iter::once(piece.phase.as_str().to_owned()).chain(numbers).collect()
         })
     })

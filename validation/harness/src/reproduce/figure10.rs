@@ -1,11 +1,13 @@
 //! Fig. 10: the period-four attractor followed in omega, with and without correction of the start.
 
 use super::attractors::{described, found, of_period, start};
+use super::bifurcations::PRINTED;
 use super::claim::{Claim, ClaimVerdict};
 use super::continued::first;
 use super::item_work::{Findings, ItemWork};
 use super::paper::attractors_model;
 use crate::engine::Failure;
+use crate::number::shortest;
 use crate::picture::{Figure, INK, Layer, Plot};
 use percuss::Parameter;
 use percuss::dynamics::attractor::Attractor;
@@ -45,9 +47,9 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
 
 fn rows(steps: &[DiagramStep]) -> impl Iterator<Item = Vec<String>> {
     steps.iter().flat_map(|step| {
-        step.points.iter().map(|[p, y, q]| {
-            [step.value, *p, *y, *q, step.drift_per_period].map(|it| it.to_string()).to_vec()
-        })
+        step.points
+            .iter()
+            .map(|[p, y, q]| [step.value, *p, *y, *q, step.drift_per_period].map(shortest).to_vec())
     })
 }
 
@@ -145,7 +147,10 @@ fn settle_a(work: &ItemWork<'_>, steps: &[DiagramStep], stable: &Stable) -> Resu
             "continuation of the orbit",
             format!(
                 "stable from a flip at {:.10} +- {:.0e} to a fold at {:.10} +- {:.0e}",
-                stable.flip.value, stable.flip.error, stable.fold.value, stable.fold.error
+                stable.flip.value,
+                stable.flip.error.max(PRINTED),
+                stable.fold.value,
+                stable.fold.error.max(PRINTED)
             ),
         ))
 }

@@ -6,6 +6,7 @@ use super::curve;
 use super::item_work::{Findings, ItemWork};
 use super::paper::attractors_model;
 use crate::engine::Failure;
+use crate::number::shortest;
 use crate::picture::{Figure, INK, Layer, Plot, caption};
 use percuss::dynamics::attractor::Attractor;
 use percuss::dynamics::section::section;
@@ -46,7 +47,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
         plots.push(section_plot(&cloud));
         findings.claims.push(settle(work, figure, &attractors)?);
         findings.picture(figure.name, &drawing(figure, plots))?;
-        let row = |point: &[f64; 3]| point.iter().map(f64::to_string).collect();
+        let row = |point: &[f64; 3]| point.iter().copied().map(shortest).collect();
         findings.csv(
             &format!("{}-strange", figure.name),
             &["p", "y", "q"],

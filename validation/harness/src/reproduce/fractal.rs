@@ -4,6 +4,7 @@ use super::attractors::{TRANSIENT, WINDOW, grid, map};
 use super::claim::{Claim, ClaimVerdict};
 use super::item_work::{Findings, ItemWork};
 use crate::engine::Failure;
+use crate::number::shortest;
 use percuss::dynamics::attractor::{
     AttractorCatalog, Basins, Entropy, Uncertainty, entropy, uncertainty_of,
 };
@@ -65,7 +66,7 @@ impl FrequencyMeasured {
             self.entropy.boundary,
             self.entropy.boundary_boxes as f64,
         ];
-        numbers.map(|it| it.to_string()).to_vec()
+        numbers.map(shortest).to_vec()
     }
 }
 

@@ -4,6 +4,7 @@
 use super::item_work::{Findings, ItemWork};
 use super::paper::chaotic_model;
 use crate::engine::Failure;
+use crate::number::shortest;
 use crate::picture::Colour;
 use crate::picture::{Figure, KeyEntry, Layer, Plot, caption_without};
 use percuss::dynamics::diagram::{Diagram, DiagramStep, Follow};
@@ -62,7 +63,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
         let row = |step: &DiagramStep| {
             let period = period(step).map_or(String::new(), |period| period.to_string());
             let numbers = [step.value, step.drift_per_period, rate.per_time(step)];
-            numbers.iter().map(f64::to_string).chain([period]).collect()
+            numbers.into_iter().map(shortest).chain([period]).collect()
         };
         findings.csv(rate.name, &header, steps.iter().map(row))?;
         (work.step)();

@@ -6,7 +6,8 @@ use anyhow::Result;
 use percuss::dynamics::attractor::{Attractor, AttractorKind, Basins, Label};
 
 pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
-    let Survey { problem, transient, basins } = survey;
+    let Survey { problem, limits, basins, .. } = survey;
+    let transient = limits.transient;
     let grid = &basins.grid;
     let colours = colours(&basins.attractors);
     let shown = basins.attractors.iter().enumerate().zip(colours);

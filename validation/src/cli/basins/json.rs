@@ -3,7 +3,7 @@
 use super::Survey;
 use crate::cli::shared::model::ParametersJson;
 use percuss::dynamics::attractor::{
-    Attractor, Basins, Entropy, Label, Uncertainty, entropy, uncertainty,
+    Attractor, Basins, Entropy, Label, Uncertainty, UnresolvedStart, entropy, uncertainty,
 };
 use percuss::dynamics::strobe::StrobePoint;
 use serde::Serialize;
@@ -21,6 +21,7 @@ pub(in crate::cli) struct Json {
     transient: u64,
     pub(in crate::cli) attractors: Vec<AttractorJson>,
     pub(in crate::cli) unresolved: f64,
+    unresolved_examples: Vec<UnresolvedJson>,
     uncertainty: UncertaintyJson,
     basin_entropy: EntropyJson,
 }
@@ -34,9 +35,19 @@ pub(in crate::cli) struct AttractorJson {
     pub(in crate::cli) fraction_error: f64,
     pub(in crate::cli) points: Vec<StrobePoint>,
     pub(in crate::cli) drift_per_period: f64,
+    /// Null where the drift is not a mean over a run.
+    pub(in crate::cli) drift_standard_error: Option<f64>,
     multipliers: Vec<[f64; 2]>,
     pub(in crate::cli) lyapunov_per_period: f64,
     pub(in crate::cli) lyapunov_error: f64,
+}
+
+/// A start that was not recognised.
+#[derive(Serialize)]
+struct UnresolvedJson {
+    point: StrobePoint,
+    lyapunov_per_period: f64,
+    recurrence: Option<u32>,
 }
 
 #[derive(Serialize)]
@@ -64,7 +75,7 @@ const BOX: u32 = 5;
 
 impl Json {
     pub(in crate::cli) fn of(survey: &Survey) -> Self {
-        let Survey { problem, transient, basins } = survey;
+        let Survey { problem, limits, basins, unresolved } = survey;
         let Basins { grid, attractors, .. } = basins;
         let parameters = problem.model.parameters();
         let listed = attractors.iter().enumerate();
@@ -83,9 +94,10 @@ impl Json {
             q: grid.q,
             tau: problem.start.tau,
             cycle: problem.start.cycle,
-            transient: *transient,
+            transient: limits.transient,
             attractors: entries,
             unresolved: basins.fraction(Label::Unresolved),
+            unresolved_examples: unresolved.iter().map(UnresolvedJson::of).collect(),
             uncertainty: UncertaintyJson::of(&uncertainty(basins)),
             basin_entropy: EntropyJson::of(&entropy(basins, BOX)),
         }
@@ -104,6 +116,10 @@ impl AttractorJson {
             fraction_error: basins.fraction_error(label),
             points: points[from..].to_vec(),
             drift_per_period: attractor.drift_per_period,
+            drift_standard_error: attractor
+                .orbit
+                .is_none()
+                .then_some(attractor.drift_standard_error),
             multipliers: attractor.orbit.iter().flat_map(|orbit| orbit.multipliers).collect(),
             lyapunov_per_period: attractor.lyapunov_per_period,
             lyapunov_error: attractor.lyapunov_error,
@@ -121,11 +137,19 @@ impl AttractorJson {
             fraction_error: basins.fraction_error(Label::Escaping),
             points: Vec::new(),
             drift_per_period: if b < 1.0 { 0.0 } else { f64::INFINITY },
+            drift_standard_error: None,
             multipliers: Vec::new(),
             // Errors of y stay, and shear p or v: they grow as time, not exponentially.
             lyapunov_per_period: 0.0,
             lyapunov_error: 0.0,
         }
+    }
+}
+
+impl UnresolvedJson {
+    fn of(start: &UnresolvedStart) -> Self {
+        let UnresolvedStart { point, lyapunov_per_period, recurrence } = *start;
+        Self { point, lyapunov_per_period, recurrence }
     }
 }
 

@@ -13,7 +13,9 @@ use super::shared::parse::{self, MAX_TRANSIENT};
 use crate::case::Problem;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use percuss::dynamics::attractor::{Basins, Grid, Window};
+use percuss::dynamics::attractor::{
+    Basins, Grid, MAX_PERIOD, SearchLimits, UnresolvedStart, Window,
+};
 use percuss::dynamics::strobe::StrobeMap;
 use std::path::PathBuf;
 
@@ -65,6 +67,9 @@ pub(super) struct GridFlags {
     /// where that does not settle it, and cut short as soon as it does
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_TRANSIENT), allow_hyphen_values = true)]
     pub(super) transient: u64,
+    /// Longest period of an orbit that is looked for, in forcing periods, 1 to 10000
+    #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true, default_value_t = MAX_PERIOD)]
+    max_period: u32,
 }
 
 /// The output format of labels.
@@ -104,8 +109,9 @@ impl BasinFormat {
 /// A surveyed grid.
 pub(super) struct Survey {
     pub(super) problem: Problem,
-    pub(super) transient: u64,
+    pub(super) limits: SearchLimits,
     pub(super) basins: Basins,
+    pub(super) unresolved: Vec<UnresolvedStart>,
 }
 
 pub(super) fn attractors(arguments: &AttractorArguments, threads: Option<u16>) -> Result<()> {
@@ -157,7 +163,7 @@ fn show(survey: &Survey, shown: AttractorFormat, destination: &Destination) -> R
     match shown {
         AttractorFormat::Json => destination.json(&json::Json::of(survey)),
         AttractorFormat::Table => {
-            let text = table::text(&survey.basins);
+            let text = table::text(survey);
             destination.write(|out| Ok(out.write_all(text.as_bytes())?))
         }
     }
@@ -177,9 +183,27 @@ impl GridFlags {
         let grid = self.grid_of(problem.start.q);
         let bar = long_work::bar(grid.len() as u64, "starts");
         let seen = |count| bar.inc(count);
-        let basins =
-            long_work::pool(threads)?.install(|| Basins::of(&map, &grid, self.transient, &seen));
+        let limits = self.limits();
+        let basins = long_work::pool(threads)?.install(|| Basins::of(&map, &grid, limits, &seen));
         bar.finish_and_clear();
-        Ok(Survey { problem, transient: self.transient, basins })
+        Ok(Survey::new(problem, &map, limits, basins))
+    }
+
+    /// How long starts are followed, and how long orbits may be.
+    pub(super) fn limits(&self) -> SearchLimits {
+        SearchLimits { transient: self.transient, max_period: self.max_period }
+    }
+}
+
+impl Survey {
+    /// A surveyed grid, with some of the starts that were not recognised described.
+    pub(super) fn new(
+        problem: Problem,
+        map: &StrobeMap,
+        limits: SearchLimits,
+        basins: Basins,
+    ) -> Self {
+        let unresolved = basins.unresolved_examples(map, limits);
+        Self { problem, limits, basins, unresolved }
     }
 }

@@ -1,13 +1,14 @@
-//! `orbit`: one periodic orbit, by Newton's method.
+//! `orbit`: periodic orbits, by Newton's method.
 
-use super::json::OrbitJson;
-use super::{Format, period};
+use super::json::{OrbitJson, OrbitsJson};
+use super::table;
 use crate::cli::shared::format::OutputFlags;
 use crate::cli::shared::long_work;
 use crate::cli::shared::model::ModelFlags;
+use crate::cli::shared::parse;
 use crate::cli::{DONE, OUT_OF_BOUNDS, note, say};
-use anyhow::Result;
-use clap::Args;
+use anyhow::{Result, bail};
+use clap::{Args, ValueEnum};
 use percuss::dynamics::orbit::{Orbit, scan};
 use percuss::dynamics::strobe::StrobeMap;
 
@@ -15,26 +16,58 @@ use percuss::dynamics::strobe::StrobeMap;
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Forcing periods of the orbit; one that closes after a divisor is reported with that
-    #[arg(long, value_name = "K", value_parser = period, allow_hyphen_values = true)]
+    #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true)]
     period: u32,
+    /// Prints all orbits that the scan finds, not the first alone; a table prints them all anyway
+    #[arg(long)]
+    all: bool,
     #[command(flatten)]
-    output: OutputFlags<Format>,
+    output: OutputFlags<OrbitFormat>,
     #[command(flatten)]
     model: ModelFlags,
 }
 
+/// The output format of orbits: a table on a terminal, JSON elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum OrbitFormat {
+    Json,
+    /// One line per orbit, for reading
+    #[value(alias = "txt")]
+    Table,
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
-    arguments.output.format(Format::Json)?;
+    let destination = arguments.output.destination();
+    let usual = if destination.is_terminal() { OrbitFormat::Table } else { OrbitFormat::Json };
+    let format = arguments.output.format(usual)?;
     let (problem, guessed) = arguments.model.guess(None)?;
+    if guessed && arguments.all {
+        bail!(
+            "--all has no effect with a guess, which leads to one orbit; accepted is it without --p, --y, --q, --phase and [start]"
+        );
+    }
     let map = StrobeMap::new(problem.model, problem.entry.instant);
     let found = if guessed {
-        Orbit::find(&map, problem.entry.point(), arguments.period)
-            .map_err(|none| (none.residual, none.to_string()))
+        let one = Orbit::find(&map, problem.entry.point(), arguments.period);
+        one.map(|it| vec![it]).map_err(|none| (none.residual, none.to_string()))
     } else {
         scanned(&map, arguments.period)
     };
-    let shown = found.as_ref().map_err(|(residual, _)| *residual);
-    arguments.output.destination().json(&OrbitJson::new(&problem.model, shown))?;
+    let orbits = found.as_ref().map_or(&[][..], Vec::as_slice);
+    match format {
+        OrbitFormat::Table => {
+            let text = table::text(orbits);
+            destination.write(|out| Ok(out.write_all(text.as_bytes())?))?;
+        }
+        OrbitFormat::Json if arguments.all => {
+            destination.json(&OrbitsJson::new(&problem.model, orbits))?;
+        }
+        OrbitFormat::Json => {
+            say_which(orbits, arguments.period);
+            let first = found.as_ref().map(|it| &it[0]).map_err(|(residual, _)| *residual);
+            destination.json(&OrbitJson::new(&problem.model, first))?;
+        }
+    }
     Ok(match found {
         Ok(_) => DONE,
         Err((_, why)) => {
@@ -44,11 +77,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     })
 }
 
-/// The preferred orbit of a scan; how many others there are is said.
-pub(super) fn scanned(map: &StrobeMap, period: u32) -> Result<Orbit, (f64, String)> {
+/// The orbits that a scan finds, the preferred one first; at least one.
+fn scanned(map: &StrobeMap, period: u32) -> Result<Vec<Orbit>, (f64, String)> {
     let bar = long_work::share_bar();
     let found = scan(map, period, &mut |share| bar.show_share(share));
     bar.finish_and_clear();
+    if found.is_empty() { Err(none_found(period)) } else { Ok(found) }
+}
+
+/// The preferred orbit of a scan; how many others there are is said.
+pub(super) fn first_scanned(map: &StrobeMap, period: u32) -> Result<Orbit, (f64, String)> {
+    let found = scanned(map, period)?;
     say_which(&found, period);
     preferred(found, period)
 }
@@ -59,14 +98,16 @@ fn say_which(found: &[Orbit], period: u32) {
     let (count, stable) = (whole.clone().count(), whole.filter(|it| it.is_stable()).count());
     if count > 1 {
         note(&format!(
-            "a scan found {count} orbits of period {period}, {stable} of them stable; this is one: --p, --y and --q near another select that"
+            "a scan found {count} orbits of period {period}, {stable} of them stable; this is one: percuss orbit --all prints all, --p, --y and --q near another select that"
         ));
     }
 }
 
 /// The first orbit that a scan has found.
 pub(super) fn preferred(found: Vec<Orbit>, period: u32) -> Result<Orbit, (f64, String)> {
-    found.into_iter().next().ok_or_else(|| {
-        (f64::INFINITY, format!("no orbit of period {period} was found by a scan of starts"))
-    })
+    found.into_iter().next().ok_or_else(|| none_found(period))
+}
+
+fn none_found(period: u32) -> (f64, String) {
+    (f64::INFINITY, format!("no orbit of period {period} was found by a scan of starts"))
 }

@@ -1,8 +1,8 @@
 //! `continue`: a branch of periodic orbits.
 
-use super::find::{preferred, scanned};
+use super::Format;
+use super::find::{first_scanned, preferred};
 use super::json::{BranchJson, Doubled, Followed};
-use super::{Format, period};
 use crate::case::Problem;
 use crate::cli::shared::format::OutputFlags;
 use crate::cli::shared::long_work;
@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
     to: Typed<f64>,
     /// Forcing periods of the orbit
-    #[arg(long, value_name = "K", value_parser = period, allow_hyphen_values = true)]
+    #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true)]
     period: u32,
     /// Follows the branch of twice the period from the first flip too
     #[arg(long)]
@@ -44,6 +44,8 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     arguments.output.format(Format::Json)?;
+    family(arguments, &arguments.model)?;
+    arguments.model.check_varied(arguments.parameter)?;
     let bar = long_work::share_bar();
     let (followed, why) =
         followed(arguments, &arguments.model, Reporting::Told(&|share| bar.show_share(share)))?;
@@ -138,7 +140,7 @@ fn branch(
     } else {
         let map = StrobeMap::new(problem.model, problem.entry.instant);
         let orbit = match seen {
-            Reporting::Told(_) => scanned(&map, *period),
+            Reporting::Told(_) => first_scanned(&map, *period),
             Reporting::Alone => preferred(scan(&map, *period, &mut |_| ()), *period),
         };
         orbit.map_err(|(_, why)| why)?.points[0]

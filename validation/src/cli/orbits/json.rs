@@ -43,6 +43,47 @@ impl OrbitJson {
     }
 }
 
+/// The JSON of `orbit --all`; no orbits where none was found.
+#[derive(Serialize)]
+pub(super) struct OrbitsJson {
+    schema: u32,
+    percuss: &'static str,
+    parameters: ParametersJson,
+    orbits: Vec<ListedOrbit>,
+}
+
+/// An orbit of a list.
+#[derive(Serialize)]
+struct ListedOrbit {
+    period: u32,
+    points: Vec<StrobePoint>,
+    phases: Vec<&'static str>,
+    multipliers: [[f64; 2]; 3],
+    stable: bool,
+    residual: f64,
+    drift_per_period: f64,
+}
+
+impl OrbitsJson {
+    pub(super) fn new(model: &Model, orbits: &[Orbit]) -> Self {
+        let listed = |orbit: &Orbit| ListedOrbit {
+            period: orbit.period(),
+            points: orbit.points.clone(),
+            phases: tokens(orbit),
+            multipliers: orbit.multipliers,
+            stable: orbit.is_stable(),
+            residual: orbit.residual,
+            drift_per_period: orbit.drift_per_period,
+        };
+        Self {
+            schema: 1,
+            percuss: env!("CARGO_PKG_VERSION"),
+            parameters: model.parameters().into(),
+            orbits: orbits.iter().map(listed).collect(),
+        }
+    }
+}
+
 fn tokens(orbit: &Orbit) -> Vec<&'static str> {
     orbit.phases.iter().copied().map(Phase::as_str).collect()
 }

@@ -5,11 +5,12 @@ use super::terminal::note;
 use crate::case::{Given, Problem, read_problem};
 use crate::number::shortest;
 use crate::sweep::SweepPoint;
-use anyhow::{Result, anyhow};
+use crate::systems;
+use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use percuss::{Parameter, Parameters, Phase};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The model's parameters, the start, and the file that may give both.
 #[derive(Args, Clone, Debug)]
@@ -82,9 +83,32 @@ impl ModelFlags {
         at
     }
 
+    /// Refuses the flag of a parameter that `--parameter` varies: it would have no effect.
+    pub(in crate::cli) fn check_varied(&self, varied: Parameter) -> Result<()> {
+        let (flag, given) = match varied {
+            Parameter::A => ("--a", &self.a),
+            Parameter::B => ("--b", &self.b),
+            Parameter::Xi => ("--xi", &self.xi),
+            Parameter::Omega => ("--omega", &self.omega),
+            Parameter::G => ("--g", &self.g),
+            Parameter::Phi => ("--phi", &self.phi),
+        };
+        if let Some(given) = given {
+            bail!(
+                "{flag} {given} has no effect with --parameter {}, which goes from --from to --to; \
+                 accepted is one of the two",
+                varied.as_str()
+            );
+        }
+        Ok(())
+    }
+
     fn given(&self) -> Result<Given> {
         let mut given = match &self.problem {
-            Some(path) => read_problem(path).map_err(|error| anyhow!("--problem {error}"))?,
+            Some(path) => read_problem(path).map_err(|error| match told_as_system(path) {
+                Some(line) => anyhow!(line),
+                None => anyhow!("--problem {error}"),
+            })?,
             None => Given::default(),
         };
         self.override_in(&mut given);
@@ -161,6 +185,20 @@ impl ModelFlags {
             note(&format!("{flag} is not used: starts are the centres of the grid's cells"));
         }
     }
+}
+
+/// The error for a piecewise-affine system, by its file or its name, in the place of a problem.
+fn told_as_system(path: &Path) -> Option<String> {
+    let shown = path.display();
+    let is_named = path.to_str().and_then(systems::named).is_some();
+    let table = || std::fs::read_to_string(path).ok()?.parse::<toml::Table>().ok();
+    let is_system = is_named || table().is_some_and(|it| it.contains_key("mode"));
+    is_system.then(|| {
+        format!(
+            "--problem {shown} is a piecewise-affine system: percuss events {shown} runs it; \
+             accepted is a file with [parameters] and [start] of the oscillator"
+        )
+    })
 }
 
 /// The model's parameters as JSON; null for a NaN.

@@ -34,12 +34,30 @@ pub(in crate::cli) fn named(
     name: &'static str,
 ) -> impl Fn(&str) -> Result<Typed<f64>, String> + Clone {
     move |text| {
-        let value = text.parse().map_err(|_| match accepted(name) {
+        let value = number(text).ok_or_else(|| match accepted(name) {
             Some(range) => format!("accepted is a number, {range}"),
             None => "accepted is a number".to_owned(),
         })?;
         Ok(Typed { value, text: text.to_owned() })
     }
+}
+
+/// A number, or a multiple of pi such as `pi/2`, `-pi`, `2pi` or `3*pi/4`: the double nearest to pi
+/// times the factor, over the divisor.
+fn number(text: &str) -> Option<f64> {
+    if let Ok(value) = text.parse() {
+        return Some(value);
+    }
+    let (size, sign) = text.strip_prefix('-').map_or((text, 1.0), |size| (size, -1.0));
+    let (factor, divisor) = size.split_once("pi")?;
+    let plain =
+        |text: &str| text.parse().ok().filter(|_| text.starts_with(|c: char| c.is_ascii_digit()));
+    let factor: f64 = match factor.strip_suffix('*') {
+        None if factor.is_empty() => 1.0,
+        times => plain(times.unwrap_or(factor))?,
+    };
+    let divisor: f64 = if divisor.is_empty() { 1.0 } else { plain(divisor.strip_prefix('/')?)? };
+    Some(sign * factor * std::f64::consts::PI / divisor)
 }
 
 /// An end of an interval of a parameter.
@@ -64,13 +82,31 @@ pub(in crate::cli) fn time(text: &str) -> Result<Typed<f64>, String> {
     Ok(Typed { value, text: text.to_owned() })
 }
 
+/// Integers up to this size, 2^53, are the same as doubles.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// An integer, in digits or with an exponent as 1e6.
+fn integer(text: &str) -> Option<i64> {
+    let exponent = |text: &str| {
+        let value: f64 = text.parse().ok().filter(|_| text.contains(['e', 'E']))?;
+        (value.fract() == 0.0 && value.abs() <= EXACT).then_some(value as i64)
+    };
+    text.parse().ok().or_else(|| exponent(text))
+}
+
+/// A period of an orbit.
+pub(in crate::cli) fn period(text: &str) -> Result<u32, String> {
+    whole(1, u64::from(percuss::dynamics::orbit::LARGEST_PERIOD))(text)
+}
+
 /// An integer from `least` to `most`.
 pub(in crate::cli) fn whole<T: TryFrom<u64>>(
     least: u64,
     most: u64,
 ) -> impl Fn(&str) -> Result<T, String> + Clone {
     move |text| {
-        let number = text.parse().ok().filter(|it| (least..=most).contains(it));
+        let exponent = || integer(text).and_then(|it| u64::try_from(it).ok());
+        let number = text.parse().ok().or_else(exponent).filter(|it| (least..=most).contains(it));
         let number = number.and_then(|it| T::try_from(it).ok());
         number.ok_or_else(|| format!("accepted is an integer, {least} to {most}"))
     }
@@ -78,13 +114,13 @@ pub(in crate::cli) fn whole<T: TryFrom<u64>>(
 
 /// An angle, in radians.
 pub(in crate::cli) fn angle(text: &str) -> Result<f64, String> {
-    let angle = text.parse().ok().filter(|angle: &f64| angle.abs() <= 1e15);
+    let angle = number(text).filter(|angle| angle.abs() <= 1e15);
     angle.ok_or_else(|| "accepted is a number, -1e15 to 1e15".to_owned())
 }
 
 /// A cycle's number.
 pub(in crate::cli) fn cycle(text: &str) -> Result<Typed<i64>, String> {
-    let value = text.parse().ok();
+    let value = integer(text);
     let value = value.ok_or_else(|| "accepted is an integer, -2^53 to 2^53".to_owned())?;
     Ok(Typed { value, text: text.to_owned() })
 }
@@ -137,5 +173,43 @@ pub(in crate::cli) fn shard(text: &str) -> Result<[u32; 2], String> {
     match parts {
         Some([Ok(shard), Ok(shards)]) if shard < shards => Ok([shard, shards]),
         _ => Err("accepted is I/N, shard I of N, from 0/N to N - 1".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn multiples_of_pi_are_numbers() {
+        let cases = [
+            ("pi/2", PI / 2.0),
+            ("-pi", -PI),
+            ("2pi", 2.0 * PI),
+            ("3*pi/4", 0.75 * PI),
+            ("-0.5*pi", -0.5 * PI),
+            ("1e-3", 1e-3),
+        ];
+        for (text, value) in cases {
+            assert_eq!(number(text), Some(value), "{text}");
+        }
+        for text in ["", "pie", "pi*2", "pi/", "*pi", "--pi", "pi/-2", "pi/inf", "nanpi", "2 pi"] {
+            assert_eq!(number(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn integers_may_have_an_exponent() {
+        let accepts = whole::<u64>(0, 1_000_000_000);
+        for (text, value) in [("1e6", 1_000_000), ("1.5E3", 1500), ("1e9", 1_000_000_000), ("7", 7)]
+        {
+            assert_eq!(accepts(text), Ok(value), "{text}");
+        }
+        for text in ["1e10", "1.5", "1e-1", "-1e3", "1e300", "e3", "inf", "nan"] {
+            assert!(accepts(text).is_err(), "{text}");
+        }
+        assert_eq!(integer("-1e15"), Some(-1_000_000_000_000_000));
+        assert_eq!(whole::<u64>(0, u64::MAX)("18446744073709551615"), Ok(u64::MAX));
     }
 }

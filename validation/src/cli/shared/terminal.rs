@@ -64,7 +64,7 @@ pub(in crate::cli) const fn endless_words(endless: Endless) -> &'static str {
     match endless {
         Endless::NeverReturns => "the mass never returns to the slider",
         Endless::NeverStops => "the slider never stops",
-        Endless::RestsForEver => "the mass rests on the slider for ever",
+        Endless::RestsForEver => "the mass stays on the slider for ever",
     }
 }
 

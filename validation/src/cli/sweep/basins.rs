@@ -67,13 +67,13 @@ impl BasinWork {
             return Ok(Arc::clone(labeller));
         }
         let Ground { map, grid, .. } = self.ground(point)?;
-        let labeller = Arc::new(BlockLabeller::new(&map, &grid, self.grid.transient));
+        let labeller = Arc::new(BlockLabeller::new(&map, &grid, self.grid.limits()));
         *last = Some((point.number, Arc::clone(&labeller)));
         Ok(labeller)
     }
 
-    fn arrays(&self, problem: Problem, basins: Basins) -> Result<Vec<Array>> {
-        let survey = Survey { problem, transient: self.grid.transient, basins };
+    fn arrays(&self, problem: Problem, map: &StrobeMap, basins: Basins) -> Result<Vec<Array>> {
+        let survey = Survey::new(problem, map, self.grid.limits(), basins);
         let json = Json::of(&survey);
         match self.wanted {
             Wanted::Labels => labels(&survey.basins, &json),
@@ -109,11 +109,17 @@ fn attractors(json: &Json) -> Vec<Array> {
         Array::f8("fraction", &count, numbers(&|it| it.fraction)),
         Array::f8("fraction_error", &count, numbers(&|it| it.fraction_error)),
         Array::f8("drift_per_period", &count, numbers(&|it| it.drift_per_period)),
+        Array::f8("drift_standard_error", &count, numbers(&drift_error)),
         Array::f8("lyapunov_per_period", &count, numbers(&|it| it.lyapunov_per_period)),
         Array::f8("lyapunov_error", &count, numbers(&|it| it.lyapunov_error)),
         Array::f8("points", &[all.len(), 3], all.iter().flat_map(first).collect()),
         Array::f8("unresolved", &[], vec![json.unresolved]),
     ]
+}
+
+/// The standard error of a mean drift; NaN where the drift is none.
+fn drift_error(attractor: &AttractorJson) -> f64 {
+    attractor.drift_standard_error.unwrap_or(f64::NAN)
 }
 
 /// The number of a kind in files.
@@ -136,8 +142,8 @@ impl SweepVerb for BasinWork {
             return records::bytes(&self.labeller(point)?.label(tile, &|_| {}));
         }
         let Ground { problem, map, grid } = self.ground(point)?;
-        let basins = Basins::of(&map, &grid, self.grid.transient, &|_| {});
-        records::bytes(&self.arrays(problem, basins)?)
+        let basins = Basins::of(&map, &grid, self.grid.limits(), &|_| {});
+        records::bytes(&self.arrays(problem, &map, basins)?)
     }
 
     fn join(&self, point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
@@ -146,14 +152,14 @@ impl SweepVerb for BasinWork {
         }
         let blocks = tiles.map(|bytes| records::value::<LabelledBlock>(&bytes?));
         let blocks: Vec<LabelledBlock> = blocks.collect::<Result<_>>()?;
-        let Ground { problem, grid, .. } = self.ground(point)?;
-        self.arrays(problem, Basins::joined(grid, blocks))
+        let Ground { problem, map, grid } = self.ground(point)?;
+        self.arrays(problem, &map, Basins::joined(grid, blocks))
     }
 
     /// A lattice of starts stands for the blocks in whose rows they lie.
     fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
         let Ground { map, grid, .. } = self.ground(point)?;
-        let labeller = BlockLabeller::new(&map, &grid, self.grid.transient);
+        let labeller = BlockLabeller::new(&map, &grid, self.grid.limits());
         let lattice = Grid { columns: PILOT, rows: PILOT, ..grid };
         let events: Vec<u64> =
             lattice.starts().par_iter().map(|start| labeller.events(*start)).collect();

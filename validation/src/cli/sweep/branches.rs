@@ -12,8 +12,9 @@ pub(super) struct BranchWork {
 }
 
 impl BranchWork {
-    pub(super) const fn new(arguments: Arguments) -> Self {
-        Self { arguments }
+    pub(super) fn new(arguments: Arguments) -> Result<Self> {
+        arguments.model.check_varied(arguments.parameter)?;
+        Ok(Self { arguments })
     }
 }
 

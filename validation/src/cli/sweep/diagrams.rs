@@ -50,6 +50,9 @@ impl DiagramWork {
 
     pub(super) fn new(arguments: Arguments, plan: &Plan) -> Result<Self> {
         bifurcation::check_size(&arguments, MAX_ROWS)?;
+        if names_parameter(plan) {
+            arguments.model.check_varied(arguments.parameter)?;
+        }
         Ok(Self { arguments, by_axis: !names_parameter(plan) })
     }
 
@@ -72,6 +75,8 @@ impl DiagramWork {
             steps.iter().flat_map(|step| (0..periods).map(move |n| at(step, n))).collect()
         };
         let drift = steps.iter().map(|it| it.drift_per_period).collect();
+        let errors = steps.iter().map(|it| it.drift_standard_error).collect();
+        let escapes = steps.iter().map(|it| i32::from(it.escapes)).collect();
         let endless = steps.iter().map(|it| number_of(it.endless)).collect();
         let undecidable = steps.iter().map(|it| i32::from(it.undecidable)).collect();
         let mut arrays = vec![
@@ -79,6 +84,8 @@ impl DiagramWork {
             Array::f8("y", &whole, of(1)),
             Array::f8("q", &whole, of(2)),
             Array::f8("drift_per_period", &front, drift),
+            Array::f8("drift_standard_error", &front, errors),
+            Array::i4("escapes", &front, escapes),
             Array::i4("endless", &front, endless),
             Array::i4("undecidable", &front, undecidable),
         ];

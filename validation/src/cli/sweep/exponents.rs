@@ -6,6 +6,7 @@ use crate::cli::shared::long_work;
 use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
 use anyhow::Result;
 use percuss::Endless;
+use percuss::dynamics::batches::Stationarity;
 use percuss::dynamics::lyapunov::Spectrum;
 
 /// Exponents at each point; a point is one tile.
@@ -49,9 +50,20 @@ fn arrays(found: &Spectrum) -> Vec<Array> {
         Array::f8("standard_error", &[3], found.standard_error.to_vec()),
         Array::f8("contraction_per_period", &[], vec![found.contraction_per_period]),
         Array::f8("drift_per_period", &[], vec![found.drift_per_period]),
+        Array::f8("drift_standard_error", &[], vec![found.drift_standard_error]),
+        Array::i4("stationary", &[], vec![stationary(found.stationarity)]),
         Array::i4("endless", &[], vec![number_of(found.endless)]),
         Array::i4("undecidable", &[], vec![i32::from(found.undecidable)]),
     ]
+}
+
+/// The number in files of whether batches scatter about one value: -1 where too few tell.
+const fn stationary(stationarity: Stationarity) -> i32 {
+    match stationarity {
+        Stationarity::Unknown => -1,
+        Stationarity::ChangesAfter(_) => 0,
+        Stationarity::Stationary => 1,
+    }
 }
 
 /// The number in files of a phase that never ends; -1 of a motion without one.

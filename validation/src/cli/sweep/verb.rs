@@ -31,7 +31,7 @@ pub(super) fn work(plan: &Plan) -> Result<Box<dyn SweepVerb>> {
         Verb::Attractors(arguments) => Box::new(BasinWork::attractors(*arguments)),
         Verb::Lyapunov(arguments) => Box::new(ExponentWork::new(*arguments)?),
         Verb::Bifurcation(arguments) => Box::new(DiagramWork::new(*arguments, plan)?),
-        Verb::Continue(arguments) => Box::new(BranchWork::new(*arguments)),
+        Verb::Continue(arguments) => Box::new(BranchWork::new(*arguments)?),
         _ => bail!("verb = \"{verb}\" is not accepted"),
     })
 }

@@ -8,6 +8,7 @@ use super::curve::{self, HEADER};
 use super::item_work::{Findings, ItemWork, from_rest};
 use super::paper::{PrintedRow, TABLE_1_UNIT, table_1_model};
 use crate::engine::Failure;
+use crate::number::shortest;
 use crate::picture::MotionPiece;
 use percuss::dynamics::orbit::Orbit;
 use percuss::dynamics::strobe::StrobeMap;
@@ -81,7 +82,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
 fn table(told: &Table1Run) -> impl Iterator<Item = Vec<String>> {
     told.segments.iter().enumerate().map(|(row, segment)| {
         let [p, y, q] = segment.entry().point();
-        let numbers = [told.tau(row), p, y, q].map(|number| number.to_string());
+        let numbers = [told.tau(row), p, y, q].map(shortest);
         [(row + 1).to_string(), segment.phase().to_string()].into_iter().chain(numbers).collect()
     })
 }

@@ -1,0 +1,38 @@
+//! How long a start is followed, and how long an orbit may be.
+
+use crate::dynamics::orbit::LARGEST_PERIOD;
+
+/// The longest period that is looked for where no other is asked for.
+pub const MAX_PERIOD: u32 = 1024;
+
+/// The limits of a search for attractors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SearchLimits {
+    /// Forcing periods that a start is followed, and 2, 4 and 8 times as many more where it is not
+    /// recognised by then.
+    pub transient: u64,
+    /// The longest period of an orbit, in forcing periods.
+    pub max_period: u32,
+}
+
+impl From<u64> for SearchLimits {
+    /// A transient, with orbits of up to [`MAX_PERIOD`].
+    fn from(transient: u64) -> Self {
+        Self { transient, max_period: MAX_PERIOD }
+    }
+}
+
+impl SearchLimits {
+    /// These limits, at least one period and at most what Newton's method is made for.
+    pub(super) fn clamped(self) -> Self {
+        Self {
+            transient: self.transient.max(1),
+            max_period: self.max_period.clamp(1, LARGEST_PERIOD),
+        }
+    }
+
+    /// The number of strobes in which an orbit of the longest period repeats once.
+    pub(super) const fn strobes(self) -> u64 {
+        2 * self.max_period as u64
+    }
+}
