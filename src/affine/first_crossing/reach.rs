@@ -57,7 +57,11 @@ impl<T: Number> GuardedSegment<'_, T> {
         let row = &self.rows[n];
         let orders = outward(&left.orders[n], track).map(Number::bound);
         let rests = eighths(row, left, longest);
-        let whole = length(&orders, rests[0], track.zeros, || row.size(&left.modal.y)).min(longest);
+        let whole = match track.zeros {
+            0..=2 => length(&orders, rests[0], track.zeros, || row.size(&left.modal.y)),
+            zeros => length_after(row.order(zeros, &left.modal).0.bound(), zeros, rests[0]),
+        };
+        let whole = whole.min(longest);
         let mut reach = Reach { cut: 0, length: whole, whole };
         if track.zeros == 0 && whole < longest {
             enclose(row, track, left, (orders[0], &rests, longest), &mut reach);
@@ -276,6 +280,18 @@ pub(super) fn rise<B: Bound>([value, slope, bend]: [B; 3]) -> B {
     // The form of the root in which nothing cancels.
     let divisor = slope + (slope * slope - value * 4.0 * bend).sqrt();
     if divisor > 0.0 { value * -2.0 / divisor } else { B::INFINITY }
+}
+
+/// A length on which the remainder stays small relative to what a guard that begins with more than
+/// two zeros becomes by its first derivative that is not one.
+fn length_after<B: Bound>(lead: B, zeros: usize, eighth: B) -> f64 {
+    if eighth == 0.0 {
+        return f64::INFINITY;
+    }
+    // The interpolant takes at most seven derivatives of the guard.
+    let zeros = zeros.min(7);
+    let power = lead.abs() * (REMAINDER * f64::inverse_factorial(zeros) * MIDDLE) / eighth;
+    power.approximate_root(8 - zeros).to_f64()
 }
 
 /// A length on which the remainder stays small relative to what a guard becomes by one of its first

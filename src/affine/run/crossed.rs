@@ -6,7 +6,7 @@ use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::system::Direction;
 use crate::affine::solver::event::{Ending, What};
-use crate::affine::zeros::graph::Firing;
+use crate::affine::zeros::graph::{Firing, ZeroGuards};
 use crate::numeric::number::{Bound, Number};
 
 impl<T: Number> Run<'_, T> {
@@ -27,16 +27,16 @@ impl<T: Number> Run<'_, T> {
         let until = self.solver.system.modes[mode].until.len();
         let Some((time, state)) = self.present() else { return self.end(Ending::Undecided) };
         let first = self.zero_guards(mode, guards & guards.wrapping_neg(), &state);
-        let exactly = |guard: u32| self.exact.as_ref().map_or(0, |it| it.tied(guard as usize));
-        let exactly_tied = exactly(guards.trailing_zeros());
+        let exactly_tied = self.exactly_tied(mode, guards.trailing_zeros() as usize);
         let tied = self.graph.tied(self.node, first, false) | exactly_tied;
         if guards & !tied != 0 {
             self.work.undecidable += 1;
             self.tie = Some((mode, guards));
         }
         let errors = self.errors_at(mode, guards, &time, &state);
+        let zero = self.zero_guards(mode, guards, &state);
         for n in bits(guards & !low_bits(until)) {
-            self.watched(mode, n, until, time, &state, errors.as_ref());
+            self.watched(mode, n, zero, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
         }
         let ending = guards & low_bits(until);
@@ -47,9 +47,6 @@ impl<T: Number> Run<'_, T> {
             for n in bits(guards) {
                 self.tracks[n].zeros = 1;
                 self.ends.left.orders[n][0] = T::zero();
-            }
-            if let Some(exact) = &mut self.exact {
-                exact.pass(bits(guards));
             }
             return;
         }
@@ -106,20 +103,25 @@ impl<T: Number> Run<'_, T> {
         &mut self,
         mode: usize,
         n: usize,
-        until: usize,
+        zero: ZeroGuards,
         time: Time<T>,
         state: &Vector<T>,
         errors: Option<&Enclosure<T::Bound>>,
     ) {
         let rising = self.tracks[n].outward > 0.0;
-        let counted = match self.solver.system.modes[mode].watch[n - until].direction {
+        let own = &self.solver.system.modes[mode];
+        let watch = n - own.until.len();
+        let counted = match own.watch[watch].direction {
             Direction::Rising => rising,
             Direction::Falling => !rising,
             Direction::Both => true,
         };
         if counted {
-            let mut event = self.event(What::Watch(mode, n - until), time, state);
+            let mut event = self.event(What::Watch(mode, watch), time, state);
             event.errors = errors.map(|it| self.errors(it));
+            if errors.is_some() {
+                event.set_zeros(self.graph.zero_entries(self.node, zero, false));
+            }
             self.queue.push_back(event);
         }
     }

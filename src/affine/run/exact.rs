@@ -4,7 +4,7 @@
 use super::Run;
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::system::StartPoint;
-use crate::affine::zeros::exact::{Entries, ExactMode, Fate, entries_after, solve};
+use crate::affine::zeros::exact::{Chain, Entries, ExactMode, Fate, Instant, entries_after, solve};
 use crate::affine::zeros::graph::ZeroGuards;
 use crate::numeric::number::Number;
 use dashu_ratio::RBig;
@@ -44,29 +44,6 @@ impl ExactRun {
     pub fn fate(&self, guard: usize) -> Option<&Fate> {
         self.fates.get(guard)?.as_ref()
     }
-
-    /// The rational time of a guard's next change of sign.
-    fn next_root(&self, guard: usize) -> Option<&RBig> {
-        self.fate(guard)?.roots.first()
-    }
-
-    /// The guards that change their sign at the very time of one of them, as bits.
-    pub fn tied(&self, guard: usize) -> u64 {
-        let Some(time) = self.next_root(guard) else { return 0 };
-        let also = |n: &usize| self.next_root(*n) == Some(time);
-        (0..self.fates.len()).filter(also).fold(0, |mask, n| mask | 1 << n)
-    }
-
-    /// Passes a change of sign of guards whose mode goes on.
-    pub fn pass(&mut self, guards: impl Iterator<Item = usize>) {
-        for n in guards {
-            if let Some(Some(fate)) = self.fates.get_mut(n)
-                && !fate.roots.is_empty()
-            {
-                fate.roots.remove(0);
-            }
-        }
-    }
 }
 
 impl<T: Number> Run<'_, T> {
@@ -88,6 +65,23 @@ impl<T: Number> Run<'_, T> {
     pub(super) fn exact_mode(&self, mode: usize) -> &ExactMode {
         let system = &self.solver.system;
         self.solver.modes[mode].exact.get_or_init(|| ExactMode::of(system, &system.modes[mode]))
+    }
+
+    /// The instant of a guard's crossing at which the search has arrived, if it is known exactly.
+    fn instant(&self, mode: usize, guard: usize) -> Option<Instant> {
+        let point = &self.ends.left;
+        let time = (point.time + point.to_crossing).to_f64();
+        self.exact_mode(mode).guards[guard].zero_near(&self.exact.as_ref()?.entries, time)
+    }
+
+    /// The guards that are zero at the very instant at which one of them crosses, as bits.
+    pub(super) fn exactly_tied(&self, mode: usize, guard: usize) -> u64 {
+        let Some(exact) = &self.exact else { return 0 };
+        let Some(instant) = self.instant(mode, guard) else { return 0 };
+        let is_zero =
+            |chain: &Chain| chain.at(&exact.entries, Some(&instant)).is_some_and(|it| it.is_zero());
+        let guards = self.exact_mode(mode).guards.iter().enumerate();
+        guards.filter(|(_, it)| is_zero(it)).fold(0, |mask, (n, _)| mask | 1 << n)
     }
 
     /// Guards that are zero at a state, with the rational point of the circle at which the first of
@@ -114,8 +108,8 @@ impl<T: Number> Run<'_, T> {
         }
         let own = self.exact_mode(mode);
         let is_zero = |n: &usize| zero.guards >> n & 1 == 1;
-        let time = (0..exact.fates.len()).filter(is_zero).find_map(|n| exact.next_root(n));
-        let mut entries = own.entries_at(&exact.entries, time);
+        let instant = (0..own.guards.len()).filter(is_zero).find_map(|n| self.instant(mode, n));
+        let mut entries = own.entries_at(&exact.entries, instant.as_ref());
         let first = zero.guards.trailing_zeros() as usize;
         if let (Some(at), Some(point)) = (self.solver.phase(), zero.point)
             && let Some(Some(circle)) = own.circles.get(first)

@@ -38,7 +38,7 @@ impl<T: Number> Run<'_, T> {
         }
         self.set_exact(exact);
         let arrival = self.graph.arrival(self.node, firing);
-        let impact = arrival.impact;
+        let (impact, zero_entries) = (arrival.impact, arrival.zero_entries);
         let from = self.node;
         let next = self.graph.enter(from, firing, successor);
         self.node = next;
@@ -53,6 +53,7 @@ impl<T: Number> Run<'_, T> {
             let mut errors = errors.after_reset(reset, &sizes.collect::<Vec<_>>());
             errors.reduce();
             event.errors = Some(self.errors(&errors));
+            event.set_zeros(zero_entries);
             self.enclosure = Some(errors);
         }
         self.queue.push_back(event);

@@ -73,6 +73,18 @@ impl<T: Number> Clone for Event<T> {
     }
 }
 
+impl<T: Number> Event<T> {
+    /// Makes states exactly zero that are so by the model, given as bits.
+    pub(in crate::affine) fn set_zeros(&mut self, states: u64) {
+        for n in (0..self.state.len()).filter(|n| states >> n & 1 == 1) {
+            self.state[n] = T::zero();
+            if let Some(errors) = &mut self.errors {
+                errors.state[n] = T::Bound::ZERO;
+            }
+        }
+    }
+}
+
 /// Bounds of the errors of an event's time and state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Errors<B> {

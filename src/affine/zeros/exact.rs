@@ -2,9 +2,9 @@
 //!
 //! A guard whose derivatives end is a polynomial of the time. Where it is a parabola with rational
 //! coefficients, its touches, and its crossings at rational times, are known exactly. A guard that
-//! is a constant and one oscillation never crosses where the amplitude is at most the constant.
-//! Without this no number of bits would tell a touch from a crossing, or which of two guards that
-//! cross at one instant is the first.
+//! is a constant and one oscillation never crosses where the amplitude is at most the constant, and
+//! it may cross where the cosine is rational. Without this no number of bits would tell a touch from
+//! a crossing, or which of two guards that cross at one instant is the first.
 
 use super::circle::{Circle, root};
 use crate::affine::model::system::{Mode, Row, Successor, System};
@@ -38,8 +38,15 @@ pub struct Fate {
     pub begin: Option<(usize, bool)>,
     /// Whether the sign that the guard has after the entry is the one that it keeps.
     pub keeps_sign: bool,
-    /// The times after the entry at which the guard changes its sign, if they are rational.
-    pub roots: Vec<RBig>,
+}
+
+/// An instant after an entry that is known exactly.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Instant {
+    /// A rational time after the entry.
+    Time(RBig),
+    /// A time t at which cos(w t) and sin(w t)/w are rational, for the square of a frequency w.
+    Turn { square: RBig, cos: RBig, sin: RBig },
 }
 
 /// Entries of z, of which some are known exactly.
@@ -81,26 +88,49 @@ impl Chain {
     pub fn fate(&self, entries: &Entries) -> Option<Fate> {
         let values = self.values(entries)?;
         let begin = first_sign(&values);
-        let (keeps_sign, roots) = match (&self.kind, begin) {
-            (_, None) => (true, Vec::new()),
-            (Kind::Polynomial, Some((_, rises))) if values.len() <= 3 => parabola(&values, rises),
-            (Kind::Oscillation(square), _) => (oscillation_keeps_sign(&values, square), Vec::new()),
-            _ => (false, Vec::new()),
+        let keeps_sign = match (&self.kind, begin) {
+            (_, None) => true,
+            (Kind::Polynomial, Some((_, rises))) if values.len() <= 3 => {
+                parabola_keeps_sign(&values, rises)
+            }
+            (Kind::Oscillation(square), _) => {
+                Oscillation::of(&values, square).is_some_and(|it| it.keeps_sign())
+            }
+            _ => false,
         };
-        Some(Fate { begin, keeps_sign, roots })
+        Some(Fate { begin, keeps_sign })
     }
 
-    /// The row's value a time after the entry, where that is a polynomial and all that it needs is
-    /// known: of what stands still no time is needed.
-    fn at(&self, entries: &Entries, time: Option<&RBig>) -> Option<RBig> {
-        let values = self.values(entries).filter(|_| self.kind == Kind::Polynomial)?;
-        if let [value] = &values[..] {
-            return Some(value.clone());
+    /// The instant of the guard's zero that is about a time after the entry, if it is known exactly.
+    pub fn zero_near(&self, entries: &Entries, time: f64) -> Option<Instant> {
+        let values = self.values(entries)?;
+        match &self.kind {
+            Kind::Polynomial => {
+                let roots = parabola_roots(&values);
+                the_only(roots.into_iter().filter(|it| is_near(it, time))).map(Instant::Time)
+            }
+            Kind::Oscillation(square) => Oscillation::of(&values, square)?.zero_near(time),
+            Kind::Other => None,
         }
-        let time = time?;
-        let orders = values.iter().enumerate().rev();
-        let step = |sum: RBig, (k, value): (usize, &RBig)| value + sum * time / RBig::from(k + 1);
-        Some(orders.fold(RBig::ZERO, step))
+    }
+
+    /// The row's value at an instant after the entry, where all that it needs is known: of what
+    /// stands still no instant is needed.
+    pub fn at(&self, entries: &Entries, instant: Option<&Instant>) -> Option<RBig> {
+        let values = self.values(entries)?;
+        match (&self.kind, instant) {
+            (Kind::Polynomial, _) if values.len() == 1 => values.into_iter().next(),
+            (Kind::Polynomial, Some(Instant::Time(time))) => {
+                let orders = values.iter().enumerate().rev();
+                let step =
+                    |sum: RBig, (k, value): (usize, &RBig)| value + sum * time / RBig::from(k + 1);
+                Some(orders.fold(RBig::ZERO, step))
+            }
+            (Kind::Oscillation(own), Some(Instant::Turn { square, cos, sin })) if own == square => {
+                Some(Oscillation::of(&values, own)?.at(cos, sin))
+            }
+            _ => None,
+        }
     }
 }
 
@@ -142,8 +172,8 @@ impl ExactMode {
     }
 
     /// The entries of z a time after those at the entry of the mode, as far as they are known.
-    pub fn entries_at(&self, entries: &Entries, time: Option<&RBig>) -> Entries {
-        self.entries.iter().map(|it| it.at(entries, time)).collect()
+    pub fn entries_at(&self, entries: &Entries, instant: Option<&Instant>) -> Entries {
+        self.entries.iter().map(|it| it.at(entries, instant)).collect()
     }
 }
 
@@ -195,37 +225,92 @@ fn first_sign(values: &[RBig]) -> Option<(usize, bool)> {
     Some((first, values[first] > RBig::ZERO))
 }
 
-/// Whether a parabola with these derivatives keeps the sign that it has at first, and the rational
-/// times of its changes.
-fn parabola(values: &[RBig], rises: bool) -> (bool, Vec<RBig>) {
+/// Whether a parabola with these derivatives keeps the sign that it has at first.
+fn parabola_keeps_sign(values: &[RBig], rises: bool) -> bool {
     let sign = RBig::from(if rises { -1 } else { 1 });
     let order = |k: usize| values.get(k).map_or(RBig::ZERO, |it| it * &sign);
     let [value, slope, bend] = [0, 1, 2].map(order);
     // The parabola is negative at first.
     if bend.is_zero() {
-        let rises_later = slope > RBig::ZERO;
-        let root = rises_later.then(|| -&value / &slope);
-        return (!rises_later, root.into_iter().collect());
+        return slope <= RBig::ZERO;
     }
     let rest = &slope * &slope - RBig::from(2) * &value * &bend;
-    if bend < RBig::ZERO && (slope <= RBig::ZERO || rest <= RBig::ZERO) {
-        return (true, Vec::new());
-    }
-    let Some(root) = root(&rest) else { return (false, Vec::new()) };
-    let mut roots = vec![(-&slope + &root) / &bend, (-&slope - &root) / &bend];
-    roots.retain(|it| *it > RBig::ZERO);
-    roots.sort();
-    (false, roots)
+    bend < RBig::ZERO && (slope <= RBig::ZERO || rest <= RBig::ZERO)
 }
 
-/// Whether a constant outweighs an oscillation about it: G = c + A, with the amplitude's square
-/// (G''/s)^2 + G'^2/s and the constant G + G''/s.
-fn oscillation_keeps_sign(values: &[RBig], square: &RBig) -> bool {
-    let [value, slope, bend] = values else { return false };
-    let share = bend / square;
-    let constant = value + &share;
-    let amplitude = &share * &share + slope * slope / square;
-    !constant.is_zero() && amplitude <= &constant * &constant
+/// The zeros of a polynomial of at most the second degree with these derivatives, if they are
+/// rational.
+fn parabola_roots(values: &[RBig]) -> Vec<RBig> {
+    match values {
+        [value, slope] => vec![-value / slope],
+        [value, slope, bend] => {
+            let rest = slope * slope - RBig::from(2) * value * bend;
+            let roots = root(&rest).map(|it| [(-slope + &it) / bend, (-slope - &it) / bend]);
+            roots.into_iter().flatten().collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The only item of an iterator, if it has one: of two zeros that f64 does not tell apart neither is
+/// taken.
+fn the_only<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
+    let first = items.next()?;
+    items.all(|it| it == first).then_some(first)
+}
+
+/// Whether an exact number is the one of which a rounded one is known.
+fn is_near(exact: &RBig, rounded: f64) -> bool {
+    /// The rounding of f64, with room.
+    const NEAR: f64 = 1e-9;
+    (exact.to_f64().value() - rounded).abs() <= NEAR * (1.0 + rounded.abs())
+}
+
+/// A constant and an oscillation: c + a cos(w t) + b sin(w t)/w.
+struct Oscillation<'a> {
+    square: &'a RBig,
+    constant: RBig,
+    cos: RBig,
+    sin: &'a RBig,
+    /// The square of the amplitude, a^2 + b^2/w^2.
+    amplitude: RBig,
+}
+
+impl<'a> Oscillation<'a> {
+    /// The oscillation with these derivatives, by the square of its frequency.
+    fn of(values: &'a [RBig], square: &'a RBig) -> Option<Self> {
+        let [value, sin, bend] = values else { return None };
+        let cos = -(bend / square);
+        let amplitude = &cos * &cos + sin * sin / square;
+        Some(Self { square, constant: value - &cos, cos, sin, amplitude })
+    }
+
+    /// Whether the constant outweighs the oscillation, which may touch zero.
+    fn keeps_sign(&self) -> bool {
+        !self.constant.is_zero() && self.amplitude <= &self.constant * &self.constant
+    }
+
+    fn at(&self, cos: &RBig, sin: &RBig) -> RBig {
+        &self.constant + &self.cos * cos + self.sin * sin
+    }
+
+    /// The zero that is about a time, if cosine and sine over the frequency are rational there.
+    fn zero_near(&self, time: f64) -> Option<Instant> {
+        let Self { square, constant, cos, sin, amplitude } = self;
+        let root = root(&((amplitude - constant * constant) / *square))?;
+        let frequency = square.to_f64().value().sqrt();
+        let (sin_now, cos_now) = libm::sincos(frequency * time);
+        let zero = |root: &RBig| {
+            let own = [-cos * constant - *sin * root, -*sin * constant / *square + cos * root];
+            own.map(|it| it / amplitude)
+        };
+        let is_now = |[cos, sin]: &[RBig; 2]| {
+            is_near(cos, cos_now) && is_near(&(sin * *square), sin_now * frequency)
+        };
+        let zeros = [zero(&root), zero(&-&root)].into_iter();
+        let [cos, sin] = the_only(zeros.filter(is_now))?;
+        Some(Instant::Turn { square: (*square).clone(), cos, sin })
+    }
 }
 
 #[cfg(test)]
@@ -251,14 +336,14 @@ mod tests {
         let fate = |level| Chain::of(&level, &matrix).fate(&start).unwrap();
         assert!(fate(level(1, 4)).keeps_sign);
         assert!(fate(level(1, 3)).keeps_sign);
-        let crossed = fate(level(3, 16));
-        let eighth = |n: i32| RBig::from(n) / RBig::from(8);
-        assert_eq!((crossed.keeps_sign, crossed.roots), (false, vec![eighth(1), eighth(3)]));
-        let irrational = fate(level(1, 8));
-        assert_eq!((irrational.keeps_sign, irrational.roots.len()), (false, 0));
-        let ground = fate(level(0, 1));
-        assert_eq!(ground.begin, Some((1, true)));
-        assert_eq!(ground.roots, [RBig::ONE / RBig::from(2)]);
+        assert!(!fate(level(3, 16)).keeps_sign && !fate(level(1, 8)).keeps_sign);
+        assert_eq!(fate(level(0, 1)).begin, Some((1, true)));
+        let zero = |level, time| Chain::of(&level, &matrix).zero_near(&start, time);
+        let eighth = |n: i32| Some(Instant::Time(RBig::from(n) / RBig::from(8)));
+        assert_eq!(zero(level(3, 16), 0.125), eighth(1));
+        assert_eq!(zero(level(3, 16), 0.375), eighth(3));
+        assert_eq!(zero(level(3, 16), 0.25), None);
+        assert_eq!(zero(level(1, 8), 0.25 - 0.125_f64.sqrt() / 2.0), None);
     }
 
     /// x'' = -4 x from x = 3, v = 8: the amplitude is 5.
@@ -272,6 +357,20 @@ mod tests {
         };
         assert!(fate(5).keeps_sign && fate(6).keeps_sign && fate(-5).keeps_sign);
         assert!(!fate(4).keeps_sign);
+    }
+
+    /// x'' = -4 x from x = 5 at rest: at x = 3 the rate is -8, and at no rational time.
+    #[test]
+    fn two_guards_of_an_oscillation_meet_at_a_rational_cosine() {
+        let matrix = rows(&[&[0, 1, 0], &[-4, 0, 0], &[0, 0, 0]]);
+        let start = known(&[5, 0, 1]);
+        let chain = |row: [i32; 3]| Chain::of(&row.map(RBig::from).to_vec(), &matrix);
+        let instant = chain([1, 0, -3]).zero_near(&start, 0.5 * 0.6_f64.acos()).unwrap();
+        let fifth = |n: i32| RBig::from(n) / RBig::from(5);
+        let (square, cos) = (RBig::from(4), fifth(3));
+        assert_eq!(instant, Instant::Turn { square, cos, sin: fifth(2) });
+        assert_eq!(chain([0, 1, 8]).at(&start, Some(&instant)), Some(RBig::ZERO));
+        assert_eq!(chain([0, 1, 7]).at(&start, Some(&instant)), Some(-RBig::ONE));
     }
 
     #[test]

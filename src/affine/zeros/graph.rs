@@ -60,7 +60,8 @@ pub struct Node {
     pub multiplicities: Arc<[Option<usize>]>,
     /// The arrivals that were asked for: there are few, and each event searches the list.
     arrivals: Vec<(Firing, Arrival)>,
-    ties: Vec<(ZeroGuards, bool, u64)>,
+    /// For instants that were asked for, the guards and the entries of z that are zero there.
+    instants: Vec<(ZeroGuards, bool, [u64; 2])>,
 }
 
 /// The consequences of an event for the structural zeros.
@@ -72,6 +73,8 @@ pub struct Arrival {
     /// Whether the event multiplies the rate of its guard by a negative factor and leaves it at
     /// zero.
     pub impact: bool,
+    /// The entries of z that are zero after the event, as bits.
+    pub zero_entries: u64,
     after: ZeroSpace,
     nodes: Vec<Option<usize>>,
 }
@@ -109,18 +112,28 @@ impl ZeroGraph {
     /// The guards that are zero at an event because the given ones are, which are included.
     #[inline]
     pub fn tied(&mut self, node: usize, zero: ZeroGuards, at_entry: bool) -> u64 {
+        self.zeros_there(node, zero, at_entry)[0]
+    }
+
+    /// The entries of z that are zero at an event because the given guards are, as bits.
+    #[inline]
+    pub fn zero_entries(&mut self, node: usize, zero: ZeroGuards, at_entry: bool) -> u64 {
+        self.zeros_there(node, zero, at_entry)[1]
+    }
+
+    fn zeros_there(&mut self, node: usize, zero: ZeroGuards, at_entry: bool) -> [u64; 2] {
         let node = &mut self.nodes[node];
-        let known = node.ties.iter().find(|it| (it.0, it.1) == (zero, at_entry));
-        if let Some((.., tied)) = known {
-            return *tied;
+        let known = node.instants.iter().find(|it| (it.0, it.1) == (zero, at_entry));
+        if let Some((.., zeros)) = known {
+            return *zeros;
         }
         let mode = &self.modes[node.mode];
-        let rows = &mode.guards;
-        let zeros = with_rows(node.zeros_at(at_entry), mode, zero);
-        let also = |n: &usize| zeros.contains(&rows[*n]);
-        let tied = (0..rows.len()).filter(also).fold(zero.guards, |mask, n| mask | 1 << n);
-        node.ties.push((zero, at_entry, tied));
-        tied
+        let space = with_rows(node.zeros_at(at_entry), mode, zero);
+        let also = |n: &usize| space.contains(&mode.guards[*n]);
+        let tied = (0..mode.guards.len()).filter(also).fold(zero.guards, |mask, n| mask | 1 << n);
+        let zeros = [tied, space.zero_entries(mode.matrix.len())];
+        node.instants.push((zero, at_entry, zeros));
+        zeros
     }
 
     /// The consequences of an event at a node, computed once.
@@ -167,7 +180,7 @@ impl ZeroGraph {
             multiplicities: guards.iter().map(multiplicity).collect(),
             zeros: zeros.clone(),
             arrivals: Vec::new(),
-            ties: Vec::new(),
+            instants: Vec::new(),
         };
         self.nodes.push(node);
         self.known.insert((mode, zeros), self.nodes.len() - 1);
@@ -193,6 +206,7 @@ fn arrived(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
     Arrival {
         orders: next.iter().map(order).collect(),
         impact: is_impact(own, firing.until, &zeros, &after),
+        zero_entries: after.zero_entries(own.matrix.len()),
         nodes: vec![None; next.len()],
         after,
     }

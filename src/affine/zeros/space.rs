@@ -15,6 +15,16 @@ impl ZeroSpace {
         self.reduced(row).iter().all(|it| it.is_zero())
     }
 
+    /// The entries of z that are zero by themselves, as bits.
+    pub fn zero_entries(&self, dimension: usize) -> u64 {
+        let unit = |n: usize| -> Residues {
+            let entry = |k| if k == n { Residue::ONE } else { Residue::ZERO };
+            (0..dimension).map(entry).collect()
+        };
+        let is_zero = |n: &usize| self.contains(&unit(*n));
+        (0..dimension).filter(is_zero).fold(0, |mask, n| mask | 1 << n)
+    }
+
     /// Adds a row to the space.
     pub fn insert(&mut self, row: &[Residue]) {
         let mut row = self.reduced(row);

@@ -76,11 +76,12 @@ impl<'a> Precision<'a> {
 pub(super) struct Sizes<B>(Vec<B>);
 
 impl<B: Bound> Sizes<B> {
-    pub(super) fn new() -> Self {
-        Self(Vec::new())
+    /// The sizes at the start of a run.
+    pub(super) fn of<T: Arithmetic<Bound = B>>(start: &Event<T>) -> Self {
+        Self(start.state.iter().map(|it| it.bound().abs()).collect())
     }
 
-    /// Whether the time or a state has fewer digits than are wanted. A value that may be zero has
+    /// Adds the sizes of an event, and says whether the time or a state has fewer digits than are wanted. A value that may be zero has
     /// enough of them if it is known that well beside the largest that the state has had: more bits
     /// would not make it another one than zero.
     pub(super) fn have_too_few_digits<T: Arithmetic<Bound = B>>(
@@ -90,7 +91,6 @@ impl<B: Bound> Sizes<B> {
     ) -> bool {
         let Some(errors) = &event.errors else { return false };
         let share = B::of(0.5 * 10_f64.powi(-(digits as i32)));
-        self.0.resize(event.state.len(), B::ZERO);
         let time = event.time.value().bound().abs();
         let mut too_few = time > errors.time && errors.time > time * share;
         for ((value, error), size) in event.state.iter().zip(&errors.state).zip(&mut self.0) {

@@ -69,8 +69,8 @@ impl<T: Arithmetic> Rows<'_, T> {
     pub(super) fn each(&self, take: Taker<'_>) -> Result<Outcome> {
         let mut run = self.run(T::exact(self.limits.until))?;
         let (mut end, mut passed) = (RunEnd::default(), Passed::default());
-        let mut sizes = Sizes::new();
         let mut last = run.start();
+        let mut sizes = Sizes::of(&last);
         self.give(0, &last, |_| String::new(), take)?;
         while self.limits.events.is_none_or(|wanted| passed.count < wanted) {
             let Some(event) = run.next() else { break };
@@ -80,7 +80,7 @@ impl<T: Arithmetic> Rows<'_, T> {
                 break;
             }
             let row = passed.count + 1;
-            if row >= self.done && self.needs_more_bits(&*run, &event, &mut sizes) {
+            if self.needs_more_bits(&*run, &event, &mut sizes) && row >= self.done {
                 return Ok(Outcome::MoreBits(row));
             }
             if !self.passes(&event, &mut passed, &mut end) {

@@ -29,7 +29,7 @@ impl<T: Arithmetic> Rows<'_, T> {
         let mut run = self.run(times.at(0))?;
         let (mut end, mut passed) = (RunEnd::default(), Passed::default());
         let mut last = run.start();
-        let mut sizes = Sizes::new();
+        let mut sizes = Sizes::of(&last);
         for n in 1_u64.. {
             let sampled = self.next_sample(&mut *run, &mut last, &mut passed, &mut end)?;
             let row = n as usize - 1;
@@ -40,8 +40,9 @@ impl<T: Arithmetic> Rows<'_, T> {
                 }
                 break;
             };
+            let needs_more_bits = self.needs_more_bits(&*run, &sample, &mut sizes);
             if row >= self.done {
-                if self.needs_more_bits(&*run, &sample, &mut sizes) {
+                if needs_more_bits {
                     return Ok(Outcome::MoreBits(row));
                 }
                 take(self.sample(&sample)?)?;
