@@ -87,7 +87,7 @@ fn assert_at<T: Number + std::fmt::Debug>([before, ending]: [&Event<T>; 2]) {
 }
 
 /// A motion of which nothing is known but that it is (sin t, cos t), at an ending.
-fn assert_on_circle<T: Number + std::fmt::Debug>(ending: &Event<T>) {
+fn assert_on_circle<T: Number<Bound = f64> + std::fmt::Debug>(ending: &Event<T>) {
     let time = DoubleDouble::exact(ending.time.high.to_f64())
         + DoubleDouble::exact((ending.time.high - T::exact(ending.time.high.to_f64())).to_f64())
         + DoubleDouble::exact(ending.time.low.to_f64());

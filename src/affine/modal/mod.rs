@@ -120,9 +120,9 @@ pub(super) fn blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> 
 /// The entries of z by their couplings: none of a set depends on one of another set.
 fn components(exact: &[Row]) -> Vec<Vec<usize>> {
     let mut parts: Vec<Vec<usize>> = Vec::new();
-    for n in 0..exact.len() {
+    for (n, row) in exact.iter().enumerate() {
         let is_coupled = |part: &Vec<usize>| {
-            part.iter().any(|k| !(exact[n][*k].is_zero() && exact[*k][n].is_zero()))
+            part.iter().any(|k| !(row[*k].is_zero() && exact[*k][n].is_zero()))
         };
         let (joined, apart): (Vec<_>, Vec<_>) = parts.into_iter().partition(is_coupled);
         let mut part: Vec<usize> = joined.into_iter().flatten().chain([n]).collect();

@@ -54,8 +54,8 @@ pub struct Event<T: Number> {
 impl<T: Number> Clone for Event<T> {
     fn clone(&self) -> Self {
         Self {
-            what: self.what.clone(),
-            time: self.time.clone(),
+            what: self.what,
+            time: self.time,
             state: self.state.clone(),
             mode: self.mode,
             errors: self.errors.clone(),
@@ -65,8 +65,7 @@ impl<T: Number> Clone for Event<T> {
     /// Reuses the memory of the state.
     #[inline]
     fn clone_from(&mut self, other: &Self) {
-        self.what.clone_from(&other.what);
-        self.time.clone_from(&other.time);
+        (self.what, self.time) = (other.what, other.time);
         self.state.clone_from(&other.state);
         self.mode = other.mode;
         self.errors.clone_from(&other.errors);

@@ -66,6 +66,7 @@ pub fn root(number: &RBig) -> Option<RBig> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 mod tests {
     use super::*;
 

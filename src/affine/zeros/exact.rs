@@ -314,6 +314,7 @@ impl<'a> Oscillation<'a> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 mod tests {
     use super::*;
 

@@ -149,7 +149,18 @@ impl Number for DoubleDouble {
     }
 
     fn exp(self) -> Self {
-        Self(self.0.exp())
+        /// The parts of a logarithm of two by multiples of which `xprec` reduces an argument, and
+        /// the distance from a tie of two multiples within which it refuses one.
+        const PARTS: f64 = 128.0 / std::f64::consts::LN_2;
+        const TIE: f64 = 1e-6;
+        /// 0.36 of such a part.
+        const STEP: f64 = 1.0 / 512.0;
+        let share = (self.0.hi() * PARTS).fract().abs();
+        if (share - 0.5).abs() > TIE {
+            return Self(self.0.exp());
+        }
+        let step = Self::exact(STEP);
+        Self((self - step).0.exp()) * Self(step.0.exp())
     }
 
     fn sqrt(self) -> Self {

@@ -141,3 +141,15 @@ fn an_angle_beyond_the_reduction_is_no_number() {
     }
     assert_eq!(DoubleDouble::exact(-1e6).exp().to_f64(), 0.0);
 }
+
+/// The argument is half-way between two multiples of log(2)/128, at which `xprec` would panic.
+#[test]
+fn the_exponential_is_good_at_a_tie_of_its_reduction() {
+    let part = std::f64::consts::LN_2 / 128.0;
+    for n in 0..2000 {
+        let half = DoubleDouble::new(-(f64::from(n) + 0.5) * part, 1e-19);
+        let (whole, parts) = (half.exp(), (half * DoubleDouble::exact(0.5)).exp());
+        let off = (whole - parts * parts).to_f64().abs();
+        assert!(off <= 64.0 * UNIT * whole.to_f64(), "{n}: {off:e}");
+    }
+}

@@ -173,8 +173,8 @@ impl<T: Arithmetic> Rows<'_, T> {
     /// Whether the error of an event's time is more than a rounding of the system's unit of time: a
     /// time next to zero has few digits without that.
     fn has_large_error(&self, event: &Event<T>) -> bool {
-        let error = event.errors.as_ref().map_or(T::Bound::INFINITY, |it| it.time);
-        !(error <= f64::EPSILON * self.system.time_scale)
+        let small = f64::EPSILON * self.system.time_scale;
+        event.errors.as_ref().is_none_or(|it| it.time > small || !it.time.is_finite())
     }
 
     /// Shows the share of the run that is done: of its time, or of its events where that is more.
