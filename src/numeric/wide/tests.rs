@@ -105,7 +105,7 @@ fn known_values_hold_to_sixty_digits() {
 #[test]
 fn what_is_no_number_tells_nothing() {
     let nan = Small::exact(f64::INFINITY);
-    assert!(!(nan < Small::one()) && !(nan >= Small::one()) && nan != nan);
+    assert!(nan.partial_cmp(&Small::one()).is_none() && nan.partial_cmp(&nan).is_none());
     assert!((Small::one() / Small::zero()).to_f64().is_nan());
     assert!((-Small::one()).sqrt().to_f64().is_nan());
     assert_eq!(Small::exact(-1e300).exp(), Small::zero());
