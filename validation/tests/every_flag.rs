@@ -90,6 +90,7 @@ const ROWS: &[Row] = &[
     (&["simulate", "events"], "--until", NUMBERS, "at or after the start"),
     (&["events"], "--events", INTEGERS, "an integer, 1 to"),
     (&["events"], "--samples", INTEGERS, "1 to 4294967295"),
+    (&["events"], "--max-bits", INTEGERS, "an integer, 106 to 3392"),
     (&["events"], "--max-events", INTEGERS, "an integer, 1 to 1e9"),
     (&["events"], "--max-events", &["0", "2e9"], "an integer, 1 to 1e9"),
     (&["events"], "--digits", WORDS, "17, 25"),

@@ -39,7 +39,8 @@ fn run(command: &str, folder: &Path) -> Option<i32> {
 /// Drift per period against the parameter, which is kept as its row has it.
 fn drift(folder: &Path, name: &str) -> BTreeMap<String, f64> {
     let csv = std::fs::read_to_string(folder.join(name)).expect("the scan is there");
-    let last = |row: &Vec<String>| row.last().map(|it| number(it)).expect("a drift");
+    // The last column is the standard error of the one before it.
+    let last = |row: &Vec<String>| row.iter().rev().nth(1).map(|it| number(it)).expect("a drift");
     rows(&csv).iter().map(|row| (row[0].clone(), last(row))).collect()
 }
 

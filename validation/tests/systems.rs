@@ -109,19 +109,42 @@ fn endings_have_their_exit_codes() {
     let (code, last, said) = ended(&inelastic);
     assert_eq!((code, last.as_str()), (Some(1), "no-progress"), "{said}");
     assert!(said.contains("64 events"), "{said}");
-    // A touch that is exact is decided by no number of bits.
-    let touched = ["events", "watched-ball", "--until", "1"];
-    assert_eq!(ended(&touched).1, "undecided");
-    // Its row is the motion that is known, x = t - t^2, later than the event before.
-    let output = run(&touched);
-    let rows = rows(&text(&output.stdout));
-    assert_eq!(rows[rows.len() - 2][2], "up");
-    let last = rows[rows.len() - 1].iter().map(|it| it.parse::<f64>().unwrap_or(f64::NAN));
-    let last: Vec<f64> = last.collect();
-    let (time, x, v) = (last[1], last[4], last[5]);
-    assert!(time > 0.49 && time < 0.5, "{time:?}");
-    assert!((x - (time - time * time)).abs() < 1e-15 && (v - (1.0 - 2.0 * time)).abs() < 1e-15);
-    assert!(text(&output.stderr).contains("ends at 0.49"), "{}", text(&output.stderr));
+}
+
+/// a = exp(-t) touches b + 1/4 with b = exp(-2 t) at the logarithm of two, which no number of bits
+/// decides.
+const TOUCH: &str = "schema = 1\nname = \"touch\"\nstates = [\"a\", \"b\"]\n[[mode]]\nname = \"go\"\n\
+     equations = [\"a' = -a\", \"b' = -2*b\"]\n[[mode.watch]]\nname = \"down\"\nguard = \"4*a < 3\"\n\
+     [[mode.watch]]\nname = \"touch\"\nguard = \"4*a > 4*b + 1\"\n\
+     [start]\nmode = \"go\"\na = 1\nb = 1\n";
+
+/// The last row is the motion that is known, later than the event before.
+#[test]
+fn a_touch_that_no_bits_decide_shows_the_motion_up_to_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("touch.system.toml");
+    std::fs::write(&file, TOUCH).expect("written");
+    for bits in ["106", "424"] {
+        let file = file.to_str().expect("UTF-8");
+        let output = run(&["events", file, "--until", "1", "--max-bits", bits]);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(said.contains(&format!("is not decided by {bits} bits")), "{said}");
+        assert!(said.contains("the guard of \"touch\" crosses: nearer to zero than 1e-"), "{said}");
+        let rows = rows(&text(&output.stdout));
+        assert_eq!((rows[1][2].as_str(), rows[2][2].as_str()), ("down", "undecided"));
+        let [time, a, b] = [1, 4, 5].map(|n| rows[2][n].parse::<f64>().expect("a number"));
+        assert!(time > 0.69 && time < std::f64::consts::LN_2 + 1e-15, "{time:?}");
+        assert!((a - (-time).exp()).abs() < 1e-15 && (b - (-2.0 * time).exp()).abs() < 1e-15);
+    }
+}
+
+/// A touch that the model decides is no event and ends no run.
+#[test]
+fn a_touch_of_the_model_is_no_event() {
+    let csv = stdout(&["events", "watched-ball", "--until", "1"]);
+    let named: Vec<String> = rows(&csv).into_iter().map(|row| row[2].clone()).collect();
+    assert_eq!(named, ["", "up", "apex", "down", "impact"], "{csv}");
 }
 
 /// Its time has no digit, and is known all the same.
@@ -153,7 +176,8 @@ fn what_ends_a_run_is_named() {
     let grown = "schema = 1\nname = \"grown\"\nstates = [\"x\"]\n[[mode]]\nname = \"free\"\n\
                  equations = [\"x' = 1000*x\"]\n[start]\nmode = \"free\"\nx = 1\n";
     std::fs::write(&file, grown).expect("written");
-    let output = run(&["events", file.to_str().expect("UTF-8"), "--until", "2"]);
+    let output =
+        run(&["events", file.to_str().expect("UTF-8"), "--until", "2", "--max-bits", "106"]);
     let said = text(&output.stderr);
     assert!(said.contains("is too large for its bounds to be numbers"), "{said}");
 }

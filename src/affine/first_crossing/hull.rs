@@ -176,8 +176,8 @@ fn larger<B: Bound>(a: B, b: B) -> B {
     if a < b { b } else { a }
 }
 
-/// Coefficients in f64: only their quotients matter, so that a common power of two is left out where
-/// their exponents are beyond those of f64.
+/// Coefficients in f64: only their quotients matter, so that a common power of two is left out
+/// where their exponents are beyond those of f64.
 #[inline]
 fn relative<B: Bound>(hull: [B; 9]) -> [f64; 9] {
     if B::UNDERFLOW > 0.0 {

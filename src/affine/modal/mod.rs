@@ -105,8 +105,8 @@ impl Block {
     }
 }
 
-/// The blocks of a matrix, in numbers of so many bits. Entries of z that do not depend on each other
-/// are taken apart by themselves, so that no closeness of eigenvalues joins them.
+/// The blocks of a matrix, in numbers of so many bits. Entries of z that do not depend on each
+/// other are taken apart by themselves, so that no closeness of eigenvalues joins them.
 pub(super) fn blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> {
     let embedded = |part: &Vec<usize>| {
         let row = |i: &usize| part.iter().map(|j| exact[*i][*j].clone()).collect();
@@ -121,9 +121,8 @@ pub(super) fn blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> 
 fn components(exact: &[Row]) -> Vec<Vec<usize>> {
     let mut parts: Vec<Vec<usize>> = Vec::new();
     for (n, row) in exact.iter().enumerate() {
-        let is_coupled = |part: &Vec<usize>| {
-            part.iter().any(|k| !(row[*k].is_zero() && exact[*k][n].is_zero()))
-        };
+        let is_coupled =
+            |part: &Vec<usize>| part.iter().any(|k| !(row[*k].is_zero() && exact[*k][n].is_zero()));
         let (joined, apart): (Vec<_>, Vec<_>) = parts.into_iter().partition(is_coupled);
         let mut part: Vec<usize> = joined.into_iter().flatten().chain([n]).collect();
         part.sort_unstable();
@@ -267,7 +266,9 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue], time_scale: f64) -> Option<
     let (mut annihilator, mut size) = (identity(matrix.len()), BigReal::one());
     for root in cluster {
         let factor = factor(matrix, root);
-        let own = largest(&factor);
+        // Terms of the factor may cancel.
+        let term = &largest(matrix) + &root.value.norm();
+        let own = if root.is_real() { term } else { &term * &term };
         for _ in 0..root.multiplicity {
             (annihilator, size) = (product(&annihilator, &factor), &size * &own);
         }

@@ -1,6 +1,5 @@
-//! Runs that follow their errors, in the arithmetics whose generic code is compiled here.
-//!
-//! Whoever asks for such a run through [`Arithmetic`] does not compile the solver once more.
+//! Runs that follow their errors as objects: whoever asks for one through [`Arithmetic`] does not
+//! compile the solver once more.
 
 use super::Run;
 use crate::affine::arithmetic::clock::Time;
@@ -8,7 +7,6 @@ use crate::affine::model::system::{StartPoint, System};
 use crate::affine::solver::event::{Ending, Event, What};
 use crate::affine::solver::{Solver, Unprepared};
 use crate::numeric::number::Number;
-use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 
 /// A run that follows its errors, as an object: [`Run`] has the same methods.
 pub trait EnclosedRun<T: Number>: Iterator<Item = Event<T>> {
@@ -52,41 +50,6 @@ pub trait Arithmetic: Number {
         until: Self,
     ) -> Option<Box<dyn EnclosedRun<Self> + 'a>>;
 }
-
-/// Implements [`Arithmetic`] for a number of so many bits, in the crate that names it.
-#[macro_export]
-macro_rules! affine_arithmetic {
-    ($number:ty, $bits:expr) => {
-        impl $crate::affine::Arithmetic for $number {
-            const BITS: u32 = $bits;
-
-            fn solver(
-                system: &$crate::affine::System,
-                backward: bool,
-            ) -> Result<$crate::affine::Solver<Self>, $crate::affine::Unprepared> {
-                if backward {
-                    $crate::affine::Solver::backward(system)
-                } else {
-                    $crate::affine::Solver::new(system)
-                }
-            }
-
-            fn enclosed<'a>(
-                solver: &'a $crate::affine::Solver<Self>,
-                start: &$crate::affine::StartPoint,
-                until: Self,
-            ) -> Option<Box<dyn $crate::affine::EnclosedRun<Self> + 'a>> {
-                Some(Box::new(solver.run_enclosed(start, until)?))
-            }
-        }
-    };
-}
-
-affine_arithmetic!(Bits212, 212);
-affine_arithmetic!(Bits424, 424);
-affine_arithmetic!(Bits848, 848);
-affine_arithmetic!(Bits1696, 1696);
-affine_arithmetic!(Bits3392, 3392);
 
 impl<T: Number> EnclosedRun<T> for Run<'_, T> {
     fn start(&self) -> Event<T> {

@@ -81,6 +81,7 @@ impl<T: Number> Run<'_, T> {
             let own = self.solver.phase_roundings(time);
             roundings[at..at + 2].copy_from_slice(&own[at..at + 2]);
         }
+        roundings[solver_mode.flow.dimension - 1] = T::Bound::ZERO;
         Some(enclosure.at_crossing(&EnclosedCrossing {
             flow: &solver_mode.flow,
             matrix: &solver_mode.matrix,

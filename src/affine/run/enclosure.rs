@@ -6,8 +6,9 @@
 //! are too many, the smallest are replaced by a box ([`reduction`](super::reduction)). So errors
 //! that cancel do so here.
 //!
-//! The phase of the forcing is computed anew from the time of each event. So its error is that of
-//! the time, in each column, and no error of the phase is carried along.
+//! The phase of the forcing is computed anew from the time of each event, and so is the entry of z
+//! that is 1. So the phase has the error of the time, in each column, and no errors of either are
+//! carried along.
 
 use crate::affine::arithmetic::vector::{Vector, dot, sum_rounding};
 use crate::affine::closed_form::bound::{BlockGrowth, ORDERS};
@@ -185,9 +186,7 @@ impl<B: Bound> Enclosure<B> {
         let mut own = ErrorColumn::ZERO;
         own.delayed((rounded + second) * OUTWARD, &rates);
         later.columns.push(own);
-        if let Some(at) = crossing.phase {
-            later.tie_phase(at, &rates);
-        }
+        later.anchor(crossing.phase, flow.dimension - 1, &rates);
         let mut rest = crossing.roundings;
         let bends = bends(crossing.matrix, &rates, whole);
         let roundings = rate_roundings(crossing.matrix, &crossing.state, whole);
@@ -198,10 +197,12 @@ impl<B: Bound> Enclosure<B> {
         later
     }
 
-    /// Makes the errors of cos theta and sin theta those that the errors of the time make.
-    fn tie_phase(&mut self, at: usize, rates: &[B]) {
+    /// Takes away what is computed anew at an event: the errors of cos theta and sin theta become
+    /// those that the errors of the time make, and the entry that is 1 has none.
+    fn anchor(&mut self, phase: Option<usize>, one: usize, rates: &[B]) {
         for column in &mut self.columns {
-            for n in [at, at + 1] {
+            column.state[one] = B::ZERO;
+            for n in phase.map_or(0..0, |at| at..at + 2) {
                 column.state[n] = rates[n] * column.time;
             }
         }

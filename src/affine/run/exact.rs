@@ -47,8 +47,8 @@ impl ExactRun {
 }
 
 impl<T: Number> Run<'_, T> {
-    /// Whether a guard of the forcing angle alone never crosses by the model: it stays inside, or is
-    /// watched and keeps its sign.
+    /// Whether a guard of the forcing angle alone never crosses by the model: it stays inside, or
+    /// is watched and keeps its sign.
     pub(super) fn never_crosses(&self, mode: usize, guard: usize) -> bool {
         let (Some(_), Some(circle)) = (&self.exact, &self.exact_mode(mode).circles[guard]) else {
             return false;

@@ -3,8 +3,8 @@
 //! A guard whose derivatives end is a polynomial of the time. Where it is a parabola with rational
 //! coefficients, its touches, and its crossings at rational times, are known exactly. A guard that
 //! is a constant and one oscillation never crosses where the amplitude is at most the constant, and
-//! it may cross where the cosine is rational. Without this no number of bits would tell a touch from
-//! a crossing, or which of two guards that cross at one instant is the first.
+//! it may cross where the cosine is rational. Without this no number of bits would tell a touch
+//! from a crossing, or which of two guards that cross at one instant is the first.
 
 use super::circle::{Circle, root};
 use crate::affine::model::system::{Mode, Row, Successor, System};
@@ -101,7 +101,8 @@ impl Chain {
         Some(Fate { begin, keeps_sign })
     }
 
-    /// The instant of the guard's zero that is about a time after the entry, if it is known exactly.
+    /// The instant of the guard's zero that is about a time after the entry, if it is known
+    /// exactly.
     pub fn zero_near(&self, entries: &Entries, time: f64) -> Option<Instant> {
         let values = self.values(entries)?;
         match &self.kind {
@@ -241,7 +242,8 @@ fn parabola_keeps_sign(values: &[RBig], rises: bool) -> bool {
 /// The zeros of a polynomial of at most the second degree with these derivatives, if they are
 /// rational.
 fn parabola_roots(values: &[RBig]) -> Vec<RBig> {
-    match values {
+    let degree = values.iter().rposition(|it| !it.is_zero()).unwrap_or(0);
+    match &values[..=degree] {
         [value, slope] => vec![-value / slope],
         [value, slope, bend] => {
             let rest = slope * slope - RBig::from(2) * value * bend;
@@ -252,8 +254,8 @@ fn parabola_roots(values: &[RBig]) -> Vec<RBig> {
     }
 }
 
-/// The only item of an iterator, if it has one: of two zeros that f64 does not tell apart neither is
-/// taken.
+/// The only item of an iterator, if it has one: of two zeros that f64 does not tell apart neither
+/// is taken.
 fn the_only<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
     let first = items.next()?;
     items.all(|it| it == first).then_some(first)
@@ -297,6 +299,9 @@ impl<'a> Oscillation<'a> {
     /// The zero that is about a time, if cosine and sine over the frequency are rational there.
     fn zero_near(&self, time: f64) -> Option<Instant> {
         let Self { square, constant, cos, sin, amplitude } = self;
+        if amplitude.is_zero() {
+            return None;
+        }
         let root = root(&((amplitude - constant * constant) / *square))?;
         let frequency = square.to_f64().value().sqrt();
         let (sin_now, cos_now) = libm::sincos(frequency * time);

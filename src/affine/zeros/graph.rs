@@ -265,8 +265,8 @@ impl ModeResidues {
     }
 }
 
-/// For each rational point at which a guard of the forcing angle is zero, the rows cos theta - p and
-/// sin theta - q; none if a coefficient has no residue.
+/// For each rational point at which a guard of the forcing angle is zero, the rows cos theta - p
+/// and sin theta - q; none if a coefficient has no residue.
 fn points(guard: &Row, states: usize) -> Option<[Vec<Residues>; 2]> {
     let Some(points) = Circle::of(guard, states).and_then(|it| it.points) else {
         return Some([Vec::new(), Vec::new()]);

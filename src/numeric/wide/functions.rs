@@ -15,8 +15,8 @@ const LARGEST_EXPONENT: i64 = 61;
 /// The number of bits to which an f64 begins an iteration.
 const FIRST_BITS: usize = 48;
 
-/// The sum of 1/((2 k + 1) n^(2 k + 1)) as a fraction, with alternating signs or without: the inverse
-/// (hyperbolic) tangent of 1/n.
+/// The sum of 1/((2 k + 1) n^(2 k + 1)) as a fraction, with alternating signs or without: the
+/// inverse (hyperbolic) tangent of 1/n.
 fn inverse_tangent(n: u64, alternates: bool) -> [u64; CONSTANT] {
     let mut power = [0; CONSTANT];
     // 2^(64 CONSTANT) - 1 for one: the words below are far beyond those that are used.
@@ -49,7 +49,8 @@ fn quarter_pi() -> &'static [u64; CONSTANT] {
     })
 }
 
-/// The natural logarithm of two as a fraction: 18 artanh(1/26) - 2 artanh(1/4801) + 8 artanh(1/8749).
+/// The natural logarithm of two as a fraction:
+/// 18 artanh(1/26) - 2 artanh(1/4801) + 8 artanh(1/8749).
 fn logarithm_of_two() -> &'static [u64; CONSTANT] {
     static WORDS: OnceLock<[u64; CONSTANT]> = OnceLock::new();
     WORDS.get_or_init(|| {

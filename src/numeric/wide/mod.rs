@@ -264,7 +264,9 @@ impl<const WORDS: usize, const BITS: usize> Number for Wide<WORDS, BITS> {
             Kind::Zero => ScaledF64::ZERO,
             Kind::Unknown => ScaledF64::of(f64::NAN),
             Kind::Ordinary => {
-                let top = self.words[WORDS - 1] as f64;
+                // An odd word keeps on which side of a tie the others are.
+                let rest = self.words[..WORDS - 1].iter().any(|it| *it != 0);
+                let top = (self.words[WORDS - 1] | u64::from(rest)) as f64;
                 let size = if self.is_negative { -top } else { top };
                 ScaledF64::new(size, self.exponent - 64)
             }

@@ -9,6 +9,7 @@ mod precision;
 mod progress;
 mod rows;
 mod samples;
+mod sizes;
 mod write;
 
 use super::shared::format::OutputFlags;

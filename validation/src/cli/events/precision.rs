@@ -7,9 +7,8 @@ use super::rows::{Limits, Outcome, Rows};
 use crate::cli::shared::long_work::Bar;
 use crate::truth::DoubleDouble;
 use anyhow::Result;
-use percuss::affine::{Arithmetic, Event, System};
+use percuss::affine::{Arithmetic, System};
 use percuss::affine::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
-use percuss::number::Bound;
 
 /// The fewest and the most bits of an arithmetic.
 pub(super) const BITS: std::ops::RangeInclusive<u64> = 106..=3392;
@@ -69,36 +68,5 @@ impl<'a> Precision<'a> {
         let may_go_on = 2 * T::BITS <= self.most;
         let Self { system, digits, limits, bar, .. } = *self;
         work.run(&Rows { system, solver: &solver, digits, limits, bar, done, may_go_on })
-    }
-}
-
-/// The largest size of each state so far, beside which a value may be zero.
-pub(super) struct Sizes<B>(Vec<B>);
-
-impl<B: Bound> Sizes<B> {
-    /// The sizes at the start of a run.
-    pub(super) fn of<T: Arithmetic<Bound = B>>(start: &Event<T>) -> Self {
-        Self(start.state.iter().map(|it| it.bound().abs()).collect())
-    }
-
-    /// Adds the sizes of an event, and says whether the time or a state has fewer digits than are wanted. A value that may be zero has
-    /// enough of them if it is known that well beside the largest that the state has had: more bits
-    /// would not make it another one than zero.
-    pub(super) fn have_too_few_digits<T: Arithmetic<Bound = B>>(
-        &mut self,
-        event: &Event<T>,
-        digits: usize,
-    ) -> bool {
-        let Some(errors) = &event.errors else { return false };
-        let share = B::of(0.5 * 10_f64.powi(-(digits as i32)));
-        let time = event.time.value().bound().abs();
-        let mut too_few = time > errors.time && errors.time > time * share;
-        for ((value, error), size) in event.state.iter().zip(&errors.state).zip(&mut self.0) {
-            let value = value.bound().abs();
-            *size = size.max(value);
-            let beside = if value > *error { value } else { *size };
-            too_few |= *error > beside * share;
-        }
-        too_few
     }
 }

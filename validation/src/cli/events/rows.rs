@@ -1,8 +1,8 @@
 //! The rows of `events`, made one by one: a long run costs no memory.
 
 use super::digits::{has_digits, proved, significant};
-use super::precision::Sizes;
 use super::progress::{Passed, RunEnd};
+use super::sizes::Sizes;
 use crate::cli::shared::long_work::Bar;
 use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};

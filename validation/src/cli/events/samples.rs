@@ -1,8 +1,8 @@
 //! The rows of `events --samples K`: the state at equal steps of the time, not at events.
 
-use super::precision::Sizes;
 use super::progress::{Passed, RunEnd};
 use super::rows::{Limits, Outcome, Rows, in_order};
+use super::sizes::Sizes;
 use anyhow::Result;
 use percuss::affine::{Arithmetic, EnclosedRun, Ending, Event, Rational, Time, What};
 use percuss::number::Number;
@@ -56,8 +56,8 @@ impl<T: Arithmetic> Rows<'_, T> {
         Ok(Outcome::Ended(end))
     }
 
-    /// The event at the horizon of a run; none where the run ends before, or has the events that are
-    /// wanted.
+    /// The event at the horizon of a run; none where the run ends before, or has the events that
+    /// are wanted.
     fn next_sample(
         &self,
         run: &mut dyn EnclosedRun<T>,
