@@ -3,6 +3,7 @@
 mod attack;
 mod brute;
 mod close_rates;
+mod decided;
 mod enclosed;
 mod endings;
 mod files;

@@ -47,8 +47,10 @@ struct Place {
 /// the precision does not separate the invariant spaces.
 pub(super) fn triangular(block: &Block, cluster: &[Eigenvalue], time_scale: f64) -> Option<Block> {
     let wanted = wanted(cluster, time_scale);
-    let decays = cluster.iter().all(|it| it.value.re < BigReal::zero());
-    let is_small = logarithmic_norm(&block.matrix) <= if decays { 0.0 } else { wanted };
+    // Bounds of what decays are to decay nearly as fast.
+    let decay = slowest_decay(cluster);
+    let largest = if decay > 0.0 { -(1.0 - OF_THE_SPREAD) * decay } else { wanted };
+    let is_small = logarithmic_norm(&block.matrix) <= largest;
     if is_small || least(&block.matrix) < FAINT * norm(&block.matrix) {
         return None;
     }
@@ -200,21 +202,26 @@ fn clear_below(matrix: &mut BigMatrix, places: &[Place]) -> Option<()> {
 }
 
 /// The couplings at which bounds grow little faster than the motion. Where everything decays they
-/// are below the slowest rate, unless that is tiny, so that bounds decay as well.
+/// are far below the slowest rate, unless that is tiny, so that bounds decay nearly as fast.
 fn wanted(cluster: &[Eigenvalue], time_scale: f64) -> f64 {
     let values = || cluster.iter().map(|it| &it.value);
     /// A share of the fastest rate below which a decay counts for none.
     const TINY: f64 = OF_THE_FASTEST * OF_THE_FASTEST;
-    let decay = values().map(|it| -it.re.to_f64()).fold(f64::INFINITY, f64::min);
+    let decay = slowest_decay(cluster);
     let apart =
         |a: &BigComplex| -> Vec<f64> { values().map(|b| (a - b).norm().to_f64()).collect() };
     let spread = values().flat_map(apart).fold(0.0, f64::max);
     let fastest = values().map(|it| it.norm().to_f64()).fold(0.0, f64::max);
     let slow = OF_THE_SPREAD * SLOW / time_scale;
     if decay > TINY * fastest {
-        return decay;
+        return OF_THE_FASTEST * decay;
     }
     decay.max(OF_THE_SPREAD * spread).max(OF_THE_FASTEST * fastest).max(slow)
+}
+
+/// The slowest rate at which a cluster decays; not positive where a part of it does not.
+fn slowest_decay(cluster: &[Eigenvalue]) -> f64 {
+    cluster.iter().map(|it| -it.value.re.to_f64()).fold(f64::INFINITY, f64::min)
 }
 
 /// Powers of two in which the co-ordinates are measured, so that the couplings of each to all

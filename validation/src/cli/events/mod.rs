@@ -61,8 +61,8 @@ pub(super) struct Arguments {
     /// --events]
     #[arg(long, value_name = "N", value_parser = max_events, allow_hyphen_values = true)]
     max_events: Option<usize>,
-    /// The most bits that a run may take; it begins with 106, and takes twice as many where these do
-    /// not decide or have too few digits [default: 3392]
+    /// The most bits that a run may take: it begins with 106 and takes twice as many where these
+    /// do not decide or have too few digits [default: 3392]
     #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(*precision::BITS.start(), *precision::BITS.end()), allow_hyphen_values = true)]
     max_bits: Option<u32>,
     /// A file whose [start] replaces the system's, and whose [parameters] replace some; a case of

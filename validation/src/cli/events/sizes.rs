@@ -12,9 +12,9 @@ impl<B: Bound> Sizes<B> {
         Self(start.state.iter().map(|it| it.bound().abs()).collect())
     }
 
-    /// Adds the sizes of an event, and says whether the time or a state has fewer digits than are wanted. A value that may be zero has
-    /// enough of them if it is known that well beside the largest that the state has had: more bits
-    /// would not make it another one than zero.
+    /// Adds the sizes of an event, and says whether the time or a state has fewer digits than are
+    /// wanted. A value that may be zero has enough of them if it is known that well beside the
+    /// largest that the state has had: more bits would not make it another one than zero.
     pub(super) fn have_too_few_digits<T: Arithmetic<Bound = B>>(
         &mut self,
         event: &Event<T>,
