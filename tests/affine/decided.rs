@@ -3,7 +3,7 @@
 use super::{enclosed, names, system};
 use crate::double_double::DoubleDouble;
 use percuss::affine::{Bits212, Ending, Event, System, What};
-use percuss::number::{Bound, Number};
+use percuss::number::Number;
 
 /// A system of one mode that is watched, with a start.
 fn watched(states: &str, head: &str, equations: &str, guards: &[&str], start: &str) -> System {

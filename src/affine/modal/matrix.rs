@@ -128,3 +128,25 @@ pub fn inverse(matrix: &BigMatrix) -> Option<BigMatrix> {
     }
     Some(rows.into_iter().map(|row| row[size..].to_vec()).collect())
 }
+
+/// exp(B 2^exponent), where |B 2^exponent| is at most 1/2: a Taylor series to the last bit.
+pub fn exponential(matrix: &[Vec<BigReal>], exponent: isize) -> BigMatrix {
+    let scaled: BigMatrix =
+        matrix.iter().map(|row| row.iter().map(|it| it.scaled(exponent)).collect()).collect();
+    // Each term is below half of the one before it, divided by its number.
+    let bits = matrix.first().map_or(0, |row| row[0].bits());
+    let mut sum = identity(matrix.len());
+    for k in (1..=3 * bits / 16).rev() {
+        let factor = BigReal::exact(k as f64);
+        sum = product(&scaled, &sum);
+        sum.iter_mut().flatten().for_each(|it| *it = &*it / &factor);
+        sum = shifted(&sum, &BigReal::one());
+    }
+    sum
+}
+
+/// The first, second, ... power of a matrix.
+pub fn multiples(matrix: &BigMatrix, count: usize) -> Vec<BigMatrix> {
+    let next = |last: &BigMatrix| Some(product(last, matrix));
+    std::iter::successors(Some(matrix.clone()), next).take(count).collect()
+}

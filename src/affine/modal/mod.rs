@@ -5,18 +5,21 @@
 //! eigenvectors nearly coincide stay together in one block. This is done once a mode, in numbers of
 //! several hundred bits.
 //!
+//! [`components`] are entries of z that do not depend on others, each with a matrix of their own.
 //! [`polynomial`] finds the eigenvalues, and this file makes blocks of them, with the products,
 //! inverses and null spaces of [`matrix`]. [`quasi_triangular`] chooses the co-ordinates of
 //! eigenvalues that stay together. Read this file first.
 
+mod components;
 mod matrix;
 mod polynomial;
 mod quasi_triangular;
 
-pub(super) use self::matrix::row_times;
+use self::components::components;
 use self::matrix::{
     BigMatrix, identity, inverse, largest, null_space, product, shifted, transposed,
 };
+pub(super) use self::matrix::{exponential, multiples, row_times};
 use self::polynomial::{Eigenvalue, eigenvalues};
 use self::quasi_triangular::triangular;
 use crate::affine::arithmetic::real::BigReal;
@@ -71,23 +74,6 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// The block of a part of the entries of z as one of all of them.
-    fn embedded(self, part: &[usize], size: usize) -> Self {
-        let width = self.matrix.len();
-        let mut columns = vec![vec![BigReal::zero(); width]; size];
-        let mut columns_off = vec![vec![ScaledF64::ZERO; width]; size];
-        let [own_columns_off, own_rows_off] = self.off;
-        for ((place, row), off) in part.iter().zip(self.columns).zip(own_columns_off) {
-            (columns[*place], columns_off[*place]) = (row, off);
-        }
-        let rows = self.rows.iter().map(|row| spread_over(part, row, &BigReal::zero(), size));
-        let rows_off = own_rows_off.iter();
-        let rows_off = rows_off.map(|row| spread_over(part, row, &ScaledF64::ZERO, size));
-        let off = [columns_off, rows_off.collect()];
-        let rows = rows.collect();
-        Self { kind: self.kind, columns, rows, matrix: self.matrix, off }
-    }
-
     /// The largest rate at which the co-ordinates move, relative to their sizes and to the largest
     /// part of a state that each of them makes: where a basis keeps couplings small, some
     /// co-ordinates are large beside what they add to a state.
@@ -117,21 +103,6 @@ pub(super) fn blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> 
     components(exact).iter().flat_map(embedded).collect()
 }
 
-/// The entries of z by their couplings: none of a set depends on one of another set.
-fn components(exact: &[Row]) -> Vec<Vec<usize>> {
-    let mut parts: Vec<Vec<usize>> = Vec::new();
-    for (n, row) in exact.iter().enumerate() {
-        let is_coupled =
-            |part: &Vec<usize>| part.iter().any(|k| !(row[*k].is_zero() && exact[*k][n].is_zero()));
-        let (joined, apart): (Vec<_>, Vec<_>) = parts.into_iter().partition(is_coupled);
-        let mut part: Vec<usize> = joined.into_iter().flatten().chain([n]).collect();
-        part.sort_unstable();
-        parts = apart;
-        parts.push(part);
-    }
-    parts
-}
-
 /// The blocks of a matrix of coupled entries: it stays whole if it cannot be taken apart at this
 /// precision.
 fn connected_blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> {
@@ -157,13 +128,6 @@ pub(super) fn derivatives(row: &[BigReal], block: &Block, count: usize) -> Vec<V
     let first = row_times(row, &block.columns);
     let next = |last: &Vec<BigReal>| Some(row_times(last, &block.matrix));
     std::iter::successors(Some(first), next).take(count).collect()
-}
-
-/// A row whose entries have these places among so many, and zeros elsewhere.
-fn spread_over<E: Clone>(part: &[usize], row: &[E], zero: &E, size: usize) -> Vec<E> {
-    let mut whole = vec![zero.clone(); size];
-    part.iter().zip(row).for_each(|(place, entry)| whole[*place] = entry.clone());
-    whole
 }
 
 /// A block of the scaled matrix as one of the matrix itself.
@@ -412,26 +376,4 @@ pub(super) fn logarithmic_norm(matrix: &[Vec<BigReal>]) -> f64 {
         entry(i, i) + others.map(|j| 0.5 * (entry(i, j) + entry(j, i)).abs()).sum::<f64>()
     };
     (0..matrix.len()).map(row).fold(f64::NEG_INFINITY, f64::max)
-}
-
-/// exp(B 2^exponent), where |B 2^exponent| is at most 1/2: a Taylor series to the last bit.
-pub(super) fn exponential(matrix: &[Vec<BigReal>], exponent: isize) -> BigMatrix {
-    let scaled: BigMatrix =
-        matrix.iter().map(|row| row.iter().map(|it| it.scaled(exponent)).collect()).collect();
-    // Each term is below half of the one before it, divided by its number.
-    let bits = matrix.first().map_or(0, |row| row[0].bits());
-    let mut sum = identity(matrix.len());
-    for k in (1..=3 * bits / 16).rev() {
-        let factor = BigReal::exact(k as f64);
-        sum = product(&scaled, &sum);
-        sum.iter_mut().flatten().for_each(|it| *it = &*it / &factor);
-        sum = shifted(&sum, &BigReal::one());
-    }
-    sum
-}
-
-/// The first, second, ... power of a matrix.
-pub(super) fn multiples(matrix: &BigMatrix, count: usize) -> Vec<BigMatrix> {
-    let next = |last: &BigMatrix| Some(product(last, matrix));
-    std::iter::successors(Some(matrix.clone()), next).take(count).collect()
 }

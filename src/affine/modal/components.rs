@@ -1,0 +1,47 @@
+//! Entries of z that do not depend on each other: each set of them has a matrix of its own.
+
+use super::Block;
+use crate::affine::arithmetic::real::BigReal;
+use crate::affine::model::system::Row;
+use crate::numeric::number::{Bound, ScaledF64};
+
+/// The entries of z by their couplings: none of a set depends on one of another set.
+pub(super) fn components(exact: &[Row]) -> Vec<Vec<usize>> {
+    let mut parts: Vec<Vec<usize>> = Vec::new();
+    for (n, row) in exact.iter().enumerate() {
+        let is_coupled =
+            |part: &Vec<usize>| part.iter().any(|k| !(row[*k].is_zero() && exact[*k][n].is_zero()));
+        let (joined, apart): (Vec<_>, Vec<_>) = parts.into_iter().partition(is_coupled);
+        let mut part: Vec<usize> = joined.into_iter().flatten().chain([n]).collect();
+        part.sort_unstable();
+        parts = apart;
+        parts.push(part);
+    }
+    parts
+}
+
+impl Block {
+    /// The block of a part of the entries of z as one of all of them.
+    pub(super) fn embedded(self, part: &[usize], size: usize) -> Self {
+        let width = self.matrix.len();
+        let mut columns = vec![vec![BigReal::zero(); width]; size];
+        let mut columns_off = vec![vec![ScaledF64::ZERO; width]; size];
+        let [own_columns_off, own_rows_off] = self.off;
+        for ((place, row), off) in part.iter().zip(self.columns).zip(own_columns_off) {
+            (columns[*place], columns_off[*place]) = (row, off);
+        }
+        let rows = self.rows.iter().map(|row| spread_over(part, row, &BigReal::zero(), size));
+        let rows_off = own_rows_off.iter();
+        let rows_off = rows_off.map(|row| spread_over(part, row, &ScaledF64::ZERO, size));
+        let off = [columns_off, rows_off.collect()];
+        let rows = rows.collect();
+        Self { kind: self.kind, columns, rows, matrix: self.matrix, off }
+    }
+}
+
+/// A row whose entries have these places among so many, and zeros elsewhere.
+fn spread_over<E: Clone>(part: &[usize], row: &[E], zero: &E, size: usize) -> Vec<E> {
+    let mut whole = vec![zero.clone(); size];
+    part.iter().zip(row).for_each(|(place, entry)| whole[*place] = entry.clone());
+    whole
+}
