@@ -10,10 +10,6 @@ use crate::affine::modal;
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::numeric::number::{Bound, Number};
 
-/// The rounding that products of a nilpotent matrix leave of a zero, relative to the matrix's norm:
-/// 2^-300.
-const NOTHING: f64 = 4.909093465297727e-91;
-
 /// A strictly upper triangular matrix in some order of its rows, of which only the entries that are
 /// not zero are kept.
 #[derive(Clone, Debug)]
@@ -42,13 +38,25 @@ pub(super) fn nilpotent(block: &modal::Block, rate: &BigReal) -> (Vec<Vec<BigRea
     for (n, row) in matrix.iter_mut().enumerate() {
         row[n] = &row[n] - rate;
     }
-    let size = modal::norm(&block.matrix).max(modal::norm(&matrix));
-    let nothing = |power: &Vec<Vec<BigReal>>, k: usize| {
-        modal::norm(power) <= NOTHING * libm::pow(size, k as f64)
+    // Half of the bits are far more than what rounding leaves of a zero, entry by entry: entries of
+    // one matrix may have any sizes.
+    let is_nothing =
+        |entry: &BigReal, size: &BigReal| entry.abs() <= size.scaled(-(entry.bits() as isize) / 2);
+    let mut clean = matrix.clone();
+    for (n, row) in clean.iter_mut().enumerate() {
+        let terms = &block.matrix[n][n].abs() + &rate.abs();
+        if is_nothing(&row[n], &terms) {
+            row[n] = BigReal::zero();
+        }
+    }
+    let sizes = clean.iter().map(|row| row.iter().map(BigReal::abs).collect()).collect();
+    let powers = modal::multiples(&clean, matrix.len()).into_iter();
+    let mut powers = powers.zip(modal::multiples(&sizes, matrix.len()));
+    let is_zero = |(power, sizes): (Vec<Vec<BigReal>>, Vec<Vec<BigReal>>)| {
+        let entries = power.iter().flatten().zip(sizes.iter().flatten());
+        entries.into_iter().all(|(entry, size)| is_nothing(entry, size))
     };
-    let powers = modal::multiples(&matrix, matrix.len());
-    let index = powers.iter().enumerate().position(|(k, power)| nothing(power, k + 1));
-    let index = index.map_or(matrix.len(), |it| it + 1);
+    let index = powers.position(is_zero).map_or(matrix.len(), |it| it + 1);
     (matrix, index)
 }
 

@@ -120,18 +120,20 @@ impl<T: Number> GuardedSegment<'_, T> {
         if track.zeros > 0 || !rising {
             return None;
         }
-        let within = ((value.abs() * 2.0 + slack * 8.0) / slope).to_f64();
+        // In f64 a time that is not zero stays so, because bounds over no time would prove a crossing.
+        let exact = (value.abs() * 2.0 + slack * 8.0) / slope;
+        let within = exact.to_f64().max(f64::MIN_POSITIVE);
         let fourth = self.rows[n].bound(4, &at.norms, within);
         let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
         let (bend, third) = (bend.abs() + bend_off, third.abs() + third_off);
-        let change = slope_off + (bend + (third * 0.5 + fourth * within / 6.0) * within) * within;
+        let change = slope_off + (bend + (third * 0.5 + fourth * exact / 6.0) * exact) * exact;
         let steadily = change < slope * 0.5;
         if !steadily {
             return None;
         }
         let (after, change) = self.root(n, track, at);
         // Where terms of the slope cancel, their rounding is more than that of the value.
-        let moved = (slope_off + (bend_off * 0.5 + third_off * within / 6.0) * within) * within;
+        let moved = (slope_off + (bend_off * 0.5 + third_off * exact / 6.0) * exact) * exact;
         let is_finite = after.to_f64().is_finite();
         let error = ((slack + moved) * 2.0 / slope).to_f64();
         is_finite.then_some(GuardCrossing { guard: n, after, change, within, slope, error })

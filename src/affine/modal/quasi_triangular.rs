@@ -99,7 +99,9 @@ fn steep(root: &Eigenvalue) -> bool {
 fn invariant(matrix: &BigMatrix, root: &Eigenvalue, size: f64) -> Option<Vec<Vec<BigReal>>> {
     let mut annihilator = factor(matrix, root);
     let step = if root.is_real() { 1 } else { 2 };
-    let nothing = BigReal::exact(size.powi(step as i32)).scaled(nothing(matrix));
+    let own = BigReal::exact(size);
+    let power = if step == 2 { &own * &own } else { own };
+    let nothing = power.scaled(nothing(matrix));
     let noise = annihilator.iter_mut().flatten().filter(|it| it.abs() <= nothing);
     noise.for_each(|it| *it = BigReal::zero());
     let nullities = (step..=matrix.len()).step_by(step);

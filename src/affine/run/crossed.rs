@@ -26,7 +26,10 @@ impl<T: Number> Run<'_, T> {
         let mode = self.graph.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
         let Some((time, state)) = self.present() else { return self.end(Ending::Undecided) };
-        let first = self.zero_guards(mode, guards & guards.wrapping_neg(), &state);
+        // Of a guard with a rational point follows most for the others.
+        let point = self.zero_guards(mode, guards, &state).point;
+        let first = point.map_or(guards & guards.wrapping_neg(), |(guard, _)| 1 << guard);
+        let first = ZeroGuards { guards: first, point };
         let exactly_tied = self.exactly_tied(mode, guards.trailing_zeros() as usize);
         let tied = self.graph.tied(self.node, first, false) | exactly_tied;
         if guards & !tied != 0 {

@@ -84,13 +84,15 @@ impl<T: Number> Run<'_, T> {
         guards.filter(|(_, it)| is_zero(it)).fold(0, |mask, (n, _)| mask | 1 << n)
     }
 
-    /// Guards that are zero at a state, with the rational point of the circle at which the first of
-    /// them is.
+    /// Guards that are zero at a state, with the rational point of the circle at which one of them
+    /// is.
     pub(super) fn zero_guards(&self, mode: usize, guards: u64, state: &Vector<T>) -> ZeroGuards {
-        let first = guards.trailing_zeros() as usize;
         let point = self.solver.phase().filter(|_| self.exact.is_some()).and_then(|at| {
-            let circle = self.exact_mode(mode).circles.get(first)?.as_ref()?;
-            circle.nearest(state[at].to_f64(), state[at + 1].to_f64())
+            let circles = self.exact_mode(mode).circles.iter().enumerate();
+            circles.filter(|(n, _)| guards >> n & 1 == 1).find_map(|(n, circle)| {
+                let [cos, sin] = [state[at].to_f64(), state[at + 1].to_f64()];
+                Some((n, circle.as_ref()?.nearest(cos, sin)?))
+            })
         });
         ZeroGuards { guards, point }
     }
@@ -110,9 +112,8 @@ impl<T: Number> Run<'_, T> {
         let is_zero = |n: &usize| zero.guards >> n & 1 == 1;
         let instant = (0..own.guards.len()).filter(is_zero).find_map(|n| self.instant(mode, n));
         let mut entries = own.entries_at(&exact.entries, instant.as_ref());
-        let first = zero.guards.trailing_zeros() as usize;
-        if let (Some(at), Some(point)) = (self.solver.phase(), zero.point)
-            && let Some(Some(circle)) = own.circles.get(first)
+        if let (Some(at), Some((guard, point))) = (self.solver.phase(), zero.point)
+            && let Some(circle) = &own.circles[guard]
             && let Some(points) = &circle.points
         {
             let [cos, sin] = points[point].clone();

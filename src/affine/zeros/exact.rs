@@ -107,8 +107,8 @@ impl Chain {
         let values = self.values(entries)?;
         match &self.kind {
             Kind::Polynomial => {
-                let roots = parabola_roots(&values);
-                the_only(roots.into_iter().filter(|it| is_near(it, time))).map(Instant::Time)
+                let away = |it: &RBig| (it.to_f64().value() - time).abs() / time.abs();
+                nearest(parabola_roots(&values), away).map(Instant::Time)
             }
             Kind::Oscillation(square) => Oscillation::of(&values, square)?.zero_near(time),
             Kind::Other => None,
@@ -119,8 +119,10 @@ impl Chain {
     /// stands still no instant is needed.
     pub fn at(&self, entries: &Entries, instant: Option<&Instant>) -> Option<RBig> {
         let values = self.values(entries)?;
+        if values[1..].iter().all(RBig::is_zero) {
+            return values.into_iter().next();
+        }
         match (&self.kind, instant) {
-            (Kind::Polynomial, _) if values.len() == 1 => values.into_iter().next(),
             (Kind::Polynomial, Some(Instant::Time(time))) => {
                 let orders = values.iter().enumerate().rev();
                 let step =
@@ -254,18 +256,18 @@ fn parabola_roots(values: &[RBig]) -> Vec<RBig> {
     }
 }
 
-/// The only item of an iterator, if it has one: of two zeros that f64 does not tell apart neither
-/// is taken.
-fn the_only<I: PartialEq>(mut items: impl Iterator<Item = I>) -> Option<I> {
-    let first = items.next()?;
-    items.all(|it| it == first).then_some(first)
-}
-
-/// Whether an exact number is the one of which a rounded one is known.
-fn is_near(exact: &RBig, rounded: f64) -> bool {
+/// The exact zero of which a rounded one is known, by how far each is away: the next one is much
+/// farther.
+fn nearest<Z: PartialEq>(mut zeros: Vec<Z>, away: impl Fn(&Z) -> f64) -> Option<Z> {
     /// The rounding of f64, with room.
     const NEAR: f64 = 1e-9;
-    (exact.to_f64().value() - rounded).abs() <= NEAR * (1.0 + rounded.abs())
+    /// So many times as far the next zero is at least.
+    const APART: f64 = 1e3;
+    zeros.dedup();
+    zeros.sort_by(|a, b| away(a).total_cmp(&away(b)));
+    let distance = away(zeros.first()?);
+    let is_alone = zeros.get(1).is_none_or(|it| away(it) > APART * distance);
+    (distance < NEAR && is_alone).then(|| zeros.swap_remove(0))
 }
 
 /// A constant and an oscillation: c + a cos(w t) + b sin(w t)/w.
@@ -309,11 +311,11 @@ impl<'a> Oscillation<'a> {
             let own = [-cos * constant - *sin * root, -*sin * constant / *square + cos * root];
             own.map(|it| it / amplitude)
         };
-        let is_now = |[cos, sin]: &[RBig; 2]| {
-            is_near(cos, cos_now) && is_near(&(sin * *square), sin_now * frequency)
+        let away = |[cos, sin]: &[RBig; 2]| {
+            let sin = frequency * sin.to_f64().value() - sin_now;
+            (cos.to_f64().value() - cos_now).abs() + sin.abs()
         };
-        let zeros = [zero(&root), zero(&-&root)].into_iter();
-        let [cos, sin] = the_only(zeros.filter(is_now))?;
+        let [cos, sin] = nearest(vec![zero(&root), zero(&-&root)], away)?;
         Some(Instant::Turn { square: (*square).clone(), cos, sin })
     }
 }

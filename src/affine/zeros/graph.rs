@@ -44,8 +44,8 @@ pub struct Firing {
 pub struct ZeroGuards {
     /// The guards, as bits.
     pub guards: u64,
-    /// The rational point of the circle at which the first of them is zero, if it is at one.
-    pub point: Option<usize>,
+    /// One of them that is zero at a rational point of the circle, and the number of that point.
+    pub point: Option<(usize, usize)>,
 }
 
 /// A node of the graph: a mode with the space of structural zeros at its entry.
@@ -217,9 +217,8 @@ fn with_rows(zeros: &ZeroSpace, mode: &ModeResidues, zero: ZeroGuards) -> ZeroSp
     for (_, guard) in mode.guards.iter().enumerate().filter(|(n, _)| zero.guards >> n & 1 == 1) {
         zeros.insert(guard);
     }
-    let first = mode.points.get(zero.guards.trailing_zeros() as usize);
-    if let (Some(points), Some(point)) = (first, zero.point) {
-        points[point].iter().for_each(|row| zeros.insert(row));
+    if let Some((guard, point)) = zero.point {
+        mode.points[guard][point].iter().for_each(|row| zeros.insert(row));
     }
     zeros
 }

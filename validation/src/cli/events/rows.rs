@@ -71,6 +71,9 @@ impl<T: Arithmetic> Rows<'_, T> {
         let (mut end, mut passed) = (RunEnd::default(), Passed::default());
         let mut last = run.start();
         let mut sizes = Sizes::of(&last);
+        if self.needs_more_bits(&*run, &last, &mut sizes) && self.done == 0 {
+            return Ok(Outcome::MoreBits(0));
+        }
         self.give(0, &last, |_| String::new(), take)?;
         while self.limits.events.is_none_or(|wanted| passed.count < wanted) {
             let Some(event) = run.next() else { break };
