@@ -2,7 +2,7 @@
 
 use super::{enclosed, names, system};
 use crate::double_double::DoubleDouble;
-use percuss::affine::{Bits212, Ending, Event, System, What};
+use percuss::affine::{Bits212, Bits3392, Ending, Event, System, What};
 use percuss::number::Number;
 
 /// A system of one mode that is watched, with a start.
@@ -45,8 +45,8 @@ fn quotients_of_round_numbers_are_as_good_as_decimals() {
     }
 }
 
-/// x'' = -k x - c x' with rates that are (nearly) equal and slow: exp(-c t/2) (1 + c t/2) where they
-/// are.
+/// x'' = -k x - c x' with rates that are (nearly) equal and slow: exp(-c t/2) (1 + c t/2) where
+/// they are.
 #[test]
 fn slow_pairs_are_passed_at_once() {
     for (k, c) in [("1e-6", "2e-3"), ("1e-6", "2.000001e-3"), ("2.5e-5", "1e-2"), ("1e-8", "2e-4")]
@@ -92,8 +92,8 @@ fn two_decays_of_nearly_one_rate_keep_their_digits() {
     }
 }
 
-/// A sine and a cosine of one angle that cross 0.6 and -0.8 at one instant, a sine that touches 1, a
-/// parabola that touches its crest, and an oscillation that touches its amplitude: for one period.
+/// A sine and a cosine of one angle that cross 0.6 and -0.8 at one instant, a sine that touches 1,
+/// a parabola that touches its crest, and an oscillation that touches its amplitude.
 #[test]
 fn ties_and_touches_of_the_model_are_decided() {
     let forced = |guards: &[&str]| {
@@ -210,4 +210,41 @@ fn impacts_accumulate_late_and_beside_other_states() {
         let near = |it: Bits212| (it - exact).to_f64().abs() < 1e-16;
         assert!(near(from) && near(to) && from < to, "{from:?} {to:?}");
     }
+}
+
+/// A chain of nine states with couplings of 1e-12: the first is (1e-12 t)^8 t/9!, whose powers are
+/// far below those of its matrix, and crosses 1 at (9! 1e96)^(1/9).
+#[test]
+fn a_chain_of_small_couplings_keeps_its_powers() {
+    let states: Vec<String> = (0..9).map(|n| format!("\"x{n}\"")).collect();
+    let mut equations: Vec<String> = (0..8).map(|n| format!("\"x{n}' = a*x{}\"", n + 1)).collect();
+    equations.push("\"x8' = 1\"".to_owned());
+    let start: String = (0..9).map(|n| format!("x{n} = 0\n")).collect();
+    let chain = watched(
+        &states.join(", "),
+        "[parameters]\na = 1e-12",
+        &equations.join(", "),
+        &["guard = \"x0 > 1\""],
+        &start,
+    );
+    let all = enclosed::<DoubleDouble>(&chain, 1e12);
+    assert_eq!(names(&chain, &all), ["g0", "end"]);
+    let exact = (362_880_f64.ln() / 9.0 + 96.0 / 9.0 * 10_f64.ln()).exp();
+    assert!((all[0].time.value().to_f64() / exact - 1.0).abs() < 1e-13);
+    assert!((all[1].state[0].to_f64() / (1e12 / 362_880.0) - 1.0).abs() < 1e-13);
+}
+
+/// exp(-t) touches exp(-2 t) + 1/4 at the logarithm of two, which no exact arithmetic here knows,
+/// and whatever the bits, no crossing is made of the touch.
+#[test]
+fn a_touch_is_no_crossing_in_any_number_of_bits() {
+    let touch = watched(
+        "\"a\", \"b\"",
+        "",
+        "\"a' = -a\", \"b' = -2*b\"",
+        &["guard = \"4*a > 4*b + 1\""],
+        "a = 1\nb = 1",
+    );
+    assert_eq!(names(&touch, &enclosed::<Bits212>(&touch, 1.0)), ["undecided"]);
+    assert_eq!(names(&touch, &enclosed::<Bits3392>(&touch, 1.0)), ["undecided"]);
 }
