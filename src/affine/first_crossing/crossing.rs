@@ -120,7 +120,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         if track.zeros > 0 || !rising {
             return None;
         }
-        // In f64 a time that is not zero stays so, because bounds over no time would prove a crossing.
+        // In f64 a time that is not zero stays so: bounds over no time would prove a crossing.
         let exact = (value.abs() * 2.0 + slack * 8.0) / slope;
         let within = exact.to_f64().max(f64::MIN_POSITIVE);
         let fourth = self.rows[n].bound(4, &at.norms, within);
