@@ -212,26 +212,45 @@ fn impacts_accumulate_late_and_beside_other_states() {
     }
 }
 
-/// A chain of nine states with couplings of 1e-12: the first is (1e-12 t)^8 t/9!, whose powers are
-/// far below those of its matrix, and crosses 1 at (9! 1e96)^(1/9).
+/// A chain of six states with couplings of 1e-20: the first is 1e-100 t^6/6!, whose powers are far
+/// below those of its matrix, and crosses 1 at (6! 1e100)^(1/6).
 #[test]
 fn a_chain_of_small_couplings_keeps_its_powers() {
-    let states: Vec<String> = (0..9).map(|n| format!("\"x{n}\"")).collect();
-    let mut equations: Vec<String> = (0..8).map(|n| format!("\"x{n}' = a*x{}\"", n + 1)).collect();
-    equations.push("\"x8' = 1\"".to_owned());
-    let start: String = (0..9).map(|n| format!("x{n} = 0\n")).collect();
+    let states: Vec<String> = (0..6).map(|n| format!("\"x{n}\"")).collect();
+    let mut equations: Vec<String> = (0..5).map(|n| format!("\"x{n}' = a*x{}\"", n + 1)).collect();
+    equations.push("\"x5' = 1\"".to_owned());
+    let start: String = (0..6).map(|n| format!("x{n} = 0\n")).collect();
     let chain = watched(
         &states.join(", "),
-        "[parameters]\na = 1e-12",
+        "[parameters]\na = 1e-20",
         &equations.join(", "),
         &["guard = \"x0 > 1\""],
         &start,
     );
-    let all = enclosed::<DoubleDouble>(&chain, 1e12);
+    let all = enclosed::<DoubleDouble>(&chain, 2e17);
     assert_eq!(names(&chain, &all), ["g0", "end"]);
-    let exact = (362_880_f64.ln() / 9.0 + 96.0 / 9.0 * 10_f64.ln()).exp();
-    assert!((all[0].time.value().to_f64() / exact - 1.0).abs() < 1e-13);
-    assert!((all[1].state[0].to_f64() / (1e12 / 362_880.0) - 1.0).abs() < 1e-13);
+    let exact = ((720_f64.ln() + 100.0 * 10_f64.ln()) / 6.0).exp();
+    assert!((all[0].time.value().to_f64() / exact - 1.0).abs() < 1e-12);
+    assert!((all[1].state[0].to_f64() / (64e2 / 720.0) - 1.0).abs() < 1e-12);
+}
+
+/// A chain of nine states with couplings of 1: it has crossed 1 at (9!)^(1/9), and no bound that
+/// holds for ever is taken for it.
+#[test]
+fn a_long_chain_grows() {
+    let states: Vec<String> = (0..9).map(|n| format!("\"x{n}\"")).collect();
+    let mut equations: Vec<String> = (0..8).map(|n| format!("\"x{n}' = x{}\"", n + 1)).collect();
+    equations.push("\"x8' = 1\"".to_owned());
+    let start: String = (0..9).map(|n| format!("x{n} = 0\n")).collect();
+    let guard = ["guard = \"x0 > 1\""];
+    let chain = watched(&states.join(", "), "", &equations.join(", "), &guard, &start);
+    let exact = (362_880_f64.ln() / 9.0).exp();
+    for time in [
+        enclosed::<DoubleDouble>(&chain, 20.0)[0].time.value().to_f64(),
+        enclosed::<f64>(&chain, 20.0)[0].time.value(),
+    ] {
+        assert!((time / exact - 1.0).abs() < 1e-13, "{time}");
+    }
 }
 
 /// exp(-t) touches exp(-2 t) + 1/4 at the logarithm of two, which no exact arithmetic here knows,

@@ -42,7 +42,8 @@ impl BlockGrowth {
             }
             Kind::Real(rate) if never_grows(rate) => Self::Decaying,
             Kind::Pair(rate, _) if never_grows(rate) => Self::Bounded,
-            Kind::Nilpotent(rate) if never_grows(rate) => Self::Bounded,
+            // A long chain without a decay grows as all other blocks do.
+            Kind::Nilpotent(rate) if *rate < BigReal::zero() => Self::Bounded,
             _ => match positive_logarithmic_norm(block) {
                 rate if rate > 0.0 => Self::Growing(rate),
                 _ => Self::Bounded,

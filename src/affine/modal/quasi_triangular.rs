@@ -189,7 +189,8 @@ fn in_basis(block: &Block, basis: &BigMatrix) -> Option<Block> {
 /// Sets the rounding below the diagonal blocks of a triangular matrix to zero; none if larger
 /// entries stand there.
 fn clear_below(matrix: &mut BigMatrix, places: &[Place]) -> Option<()> {
-    let nothing = BigReal::exact(norm(matrix)).scaled(nothing(matrix));
+    // The entries may be beyond the exponents of f64.
+    let nothing = largest(matrix).scaled(nothing(matrix));
     for place in places {
         for row in &mut matrix[place.at + place.size..] {
             for entry in &mut row[place.at..place.at + place.size] {
