@@ -34,8 +34,8 @@ impl BigReal {
 
     /// A finite f64, exactly.
     pub fn exact(value: f64) -> Self {
-        // Norms of large coefficients may overflow f64: nothing is computed with an infinity. What is
-        // not a number does not come from a system that has been read.
+        // Norms of large coefficients may overflow f64, and nothing is computed with an infinity.
+        // What is not a number does not come from a system that has been read.
         let finite = value.clamp(f64::MIN, f64::MAX);
         let value = BigFloat::try_from(finite).unwrap_or(BigFloat::ZERO);
         Self(value.with_precision(FEWEST_BITS).value())
