@@ -174,6 +174,12 @@ impl ScaledF64 {
         Self { mantissa, exponent: exponent.saturating_add(shift) }
     }
 
+    /// The number as a bound of any kind.
+    #[must_use]
+    pub fn rounded<B: Bound>(self) -> B {
+        B::of(self.mantissa).scaled(self.exponent)
+    }
+
     /// Whether the exponent has a meaning.
     #[inline]
     fn is_ordinary(self) -> bool {

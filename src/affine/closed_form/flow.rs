@@ -326,10 +326,9 @@ fn times_in<E: Entry, const ROWS: usize>(columns: &[Vector<E>], vector: &Vector<
 /// A matrix of bounds by columns.
 fn by_columns<B: Bound>(matrix: &[Vec<ScaledF64>]) -> Vec<Vector<B>> {
     let columns = matrix.first().map_or(0, Vec::len);
-    let rounded = |it: &ScaledF64| B::of(it.parts().0).scaled(it.parts().1);
     let mut all = vec![[B::ZERO; LARGEST_DIMENSION]; columns];
     for (n, row) in matrix.iter().enumerate() {
-        all.iter_mut().zip(row).for_each(|(column, entry)| column[n] = rounded(entry));
+        all.iter_mut().zip(row).for_each(|(column, entry)| column[n] = entry.rounded());
     }
     all
 }

@@ -254,5 +254,5 @@ impl<B: Bound> RowPart<B> {
 fn off<B: Bound>(row: &[BigReal], block: &modal::Block, j: usize) -> B {
     let term = |(it, off): (&BigReal, &Vec<ScaledF64>)| it.bound::<ScaledF64>().abs() * off[j];
     let sum: ScaledF64 = row.iter().zip(&block.off[0]).map(term).sum();
-    B::of(sum.parts().0).scaled(sum.parts().1)
+    sum.rounded()
 }

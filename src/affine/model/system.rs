@@ -178,6 +178,13 @@ pub struct StartPoint {
 }
 
 impl System {
+    /// Whether theta is zero at a start, as it is for a system without forcing: the start is then
+    /// rational.
+    pub(in crate::affine) fn is_at_zero_angle(&self, start: &StartPoint) -> bool {
+        let angle = |it: &Forcing| &it.omega * &start.time + &it.phi;
+        self.forcing.as_ref().is_none_or(|it| angle(it).is_zero())
+    }
+
     /// Reads a system from the text of its file; `file` is its name in errors.
     ///
     /// # Errors

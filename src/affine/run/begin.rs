@@ -46,11 +46,7 @@ impl<T: Number> Solver<T> {
         }
         sizes.iter_mut().zip(phase).for_each(|(size, turned)| *size += turned);
         sizes[self.system.dimension() - 1] = T::Bound::ZERO;
-        let zero_angle = match &self.system.forcing {
-            Some(forcing) => (&forcing.omega * &start.time + &forcing.phi).is_zero(),
-            None => true,
-        };
-        run.exact = Some(ExactRun::at_start(start, self.phase().is_some(), zero_angle));
+        run.exact = Some(ExactRun::at_start(&self.system, start));
         run.begin(Some(Enclosure::of(&sizes)));
         Some(run)
     }

@@ -26,8 +26,9 @@ impl<T: Number> Run<'_, T> {
         let mode = self.graph.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
         let Some((time, state)) = self.present() else { return self.end(Ending::Undecided) };
-        // Of a guard with a rational point follows most for the others.
-        let point = self.zero_guards(mode, guards, &state).point;
+        let zero = self.zero_guards(mode, guards, &state);
+        let point = zero.point;
+        // A guard with a rational point tells more about the others than the first of them does.
         let first = point.map_or(guards & guards.wrapping_neg(), |(guard, _)| 1 << guard);
         let first = ZeroGuards { guards: first, point };
         let exactly_tied = self.exactly_tied(mode, guards.trailing_zeros() as usize);
@@ -37,7 +38,6 @@ impl<T: Number> Run<'_, T> {
             self.tie = Some((mode, guards));
         }
         let errors = self.errors_at(mode, guards, &time, &state);
-        let zero = self.zero_guards(mode, guards, &state);
         for n in bits(guards & !low_bits(until)) {
             self.watched(mode, n, zero, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
@@ -57,7 +57,6 @@ impl<T: Number> Run<'_, T> {
             (self.entered, self.state, self.enclosure) = (time, state, errors);
             return self.end(Ending::LeavesDomain);
         }
-        let zero = self.zero_guards(mode, guards, &state);
         let guards = self.graph.tied(self.node, zero, false) | exactly_tied;
         let zero = self.zero_guards(mode, guards, &state);
         let until = ending.trailing_zeros() as usize;

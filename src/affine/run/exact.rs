@@ -3,7 +3,7 @@
 
 use super::Run;
 use crate::affine::arithmetic::vector::Vector;
-use crate::affine::model::system::StartPoint;
+use crate::affine::model::system::{StartPoint, System};
 use crate::affine::zeros::exact::{Chain, Entries, ExactMode, Fate, Instant, entries_after, solve};
 use crate::affine::zeros::graph::ZeroGuards;
 use crate::numeric::number::Number;
@@ -19,13 +19,14 @@ pub(super) struct ExactRun {
 
 impl ExactRun {
     /// The entries that a start gives exactly.
-    pub fn at_start(start: &StartPoint, is_forced: bool, zero_angle: bool) -> Self {
+    pub fn at_start(system: &System, start: &StartPoint) -> Self {
+        let zero_angle = system.is_at_zero_angle(start);
         let known = |[cos, sin, one]: &[RBig; 3]| {
             let is_plain = cos.is_zero() && sin.is_zero();
             (zero_angle || is_plain).then(|| cos + one)
         };
         let mut entries: Entries = start.state.iter().map(known).collect();
-        if is_forced {
+        if system.forcing.is_some() {
             entries.push(zero_angle.then_some(RBig::ONE));
             entries.push(zero_angle.then_some(RBig::ZERO));
         }
@@ -50,9 +51,10 @@ impl<T: Number> Run<'_, T> {
     /// Whether a guard of the forcing angle alone never crosses by the model: it stays inside, or
     /// is watched and keeps its sign.
     pub(super) fn never_crosses(&self, mode: usize, guard: usize) -> bool {
-        let (Some(_), Some(circle)) = (&self.exact, &self.exact_mode(mode).circles[guard]) else {
+        if self.exact.is_none() {
             return false;
-        };
+        }
+        let Some(circle) = &self.solver.exact_mode(mode).circles[guard] else { return false };
         let own = &self.solver.system.modes[mode];
         circle.keeps_sign
             && own
@@ -61,17 +63,11 @@ impl<T: Number> Run<'_, T> {
                 .is_none_or(|it| it.guard.last().is_some_and(|c| *c < RBig::ZERO))
     }
 
-    /// The exact rows of a mode.
-    pub(super) fn exact_mode(&self, mode: usize) -> &ExactMode {
-        let system = &self.solver.system;
-        self.solver.modes[mode].exact.get_or_init(|| ExactMode::of(system, &system.modes[mode]))
-    }
-
     /// The instant of a guard's crossing at which the search has arrived, if it is known exactly.
     fn instant(&self, mode: usize, guard: usize) -> Option<Instant> {
         let point = &self.ends.left;
         let time = (point.time + point.to_crossing).to_f64();
-        self.exact_mode(mode).guards[guard].zero_near(&self.exact.as_ref()?.entries, time)
+        self.solver.exact_mode(mode).guards[guard].zero_near(&self.exact.as_ref()?.entries, time)
     }
 
     /// The guards that are zero at the very instant at which one of them crosses, as bits.
@@ -80,7 +76,7 @@ impl<T: Number> Run<'_, T> {
         let Some(instant) = self.instant(mode, guard) else { return 0 };
         let is_zero =
             |chain: &Chain| chain.at(&exact.entries, Some(&instant)).is_some_and(|it| it.is_zero());
-        let guards = self.exact_mode(mode).guards.iter().enumerate();
+        let guards = self.solver.exact_mode(mode).guards.iter().enumerate();
         guards.filter(|(_, it)| is_zero(it)).fold(0, |mask, (n, _)| mask | 1 << n)
     }
 
@@ -88,7 +84,7 @@ impl<T: Number> Run<'_, T> {
     /// is.
     pub(super) fn zero_guards(&self, mode: usize, guards: u64, state: &Vector<T>) -> ZeroGuards {
         let point = self.solver.phase().filter(|_| self.exact.is_some()).and_then(|at| {
-            let circles = self.exact_mode(mode).circles.iter().enumerate();
+            let circles = self.solver.exact_mode(mode).circles.iter().enumerate();
             circles.filter(|(n, _)| guards >> n & 1 == 1).find_map(|(n, circle)| {
                 let [cos, sin] = [state[at].to_f64(), state[at + 1].to_f64()];
                 Some((n, circle.as_ref()?.nearest(cos, sin)?))
@@ -108,7 +104,7 @@ impl<T: Number> Run<'_, T> {
         if at_entry {
             return Some(exact.entries.clone());
         }
-        let own = self.exact_mode(mode);
+        let own = self.solver.exact_mode(mode);
         let is_zero = |n: &usize| zero.guards >> n & 1 == 1;
         let instant = (0..own.guards.len()).filter(is_zero).find_map(|n| self.instant(mode, n));
         let mut entries = own.entries_at(&exact.entries, instant.as_ref());
@@ -129,18 +125,6 @@ impl<T: Number> Run<'_, T> {
     /// The exact entries after the reset of an event.
     pub(super) fn exact_after(&self, mode: usize, until: usize, before: &Entries) -> Entries {
         entries_after(&self.solver.system.modes[mode].until[until].reset, before)
-    }
-
-    /// The order and the sign with which the condition of a successor begins, where that is known
-    /// exactly.
-    pub(super) fn exact_begin(
-        &self,
-        mode: usize,
-        until: usize,
-        successor: usize,
-        entries: &Entries,
-    ) -> Option<Option<(usize, bool)>> {
-        self.exact_mode(mode).conditions[until][successor].as_ref()?.begin(entries)
     }
 
     /// Makes these the exact entries of the next segment.

@@ -65,7 +65,7 @@ pub struct Run<'a, T: Number> {
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
     enclosure: Option<Enclosure<T::Bound>>,
-    /// What is known exactly beside it.
+    /// The entries of z that are known exactly, in a run that follows its errors.
     exact: Option<ExactRun>,
     /// The start, with the errors that it has before the rounding of its modal co-ordinates.
     start: Event<T>,
@@ -147,9 +147,8 @@ impl<'a, T: Number> Run<'a, T> {
     #[inline]
     fn track_guards(&mut self, mode: usize, solver_mode: &SolverMode<T>) -> Option<Ending<T>> {
         let SolverMode { flow, guards, .. } = solver_mode;
-        if let Some(mut exact) = self.exact.take() {
-            exact.enter(self.exact_mode(mode));
-            self.exact = Some(exact);
+        if let Some(exact) = &mut self.exact {
+            exact.enter(self.solver.exact_mode(mode));
         }
         let node = self.graph.node(self.node);
         let until = self.solver.system.modes[mode].until.len();

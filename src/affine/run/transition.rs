@@ -82,11 +82,12 @@ impl<T: Number> Run<'_, T> {
         exact: Option<&Entries>,
     ) -> usize {
         let solver = self.solver;
-        let orders = self.graph.arrival(self.node, firing).orders.clone();
+        let orders = &self.graph.arrival(self.node, firing).orders;
         let conditions = &solver.modes[mode].conditions[firing.until];
         let next = &solver.system.modes[mode].until[firing.until].next;
         for (n, (condition, order)) in conditions.iter().zip(orders.iter()).enumerate() {
-            if let Some(begin) = exact.and_then(|it| self.exact_begin(mode, firing.until, n, it)) {
+            let chain = || solver.exact_mode(mode).conditions[firing.until][n].as_ref();
+            if let Some(begin) = exact.and_then(|it| chain()?.begin(it)) {
                 if begin.is_some_and(|(_, is_positive)| is_positive) {
                     return n;
                 }

@@ -183,6 +183,12 @@ impl<T: Number> Solver<T> {
         }
     }
 
+    /// The exact rows of a mode.
+    pub(super) fn exact_mode(&self, mode: usize) -> &ExactMode {
+        let own = &self.modes[mode];
+        own.exact.get_or_init(|| ExactMode::of(&self.system, &self.system.modes[mode]))
+    }
+
     /// The place of cos theta in z, which sin theta follows, where the system is forced.
     pub(super) fn phase(&self) -> Option<usize> {
         self.clock.as_ref().map(|_| self.system.states.len())

@@ -79,10 +79,7 @@ impl<T: Copy> StartCache<T> {
 
 /// The left kernel of the start's coefficients over cos theta, sin theta and 1.
 fn zeros_at_start(system: &System, start: &StartPoint) -> Option<ZeroSpace> {
-    let zero_angle = match &system.forcing {
-        Some(forcing) => (&forcing.omega * &start.time + &forcing.phi).is_zero(),
-        None => true,
-    };
+    let zero_angle = system.is_at_zero_angle(start);
     let mut rows: Vec<[RBig; 3]> = start.state.clone();
     if system.forcing.is_some() {
         rows.push([RBig::ONE, RBig::ZERO, RBig::ZERO]);
