@@ -3,9 +3,9 @@
 //! `cargo test --release --test library closed_forms:: -- --nocapture` prints the constant of every
 //! regime.
 
-use crate::double_double::DoubleDouble;
 use crate::support::draws::{Pair, REGIMES};
 use crate::support::random::Draw;
+use percuss::affine::DoubleDouble;
 use percuss::insides::Constants;
 use percuss::insides::flow::Point;
 use percuss::insides::flow::damped::Damping;

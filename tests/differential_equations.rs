@@ -3,10 +3,10 @@
 //! The form at d + s must be what the equations make of the form at d, for any d and a short s, and
 //! at d = 0 it must be the entry state. Together that is the definition of the solution.
 
-use crate::double_double::{DoubleDouble, UNIT};
 use crate::support::draws::{Form, REGIMES};
 use crate::support::random::Draw;
 use crate::support::taylor::{STEP, fastest_rate, series};
+use percuss::affine::DoubleDouble;
 use percuss::insides::flow::Point;
 use percuss::number::Number;
 use percuss::{Phase, State};
@@ -54,7 +54,7 @@ fn compare(form: &Form<DoubleDouble>, elapsed: f64, step: f64, worst: &mut Worst
     let d = DoubleDouble::exact(elapsed);
     let here = form.at(d);
     let solution = series(phase, constants, &here.state, angle(form, d));
-    let unit = UNIT * size(form, &here);
+    let unit = DoubleDouble::UNIT * size(form, &here);
 
     let fastest = fastest_rate(phase, constants);
     let step = DoubleDouble::exact(step / fastest);
@@ -109,7 +109,7 @@ fn every_form_begins_at_its_entry() {
                     point.state.q - entry.q,
                     point.drift,
                 ];
-                let unit = UNIT * size(&form, &point);
+                let unit = DoubleDouble::UNIT * size(&form, &point);
                 for difference in differences {
                     // p is q + g on the surface, and 1 - (1 - q0) is q0: two roundings.
                     assert!(difference.abs().to_f64() <= 8.0 * unit, "{form:?}");

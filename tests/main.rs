@@ -7,7 +7,6 @@
     reason = "a panic is a failed test"
 )]
 
-#[cfg(feature = "affine")]
 mod affine;
 mod attack;
 mod attractors;
@@ -42,6 +41,4 @@ mod surface;
 mod touches;
 mod variation;
 
-#[path = "../validation/harness/src/truth/double_double.rs"]
-mod double_double;
 mod support;

@@ -2,8 +2,8 @@
 //!
 //! `cargo test --release --test library remainders:: -- --nocapture` prints what each reaches.
 
-use crate::double_double::DoubleDouble;
 use crate::support::random::Draw;
+use percuss::affine::DoubleDouble;
 use percuss::insides::remainders::{Circular, Decay, circular, circular_of, decay};
 use percuss::number::Number;
 

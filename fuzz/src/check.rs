@@ -1,7 +1,7 @@
 //! The properties that every run must have, whatever the input.
 
-use crate::double_double::{DoubleDouble, UNIT};
 use crate::{Case, Family};
+use percuss::affine::DoubleDouble;
 use percuss::insides::crossing::limit::{GRANTED, LAST_ROOT, MOST, PER_RADIAN};
 use percuss::insides::{Effort, OneSidedEnd};
 use percuss::{Exit, Model, Parameters, Phase, Segment, State};
@@ -161,7 +161,7 @@ fn judge(
         Exit::Switch(_) => lasts + 1e-3 * lasts + 1e-9,
         _ => left,
     };
-    let effort = Effort { horizon, evaluations: JUDGE_EVALUATIONS, unit: UNIT };
+    let effort = Effort { horizon, evaluations: JUDGE_EVALUATIONS, unit: DoubleDouble::UNIT };
     let found = segment.one_sided_end_in::<DoubleDouble>(model, &effort);
     tally.judged += 1;
     let alike = match (segment.exit(), found) {

@@ -3,9 +3,6 @@
 
 mod case;
 mod check;
-#[path = "../../validation/harness/src/truth/double_double.rs"]
-#[allow(dead_code, reason = "the judge takes a part of it")]
-mod double_double;
 /// Random piecewise-affine systems, as the tests of the solver have them.
 #[cfg(feature = "systems")]
 #[path = "../../tests/affine/random.rs"]

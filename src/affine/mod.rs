@@ -12,9 +12,10 @@ mod run;
 mod solver;
 mod zeros;
 
+pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 pub use arithmetic::clock::Time;
-pub use dashu_ratio::RBig as Rational;
+pub use dashu::rational::RBig as Rational;
 pub use guards::track::SearchWork;
 pub use model::error::SystemError;
 pub use model::file::SystemFile;
@@ -27,37 +28,31 @@ pub use run::arithmetic::{Arithmetic, EnclosedRun};
 pub use solver::event::{Ending, Errors, Event, What};
 pub use solver::{Solver, Unprepared};
 
-/// Implements [`Arithmetic`] for a number of so many bits, in the crate that names it.
-#[macro_export]
-macro_rules! affine_arithmetic {
+/// Implements [`Arithmetic`] for a number of so many bits.
+macro_rules! arithmetic {
     ($number:ty, $bits:expr) => {
-        impl $crate::affine::Arithmetic for $number {
+        impl Arithmetic for $number {
             const BITS: u32 = $bits;
 
-            fn solver(
-                system: &$crate::affine::System,
-                backward: bool,
-            ) -> Result<$crate::affine::Solver<Self>, $crate::affine::Unprepared> {
-                if backward {
-                    $crate::affine::Solver::backward(system)
-                } else {
-                    $crate::affine::Solver::new(system)
-                }
+            fn solver(system: &System, backward: bool) -> Result<Solver<Self>, Unprepared> {
+                if backward { Solver::backward(system) } else { Solver::new(system) }
             }
 
             fn enclosed<'a>(
-                solver: &'a $crate::affine::Solver<Self>,
-                start: &$crate::affine::StartPoint,
+                solver: &'a Solver<Self>,
+                start: &StartPoint,
                 until: Self,
-            ) -> Option<Box<dyn $crate::affine::EnclosedRun<Self> + 'a>> {
+            ) -> Option<Box<dyn EnclosedRun<Self> + 'a>> {
                 Some(Box::new(solver.run_enclosed(start, until)?))
             }
         }
     };
 }
 
-affine_arithmetic!(Bits212, 212);
-affine_arithmetic!(Bits424, 424);
-affine_arithmetic!(Bits848, 848);
-affine_arithmetic!(Bits1696, 1696);
-affine_arithmetic!(Bits3392, 3392);
+arithmetic!(f64, 53);
+arithmetic!(DoubleDouble, 106);
+arithmetic!(Bits212, 212);
+arithmetic!(Bits424, 424);
+arithmetic!(Bits848, 848);
+arithmetic!(Bits1696, 1696);
+arithmetic!(Bits3392, 3392);

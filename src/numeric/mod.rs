@@ -5,6 +5,8 @@ pub mod angle;
 pub mod bound;
 pub mod circle;
 pub mod complex;
+#[cfg(feature = "affine")]
+pub mod double_double;
 pub mod exponential;
 pub mod number;
 pub mod real;

@@ -1,7 +1,7 @@
 //! Eigenvalues that are close to each other, with couplings that are large beside their distance.
 
 use super::{enclosed, events, names, system};
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::System;
 
 fn watched(states: &str, forcing: &str, equations: &str, guard: &str, start: &str) -> System {

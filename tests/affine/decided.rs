@@ -1,7 +1,7 @@
 //! Runs that the model decides: kinds on which earlier solvers gave up without cause.
 
 use super::{enclosed, names, system};
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Bits212, Bits3392, Ending, Event, System, What};
 use percuss::number::Number;
 

@@ -1,7 +1,7 @@
 //! Runs that follow their errors: how far they go, and that their bounds hold at large times.
 
 use super::{names, system};
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Ending, Event, What};
 use percuss::number::Number;
 

@@ -1,7 +1,7 @@
 //! The times and states of endings, and the events that they name.
 
 use super::{enclosed, events, names, system};
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, Solver, What};
 use percuss::number::Number;
 

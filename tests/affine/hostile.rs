@@ -2,7 +2,7 @@
 //! the end: a run decides, or ends as undecided after a bounded number of pieces.
 
 use super::{name, names, system};
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, SearchWork, Solver, System};
 use percuss::number::Number;
 

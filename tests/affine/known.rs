@@ -1,7 +1,7 @@
 //! Systems whose events are known.
 
 use super::{BALL, PLASTIC, RELAY, SPHERES, STIFF, agreed, events, names, system};
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Ending, Solver, System, SystemFile, What};
 
 fn with(text: &str, parameters: &[(&str, f64)]) -> System {

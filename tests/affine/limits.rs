@@ -2,7 +2,7 @@
 //! large the time, the frequency or the quotient of two couplings.
 
 use super::{enclosed, events, name, names, system};
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, Solver, System};
 
 /// A system of one mode with one watched guard.

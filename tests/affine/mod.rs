@@ -19,7 +19,7 @@ mod together;
 mod touches;
 mod wide;
 
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Ending, Event, Solver, System, What};
 use percuss::number::Number;
 

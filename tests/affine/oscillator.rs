@@ -2,8 +2,8 @@
 
 use super::tables::printed;
 use super::{enclosed, events};
-use crate::double_double::DoubleDouble;
 use crate::support::reference::{self, Row, Table};
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, Rational, System, SystemFile, What};
 use percuss::{Model, Parameters, Phase, Start};
 use std::fmt::Write as _;

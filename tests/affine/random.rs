@@ -3,7 +3,7 @@
 //!
 //! The package in `fuzz/` compiles this file too.
 
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{
     Direction, Ending, Event, Rational, Solver, System, SystemFile, Watch, What,
 };

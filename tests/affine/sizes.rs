@@ -1,7 +1,7 @@
 //! Co-ordinates and terms of very different sizes: what is small has digits of its own.
 
 use super::{enclosed, events, names, system};
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Solver, Time};
 
 /// A watched motion of one mode.

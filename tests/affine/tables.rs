@@ -1,7 +1,7 @@
 //! Every proved table of a system, in f64 and in 106 bits.
 
 use super::name;
-use crate::double_double::{self, DoubleDouble};
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, Solver, System, SystemFile};
 use percuss::number::Number;
 use std::collections::BTreeMap;
@@ -169,7 +169,7 @@ fn every_proved_table_is_reproduced() {
         let outcome = std::panic::catch_unwind(|| {
             let narrow = worst(&case, &system, &table, 0.5 * f64::EPSILON, DoubleDouble::exact);
             // Tables hold 25 digits.
-            let wide = worst(&case, &system, &table, double_double::UNIT.max(1e-25), |it| it);
+            let wide = worst(&case, &system, &table, DoubleDouble::UNIT.max(1e-25), |it| it);
             println!("{case}: {narrow:.2} {wide:.2}");
             narrow.max(wide)
         });

@@ -2,7 +2,7 @@
 //! others as it is when it is watched alone, and they change no event that ends a mode.
 
 use super::random;
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Direction, Rational, Solver, System, SystemFile, Watch, What};
 use percuss::number::Number;
 

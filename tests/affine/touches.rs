@@ -5,7 +5,7 @@
 //! terms that cancel, and co-ordinates of nearly equal eigenvalues.
 
 use super::system;
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Direction, Ending, Event, Rational, Row, Solver, System, Watch, What};
 use percuss::number::Number;
 use proptest::prelude::*;

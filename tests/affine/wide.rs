@@ -1,7 +1,7 @@
 //! Runs in more than 106 bits.
 
 use super::{BALL, PLASTIC, RELAY, SPHERES, enclosed, names, system};
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::affine::{Bits212, Bits848, Ending, Event, System, What};
 use percuss::number::{Bound, Number};
 

@@ -1,7 +1,7 @@
 //! Random phases in every regime: the same start in f64 and, exactly consistent, in double-double.
 
 use super::random::Draw;
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::insides::Constants;
 use percuss::insides::flow::contact::Contact;
 use percuss::insides::flow::forcing::EntryAngle;

@@ -2,7 +2,7 @@
 //!
 //! Nothing here knows a closed form: the coefficients follow from the right-hand sides alone.
 
-use crate::double_double::DoubleDouble;
+use percuss::affine::DoubleDouble;
 use percuss::insides::Constants;
 use percuss::number::Number;
 use percuss::{Phase, State};

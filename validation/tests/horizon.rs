@@ -6,7 +6,7 @@ use crate::exact;
 use percuss::number::Number;
 use percuss_validation::case::Problem;
 use percuss_validation::score::{HorizonTest, far_apart};
-use percuss_validation::truth::{DoubleDouble, Replay, UNIT};
+use percuss_validation::truth::{DoubleDouble, Replay};
 
 /// Starts, as many as a median needs to be good to a period or two.
 const STARTS: usize = 200;
@@ -73,7 +73,8 @@ fn apart_after(start: &Problem, periods: u64) -> f64 {
         let last = Replay::varied(parameters, &entry, [p, y, q], horizon).last();
         last.expect("there is a phase").expect("it is decided").at(&horizon)
     };
-    let (one, other) = (end(y), end(y + DoubleDouble::exact(UNIT * y.to_f64().abs().max(1.0))));
+    let (one, other) =
+        (end(y), end(y + DoubleDouble::exact(DoubleDouble::UNIT * y.to_f64().abs().max(1.0))));
     (0..3).map(|k| (one[k] - other[k]).to_f64().abs()).fold(0.0, f64::max)
 }
 

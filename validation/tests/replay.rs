@@ -8,12 +8,12 @@ use percuss::TwoWord;
 use percuss_validation::case::{Case, Given, embedded};
 use percuss_validation::engine::{OscillatorTask, SampleGrid};
 use percuss_validation::score::RunGrowth;
-use percuss_validation::truth::{Library, Truth, TruthRow, UNIT, Undecided};
+use percuss_validation::truth::{DoubleDouble, Library, Truth, TruthRow, Undecided};
 
 /// The tables hold 25 significant digits, rounded to nearest, and at most 60 decimals.
 const HALF_A_DIGIT: f64 = 0.5e-24;
 /// They are read into two words in a dozen roundings.
-const READING: f64 = 16.0 * UNIT;
+const READING: f64 = 16.0 * DoubleDouble::UNIT;
 
 /// k of |error| <= k u (1 + |value| + time) growth events, beyond the tables' own rounding, with
 /// u = 2^-106. Ten-odd roundings per event would let it be ten; 0.13 is reached, where 25 digits do
@@ -41,7 +41,7 @@ fn units(found: TwoWord, proved: TwoWord, time: f64) -> f64 {
     // Not a maximum, which would drop a NaN.
     let printed = HALF_A_DIGIT * value + READING * value + 0.5e-60;
     let left = if error <= printed { 0.0 } else { error - printed };
-    left / (UNIT * (1.0 + value + time))
+    left / (DoubleDouble::UNIT * (1.0 + value + time))
 }
 
 /// The place of a row: how many events came before, and how long ago the last of them was.

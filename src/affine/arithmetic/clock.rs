@@ -4,7 +4,7 @@ use super::real::{BigReal, bits_for};
 use super::vector::{is_f64, rounded, turned};
 use crate::affine::model::system::Forcing;
 use crate::numeric::number::{Bound, Number};
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 
 /// A time in two words of an arithmetic.
 #[derive(Clone, Copy, Debug)]

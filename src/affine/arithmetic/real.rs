@@ -1,9 +1,9 @@
 //! Real and complex numbers of several hundred bits, in which a mode's matrix is taken apart once.
 
 use crate::numeric::number::{Bound, Number};
-use dashu_float::FBig;
-use dashu_float::round::mode::HalfEven;
-use dashu_ratio::RBig;
+use dashu::float::FBig;
+use dashu::float::round::mode::HalfEven;
+use dashu::rational::RBig;
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -25,7 +25,7 @@ use self::quasi_triangular::triangular;
 use crate::affine::arithmetic::real::BigReal;
 use crate::affine::model::system::Row;
 use crate::numeric::number::{Bound, ScaledF64};
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 
 /// Eigenvalues stay together if their distance is below this share of the larger one: the
 /// projectors of others are then at most some tens in size.

@@ -3,7 +3,7 @@
 
 use crate::affine::arithmetic::real::{BigComplex, BigReal};
 use crate::affine::model::system::Row;
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 
 /// Coefficients, lowest first; the last is not zero.
 type Polynomial = Vec<RBig>;

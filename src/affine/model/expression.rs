@@ -2,7 +2,7 @@
 //! parentheses, whose results are exact.
 
 use super::form::Form;
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 
 /// The deepest nesting of parentheses and signs that is read.
 const DEEPEST: usize = 64;

@@ -2,7 +2,7 @@
 //! format.
 
 use super::error::{Source, SystemError};
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, IgnoredAny, Visitor};
 use std::collections::BTreeMap;

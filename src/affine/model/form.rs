@@ -1,8 +1,8 @@
 //! Affine forms with exact coefficients: rational combinations of the states, cos theta, sin theta
 //! and 1.
 
-use dashu_int::ops::BitTest;
-use dashu_ratio::RBig;
+use dashu::base::BitTest;
+use dashu::rational::RBig;
 
 /// The largest number of bits of a coefficient's numerator or denominator.
 const LARGEST_BITS: usize = 16_384;

@@ -6,7 +6,7 @@
 use super::error::SystemError;
 use super::file::SystemFile;
 use crate::unknown_name::UnknownName;
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;

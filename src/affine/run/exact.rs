@@ -7,7 +7,7 @@ use crate::affine::model::system::{StartPoint, System};
 use crate::affine::zeros::exact::{Chain, Entries, ExactMode, Fate, Instant, entries_after, solve};
 use crate::affine::zeros::graph::ZeroGuards;
 use crate::numeric::number::Number;
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 
 /// The exact side of a run.
 pub(super) struct ExactRun {

@@ -7,7 +7,7 @@ use crate::affine::model::system::{StartPoint, System};
 use crate::affine::zeros::graph::ZeroGraph;
 use crate::affine::zeros::residue::residues;
 use crate::affine::zeros::space::{ZeroSpace, kernel};
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 
 /// The largest number of starts in the cache.
 const MOST: usize = 8;

@@ -5,9 +5,9 @@
 //! passes through one is zero there by the model.
 
 use crate::affine::model::system::Row;
-use dashu_int::UBig;
-use dashu_int::ops::{SquareRoot, UnsignedAbs};
-use dashu_ratio::RBig;
+use dashu::base::{SquareRoot, UnsignedAbs};
+use dashu::integer::UBig;
+use dashu::rational::RBig;
 
 /// A guard of the forcing angle alone.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,8 +8,8 @@
 
 use super::circle::{Circle, root};
 use crate::affine::model::system::{Mode, Row, Successor, System};
-use dashu_int::ops::BitTest;
-use dashu_ratio::RBig;
+use dashu::base::BitTest;
+use dashu::rational::RBig;
 
 /// The most bits of a rational entry: what is longer is not followed any more.
 const LONGEST: usize = 4096;

@@ -8,7 +8,7 @@ use super::circle::Circle;
 use super::residue::{Residue, Residues, residues, row_times};
 use super::space::ZeroSpace;
 use crate::affine::model::system::{Mode, Row, Successor, System, Until};
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 use std::collections::HashMap;
 use std::sync::Arc;
 

@@ -4,9 +4,9 @@
 //! is dependent over the rationals is so modulo every prime; the converse fails for at most those
 //! primes that divide a minor, which for two primes at once has a probability of about 2^-122.
 
-use dashu_int::ops::UnsignedAbs;
-use dashu_int::{IBig, UBig};
-use dashu_ratio::RBig;
+use dashu::base::UnsignedAbs;
+use dashu::integer::{IBig, UBig};
+use dashu::rational::RBig;
 
 /// The number of bits of a residue, at most.
 const BITS: u32 = 61;

@@ -6,7 +6,7 @@ mod names;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::file::{GivenParameter, Scalar, StartTable, SystemFile};
 use crate::affine::model::system::{LARGEST_COUNT, LARGEST_DIMENSION, StartPoint, System, TROUBLE};
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 use mode::ModeReader;
 use names::{Accepts, Names};
 use std::collections::BTreeMap;

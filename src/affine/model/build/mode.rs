@@ -7,7 +7,7 @@ use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
 use crate::affine::model::form::Form;
 use crate::affine::model::system::{Direction, LARGEST_COUNT, Mode, Row, Successor, Until, Watch};
 use crate::unknown_name::UnknownName;
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 

@@ -5,7 +5,7 @@ use crate::affine::model::expression::{Scope, expression, is_name};
 use crate::affine::model::file::{GivenParameter, Scalar, SystemFile};
 use crate::affine::model::form::Form;
 use crate::affine::model::system::Forcing;
-use dashu_ratio::RBig;
+use dashu::rational::RBig;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 

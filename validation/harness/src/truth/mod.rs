@@ -3,7 +3,6 @@
 
 mod cautious;
 mod decimal;
-mod double_double;
 mod forms;
 mod landing;
 mod library;
@@ -14,11 +13,9 @@ mod system_growth;
 mod system_replay;
 mod table;
 
-pub use double_double::{DoubleDouble, LARGEST_ANGLE, UNIT};
 pub use library::Library;
+pub use percuss::affine::DoubleDouble;
 pub use replay::{Beginning, Replay, ReplayedPhase, Undecided};
 pub use system::{SystemTruth, SystemTruthRow};
 pub use system_replay::solver;
 pub use table::{Truth, TruthRow};
-
-percuss::affine_arithmetic!(DoubleDouble, 106);

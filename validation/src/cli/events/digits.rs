@@ -1,6 +1,6 @@
 //! Decimals that hold only digits that are proved.
 
-use dashu_int::{IBig, UBig};
+use dashu::integer::{IBig, UBig};
 use percuss::number::{Bound, Number};
 use std::cmp::Ordering;
 

@@ -14,7 +14,7 @@ use crate::engine::{Failure, OscillatorOutcome, OscillatorTask, SampleGrid};
 use crate::score::SCORED_ERROR;
 use crate::score::horizons::{Horizons, ValidHorizon};
 use crate::score::statistics::Spread;
-use crate::truth::{Truth, UNIT};
+use crate::truth::{DoubleDouble, Truth};
 use percuss::TwoWord;
 use rayon::prelude::*;
 
@@ -145,7 +145,7 @@ impl HorizonRun {
 
     /// The period up to which the truth can score.
     fn trusted(&self) -> u32 {
-        self.grows_to(TRUSTED / UNIT)
+        self.grows_to(TRUSTED / DoubleDouble::UNIT)
     }
 
     fn horizon(

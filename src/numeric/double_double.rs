@@ -1,28 +1,28 @@
-//! Arithmetic of 106 bits for the truth: the same closed forms, evaluated in double-double.
+//! Arithmetic of 106 bits, in double-double: proved runs and the truths of tests are computed in it.
 //!
 //! Sums, products, quotients, square root and exponential are those of `xprec` (Joldes, Muller and
 //! Popescu 2017: a few units of 2^-106 each). Its sine reduces the argument by two words of pi/2
 //! and is used inside one quadrant only; the reduction is done here, in three words.
 
-use percuss::TwoWord;
-use percuss::number::Number;
+use super::number::{self, Number};
+use super::two_word::TwoWord;
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use xprec::Df64;
 use xprec::arith::mul_dd;
 
-/// An unevaluated sum of two f64, about 32 digits.
+/// An unevaluated sum of two `f64`, about 32 decimal digits.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 pub struct DoubleDouble(Df64);
 
-/// 2^-106, half the distance from one to the next number: the unit of this arithmetic.
-pub const UNIT: f64 = f64::EPSILON * f64::EPSILON / 4.0;
-
-/// The largest argument of sine and cosine, 2^50: up to it a quotient by a quarter turn is good to
-/// an eighth of one. Beyond it both are NaN.
-pub const LARGEST_ANGLE: f64 = 1_125_899_906_842_624.0;
-
 impl DoubleDouble {
+    /// 2^-106, half the distance from one to the next number: the unit of this arithmetic.
+    pub const UNIT: f64 = f64::EPSILON * f64::EPSILON / 4.0;
+
+    /// The largest argument of sine and cosine, 2^50: up to it a quotient by a quarter turn is good
+    /// to an eighth of one. Beyond it both are NaN.
+    pub const LARGEST_ANGLE: f64 = 1_125_899_906_842_624.0;
+
     /// The sum of two words in any order.
     #[must_use]
     pub fn new(high: f64, low: f64) -> Self {
@@ -113,7 +113,7 @@ impl Number for DoubleDouble {
     /// Four units of 2^-106, because each operation is good to a few of them.
     #[inline]
     fn unit() -> f64 {
-        4.0 * UNIT
+        4.0 * Self::UNIT
     }
 
     #[inline]
@@ -128,7 +128,7 @@ impl Number for DoubleDouble {
 
     fn scaled(self, exponent: i64) -> Self {
         let (high, low) = self.words();
-        let [high, low] = [high, low].map(|it| percuss::number::Bound::scaled(it, exponent));
+        let [high, low] = [high, low].map(|it| number::Bound::scaled(it, exponent));
         Self::new(high, low)
     }
 
@@ -142,7 +142,7 @@ impl Number for DoubleDouble {
 
     fn sin_cos(self) -> (Self, Self) {
         // Written so that a NaN stays one.
-        if self.0.hi().abs() <= LARGEST_ANGLE {
+        if self.0.hi().abs() <= Self::LARGEST_ANGLE {
             return sin_cos(self);
         }
         (Self::exact(f64::NAN), Self::exact(f64::NAN))
@@ -257,6 +257,6 @@ const INVERSE_FACTORIALS: [(f64, f64); 31] = [
 ];
 
 #[cfg(test)]
-#[path = "double_double_tests.rs"] // also where this file is included from elsewhere
+#[path = "double_double_tests.rs"]
 #[allow(clippy::approx_constant)] // they are the words that were computed
 mod tests;

@@ -49,7 +49,7 @@ const TWO_WORD_SINE: (Words, Words) = (
 /// Relative difference in units of 2^-106.
 fn units(found: DoubleDouble, expected: Words) -> f64 {
     let expected = DoubleDouble::new(expected.0, expected.1);
-    ((found - expected) / expected).to_f64().abs() / UNIT
+    ((found - expected) / expected).to_f64().abs() / DoubleDouble::UNIT
 }
 
 /// The library's own bounds: 3 a sum, 4 a product, 6 a quotient; a series adds a handful of them.
@@ -83,7 +83,10 @@ fn the_second_word_of_a_large_angle_counts() {
 fn square_root_is_good_to_the_last_digits() {
     for (xi, expected) in DAMPED_FREQUENCIES {
         let (nu, lost) = DoubleDouble::damped_frequency(DoubleDouble::exact(xi));
-        assert!(lost.to_f64().abs() <= ELEMENTARY * UNIT * expected.0, "xi = {xi}: {lost:?}");
+        assert!(
+            lost.to_f64().abs() <= ELEMENTARY * DoubleDouble::UNIT * expected.0,
+            "xi = {xi}: {lost:?}"
+        );
         let error = units(nu, expected);
         assert!(error <= ELEMENTARY, "xi = {xi}: {error} units");
     }
@@ -135,7 +138,7 @@ fn wrapped(x: f64) -> u64 {
 
 #[test]
 fn an_angle_beyond_the_reduction_is_no_number() {
-    for angle in [1.01 * LARGEST_ANGLE, f64::NAN, f64::NEG_INFINITY] {
+    for angle in [1.01 * DoubleDouble::LARGEST_ANGLE, f64::NAN, f64::NEG_INFINITY] {
         let (sin, cos) = DoubleDouble::exact(angle).sin_cos();
         assert!(sin.to_f64().is_nan() && cos.to_f64().is_nan());
     }
@@ -150,6 +153,6 @@ fn the_exponential_is_good_at_a_tie_of_its_reduction() {
         let half = DoubleDouble::new(-(f64::from(n) + 0.5) * part, 1e-19);
         let (whole, parts) = (half.exp(), (half * DoubleDouble::exact(0.5)).exp());
         let off = (whole - parts * parts).to_f64().abs();
-        assert!(off <= 64.0 * UNIT * whole.to_f64(), "{n}: {off:e}");
+        assert!(off <= 64.0 * DoubleDouble::UNIT * whole.to_f64(), "{n}: {off:e}");
     }
 }
