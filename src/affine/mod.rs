@@ -15,10 +15,10 @@ mod zeros;
 pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 pub use arithmetic::clock::Time;
-pub use dashu::rational::RBig as Rational;
 pub use guards::track::SearchWork;
 pub use model::error::SystemError;
 pub use model::file::SystemFile;
+pub use model::rational::{Rational, RationalError};
 pub use model::system::{
     Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, TROUBLE,
     Until, Watch,
@@ -30,14 +30,16 @@ pub use solver::{Solver, Unprepared};
 
 /// Implements [`Arithmetic`] for a number of so many bits.
 macro_rules! arithmetic {
-    ($number:ty, $bits:expr) => {
+    ($number:ty, $bits:expr $(, #[$inline:meta])?) => {
         impl Arithmetic for $number {
             const BITS: u32 = $bits;
 
+            $(#[$inline])?
             fn solver(system: &System, backward: bool) -> Result<Solver<Self>, Unprepared> {
                 if backward { Solver::backward(system) } else { Solver::new(system) }
             }
 
+            $(#[$inline])?
             fn enclosed<'a>(
                 solver: &'a Solver<Self>,
                 start: &StartPoint,
@@ -49,7 +51,8 @@ macro_rules! arithmetic {
     };
 }
 
-arithmetic!(f64, 53);
+// Inlined, so that only programs which use it compile the solver for it.
+arithmetic!(f64, 53, #[inline]);
 arithmetic!(DoubleDouble, 106);
 arithmetic!(Bits212, 212);
 arithmetic!(Bits424, 424);

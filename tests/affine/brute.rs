@@ -28,11 +28,11 @@ fn advanced(matrix: &[Vec<f64>], z: &[f64], time: f64) -> Vec<f64> {
 
 fn rows(system: &System, mode: usize) -> Vec<Vec<f64>> {
     let rows = system.modes[mode].matrix.iter();
-    rows.map(|row| row.iter().map(|it| it.to_f64().value()).collect()).collect()
+    rows.map(|row| row.iter().map(|it| it.to_f64()).collect()).collect()
 }
 
 fn value(row: &[percuss::affine::Rational], z: &[f64]) -> f64 {
-    row.iter().zip(z).map(|(a, b)| a.to_f64().value() * b).sum()
+    row.iter().zip(z).map(|(a, b)| a.to_f64() * b).sum()
 }
 
 fn text(a: [i32; 4], b: i32, stop: i32, e: i32, start: [i32; 2]) -> String {

@@ -326,11 +326,11 @@ fn crest(system: &System, met: &mut Met) -> Result<(), String> {
     let states = looked_at.states.len();
     let value = |event: &Event<DoubleDouble>| {
         let terms = until.guard.iter().zip(&event.state).take(states);
-        terms.map(|(a, x)| a.to_f64().value() * x.to_f64()).sum::<f64>()
+        terms.map(|(a, x)| a.to_f64() * x.to_f64()).sum::<f64>()
     };
     let size = |event: &Event<DoubleDouble>| {
         let terms = until.guard.iter().zip(&event.state).take(states);
-        terms.map(|(a, x)| (a.to_f64().value() * x.to_f64()).abs()).sum::<f64>()
+        terms.map(|(a, x)| (a.to_f64() * x.to_f64()).abs()).sum::<f64>()
     };
     let begin = run.start();
     let all: Vec<_> = run.by_ref().take(200).collect();

@@ -80,7 +80,7 @@ fn crossings<T: Number>(events: &[Event<T>]) -> Option<Vec<bool>> {
 fn decided(system: &System, which: usize, shift: f64) -> Option<bool> {
     let (mut system, [high, low]) = crest(system, which)?;
     let start = system.start.clone()?;
-    let size = start.state.iter().map(|it| it[2].to_f64().value().abs()).fold(0.0, f64::max);
+    let size = start.state.iter().map(|it| it[2].to_f64().abs()).fold(0.0, f64::max);
     let mut guard: Row = vec![Rational::ZERO; system.modes[0].matrix.len()];
     let word = |it: f64| Rational::try_from(it).unwrap();
     guard[0] = word(1.0);

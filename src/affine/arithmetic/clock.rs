@@ -2,9 +2,9 @@
 
 use super::real::{BigReal, bits_for};
 use super::vector::{is_f64, rounded, turned};
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::Forcing;
 use crate::numeric::number::{Bound, Number};
-use dashu::rational::RBig;
 
 /// A time in two words of an arithmetic.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ pub struct Clock<T> {
 impl<T: Number> Time<T> {
     /// A rational time, rounded to two words.
     #[must_use]
-    pub fn of(number: &RBig) -> Self {
+    pub fn of(number: &Rational) -> Self {
         let real = BigReal::of(number, bits_for::<T>());
         if is_f64::<T>() {
             let (high, low) = real.words();

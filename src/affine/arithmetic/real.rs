@@ -1,9 +1,9 @@
 //! Real and complex numbers of several hundred bits, in which a mode's matrix is taken apart once.
 
+use crate::affine::model::rational::Rational;
 use crate::numeric::number::{Bound, Number};
 use dashu::float::FBig;
 use dashu::float::round::mode::HalfEven;
-use dashu::rational::RBig;
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -42,8 +42,8 @@ impl BigReal {
     }
 
     /// A rational number, rounded to so many bits.
-    pub fn of(number: &RBig, bits: usize) -> Self {
-        Self(number.to_float::<HalfEven, 2>(bits).value().with_precision(bits).value())
+    pub fn of(number: &Rational, bits: usize) -> Self {
+        Self(number.big().to_float::<HalfEven, 2>(bits).value().with_precision(bits).value())
     }
 
     /// The bits of the number.

@@ -23,9 +23,9 @@ pub(super) use self::matrix::{exponential, multiples, row_times};
 use self::polynomial::{Eigenvalue, eigenvalues};
 use self::quasi_triangular::triangular;
 use crate::affine::arithmetic::real::BigReal;
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::Row;
 use crate::numeric::number::{Bound, ScaledF64};
-use dashu::rational::RBig;
 
 /// Eigenvalues stay together if their distance is below this share of the larger one: the
 /// projectors of others are then at most some tens in size.
@@ -280,8 +280,8 @@ fn noise(matrix: &BigMatrix, [columns, rows]: [&BigMatrix; 2], inner: &BigMatrix
 /// like the rounding of a large one. Nothing is scaled where all sizes are alike.
 fn scales(exact: &[Row]) -> Vec<isize> {
     const ROUNDS: usize = 64;
-    let power = |number: &RBig| -> Option<isize> {
-        let exponent = libm::frexp(number.to_f64().value()).1;
+    let power = |number: &Rational| -> Option<isize> {
+        let exponent = libm::frexp(number.to_f64()).1;
         (!number.is_zero()).then_some(exponent as isize)
     };
     let powers: Vec<Vec<Option<isize>>> =

@@ -2,11 +2,11 @@
 //! their roots.
 
 use crate::affine::arithmetic::real::{BigComplex, BigReal};
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::Row;
-use dashu::rational::RBig;
 
 /// Coefficients, lowest first; the last is not zero.
-type Polynomial = Vec<RBig>;
+type Polynomial = Vec<Rational>;
 
 /// A root with its multiplicity. Of a pair of complex roots the one above the real axis is there.
 #[derive(Clone, Debug)]
@@ -40,15 +40,15 @@ pub fn eigenvalues(matrix: &[Row], bits: usize) -> Option<Vec<Eigenvalue>> {
 /// Faddeev and Le Verrier's method, which is exact here.
 fn characteristic(matrix: &[Row]) -> Polynomial {
     let size = matrix.len();
-    let mut coefficients = vec![RBig::ONE];
-    let mut power: Vec<Row> = vec![vec![RBig::ZERO; size]; size];
+    let mut coefficients = vec![Rational::ONE];
+    let mut power: Vec<Row> = vec![vec![Rational::ZERO; size]; size];
     for k in 1..=size {
         for (n, row) in power.iter_mut().enumerate() {
             row[n] += &coefficients[k - 1];
         }
         power = product(matrix, &power);
-        let trace = (0..size).fold(RBig::ZERO, |sum, n| sum + &power[n][n]);
-        coefficients.push(-trace / RBig::from(k));
+        let trace = (0..size).fold(Rational::ZERO, |sum, n| sum + &power[n][n]);
+        coefficients.push(-trace / Rational::from(k));
     }
     coefficients.reverse();
     coefficients
@@ -57,7 +57,7 @@ fn characteristic(matrix: &[Row]) -> Polynomial {
 fn product(a: &[Row], b: &[Row]) -> Vec<Row> {
     let entry = |row: &Row, j: usize| {
         let terms = row.iter().zip(b).filter(|(factor, _)| !factor.is_zero());
-        terms.fold(RBig::ZERO, |sum, (factor, other)| sum + factor * &other[j])
+        terms.fold(Rational::ZERO, |sum, (factor, other)| sum + factor * &other[j])
     };
     a.iter().map(|row| (0..b.len()).map(|j| entry(row, j)).collect()).collect()
 }
@@ -81,7 +81,7 @@ fn squarefree(polynomial: &Polynomial) -> Vec<Polynomial> {
 
 fn derivative(polynomial: &Polynomial) -> Polynomial {
     let terms = polynomial.iter().enumerate().skip(1);
-    terms.map(|(power, coefficient)| coefficient * RBig::from(power)).collect()
+    terms.map(|(power, coefficient)| coefficient * Rational::from(power)).collect()
 }
 
 fn difference(a: &Polynomial, b: &Polynomial) -> Polynomial {
@@ -90,7 +90,7 @@ fn difference(a: &Polynomial, b: &Polynomial) -> Polynomial {
 }
 
 fn trimmed(mut polynomial: Polynomial) -> Polynomial {
-    while polynomial.last().is_some_and(RBig::is_zero) {
+    while polynomial.last().is_some_and(Rational::is_zero) {
         polynomial.pop();
     }
     polynomial
@@ -101,7 +101,7 @@ fn divided(polynomial: &Polynomial, divisor: &Polynomial) -> (Polynomial, Polyno
     let mut rest = polynomial.clone();
     let Some(leading) = divisor.last() else { return (Vec::new(), rest) };
     let steps = (rest.len() + 1).saturating_sub(divisor.len());
-    let mut quotient = vec![RBig::ZERO; steps];
+    let mut quotient = vec![Rational::ZERO; steps];
     for step in (0..steps).rev() {
         let factor = &rest[step + divisor.len() - 1] / leading;
         for (entry, other) in rest[step..].iter_mut().zip(divisor) {
@@ -131,7 +131,7 @@ fn greatest_common_divisor(a: &Polynomial, b: &Polynomial) -> Polynomial {
 
 /// The roots of a polynomial that has each once. A root at zero is exactly zero: an iteration would
 /// only come near it, and what stands still would then seem to grow or decay.
-fn simple_roots(polynomial: &[RBig], bits: usize) -> Option<Vec<BigComplex>> {
+fn simple_roots(polynomial: &[Rational], bits: usize) -> Option<Vec<BigComplex>> {
     match polynomial.split_first() {
         Some((lowest, [])) if !lowest.is_zero() => Some(Vec::new()),
         Some((lowest, rest)) if lowest.is_zero() => {
@@ -144,7 +144,7 @@ fn simple_roots(polynomial: &[RBig], bits: usize) -> Option<Vec<BigComplex>> {
 
 /// The roots of a polynomial that has each once, and none at zero: Aberth's iteration, all of them
 /// at a time.
-fn roots_away_from_zero(polynomial: &[RBig], bits: usize) -> Option<Vec<BigComplex>> {
+fn roots_away_from_zero(polynomial: &[Rational], bits: usize) -> Option<Vec<BigComplex>> {
     const ROUNDS: usize = 2000;
     let coefficients: Vec<_> = polynomial.iter().map(|it| BigReal::of(it, bits)).collect();
     let degree = coefficients.len() - 1;

@@ -2,7 +2,7 @@
 //! parentheses, whose results are exact.
 
 use super::form::Form;
-use dashu::rational::RBig;
+use crate::affine::model::rational::Rational;
 
 /// The deepest nesting of parentheses and signs that is read.
 const DEEPEST: usize = 64;
@@ -88,7 +88,7 @@ impl Reader<'_> {
 
     fn signed(&mut self) -> Result<Form, String> {
         if self.takes('-') {
-            return self.nested(|reader| Ok(reader.signed()?.times_number(&-RBig::ONE)));
+            return self.nested(|reader| Ok(reader.signed()?.times_number(&-Rational::ONE)));
         }
         self.power()
     }
@@ -125,7 +125,7 @@ impl Reader<'_> {
         let digits = self.digits();
         let states = self.scope.states();
         match digits.parse::<u64>() {
-            Ok(integer) if integer <= 1 << 63 => Ok(Form::number(states, RBig::from(integer))),
+            Ok(integer) if integer <= 1 << 63 => Ok(Form::number(states, Rational::from(integer))),
             _ if digits.is_empty() => Err(self.nothing()),
             _ => Err(format!("{digits} is too large: integers up to 2^63 are accepted")),
         }

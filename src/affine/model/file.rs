@@ -2,7 +2,7 @@
 //! format.
 
 use super::error::{Source, SystemError};
-use dashu::rational::RBig;
+use crate::affine::model::rational::Rational;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, IgnoredAny, Visitor};
 use std::collections::BTreeMap;
@@ -122,10 +122,10 @@ pub(super) enum Scalar {
 
 impl Scalar {
     /// The exact value of a number; none of text and of what is not finite.
-    pub fn number(&self) -> Option<RBig> {
+    pub fn number(&self) -> Option<Rational> {
         match self {
-            Self::Integer(integer) => Some(RBig::from(*integer)),
-            Self::Decimal(decimal) => RBig::try_from(*decimal).ok(),
+            Self::Integer(integer) => Some(Rational::from(*integer)),
+            Self::Decimal(decimal) => Rational::try_from(*decimal).ok(),
             Self::Text(_) => None,
         }
     }

@@ -1,8 +1,7 @@
 //! Affine forms with exact coefficients: rational combinations of the states, cos theta, sin theta
 //! and 1.
 
-use dashu::base::BitTest;
-use dashu::rational::RBig;
+use crate::affine::model::rational::Rational;
 
 /// The largest number of bits of a coefficient's numerator or denominator.
 const LARGEST_BITS: usize = 16_384;
@@ -12,30 +11,30 @@ const LARGEST_POWER: usize = 1000;
 
 /// The coefficients of the states, then of cos theta, sin theta and 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Form(pub Vec<RBig>);
+pub(super) struct Form(pub Vec<Rational>);
 
 impl Form {
     /// The form that is zero.
     pub fn zero(states: usize) -> Self {
-        Self(vec![RBig::ZERO; states + 3])
+        Self(vec![Rational::ZERO; states + 3])
     }
 
     /// The constant form of a number.
-    pub fn number(states: usize, value: RBig) -> Self {
+    pub fn number(states: usize, value: Rational) -> Self {
         Self::unit(states, states + 2).times_number(&value)
     }
 
     /// A single one of the states, cos theta, sin theta or 1, by its index.
     pub fn unit(states: usize, index: usize) -> Self {
         let mut form = Self::zero(states);
-        form.0[index] = RBig::ONE;
+        form.0[index] = Rational::ONE;
         form
     }
 
     /// The number that the form is, if it has neither states nor cos theta or sin theta.
-    pub fn constant(&self) -> Option<&RBig> {
+    pub fn constant(&self) -> Option<&Rational> {
         let (last, others) = self.0.split_last()?;
-        others.iter().all(RBig::is_zero).then_some(last)
+        others.iter().all(Rational::is_zero).then_some(last)
     }
 
     /// Whether the form depends on a state.
@@ -55,7 +54,7 @@ impl Form {
     }
 
     /// `self * factor`.
-    pub fn times_number(&self, factor: &RBig) -> Self {
+    pub fn times_number(&self, factor: &Rational) -> Self {
         Self(self.0.iter().map(|it| it * factor).collect())
     }
 
@@ -74,7 +73,7 @@ impl Form {
     pub fn over(&self, divisor: &Self) -> Result<Self, String> {
         match divisor.constant() {
             Some(divisor) if divisor.is_zero() => Err("a division by zero".to_owned()),
-            Some(divisor) => Ok(self.times_number(&(RBig::ONE / divisor))),
+            Some(divisor) => Ok(self.times_number(&(Rational::ONE / divisor))),
             None => Err("a divisor with a state, cos or sin in it is not accepted: expressions \
                          are affine"
                 .to_owned()),
@@ -91,7 +90,7 @@ impl Form {
                     .to_owned())
             };
         };
-        let mut power = RBig::ONE;
+        let mut power = Rational::ONE;
         for _ in 0..exponent {
             power *= base;
             check_size(&power)?;
@@ -106,10 +105,11 @@ impl Form {
 
     /// Refuses coefficients beyond the range of f64.
     pub fn check_range(&self) -> Result<(), String> {
-        let lengths = |it: &RBig| (it.numerator().bit_len(), it.denominator().bit_len());
         let far =
             |(above, below): &(usize, usize)| *above > 0 && above.abs_diff(*below) > LARGEST_POWER;
-        let Some((above, below)) = self.0.iter().map(lengths).find(far) else { return Ok(()) };
+        let Some((above, below)) = self.0.iter().map(Rational::bits).find(far) else {
+            return Ok(());
+        };
         let (sign, power) = (if above < below { "-" } else { "" }, above.abs_diff(below));
         Err(format!(
             "a coefficient of about 2^{sign}{power} is not accepted: 0 is, and sizes from \
@@ -118,8 +118,9 @@ impl Form {
     }
 }
 
-fn check_size(number: &RBig) -> Result<(), String> {
-    let bits = number.numerator().bit_len().max(number.denominator().bit_len());
+fn check_size(number: &Rational) -> Result<(), String> {
+    let (above, below) = number.bits();
+    let bits = above.max(below);
     if bits > LARGEST_BITS {
         return Err(format!(
             "a coefficient of {bits} bits is too long: up to {LARGEST_BITS} are accepted"

@@ -5,14 +5,14 @@
 
 use super::error::SystemError;
 use super::file::SystemFile;
+use crate::affine::model::rational::Rational;
 use crate::unknown_name::UnknownName;
-use dashu::rational::RBig;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
 
 /// A row of exact coefficients, one for each entry of z.
-pub type Row = Vec<RBig>;
+pub type Row = Vec<Rational>;
 
 /// The largest number of entries of z.
 pub const LARGEST_DIMENSION: usize = 12;
@@ -74,9 +74,9 @@ pub struct System {
 #[derive(Clone, Debug)]
 pub struct Forcing {
     /// The frequency, radians a unit of time: positive, or negative where a system runs backward.
-    pub omega: RBig,
+    pub omega: Rational,
     /// The phase at time zero, radians.
-    pub phi: RBig,
+    pub phi: Rational,
 }
 
 /// A mode of a system: its motion, with the guards that end it and those that are watched.
@@ -172,9 +172,9 @@ pub struct StartPoint {
     /// The index of the mode.
     pub mode: usize,
     /// The time.
-    pub time: RBig,
+    pub time: Rational,
     /// Each state as coefficients of cos theta, sin theta and 1 at that time.
-    pub state: Vec<[RBig; 3]>,
+    pub state: Vec<[Rational; 3]>,
 }
 
 impl System {

@@ -41,7 +41,7 @@ impl<T: Number> Solver<T> {
         // The error of cos theta follows the states; without forcing it is zero.
         let turned = phase[start.state.len()];
         for (size, terms) in sizes.iter_mut().zip(&start.state) {
-            let [cos, sin, one] = [0, 1, 2].map(|n| terms[n].to_f64().value().abs());
+            let [cos, sin, one] = [0, 1, 2].map(|n| terms[n].to_f64().abs());
             *size += error(T::exact(cos + sin + one)) + turned * (cos + sin);
         }
         sizes.iter_mut().zip(phase).for_each(|(size, turned)| *size += turned);

@@ -3,11 +3,11 @@
 
 use super::Run;
 use crate::affine::arithmetic::vector::Vector;
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{StartPoint, System};
 use crate::affine::zeros::exact::{Chain, Entries, ExactMode, Fate, Instant, entries_after, solve};
 use crate::affine::zeros::graph::ZeroGuards;
 use crate::numeric::number::Number;
-use dashu::rational::RBig;
 
 /// The exact side of a run.
 pub(super) struct ExactRun {
@@ -21,16 +21,16 @@ impl ExactRun {
     /// The entries that a start gives exactly.
     pub fn at_start(system: &System, start: &StartPoint) -> Self {
         let zero_angle = system.is_at_zero_angle(start);
-        let known = |[cos, sin, one]: &[RBig; 3]| {
+        let known = |[cos, sin, one]: &[Rational; 3]| {
             let is_plain = cos.is_zero() && sin.is_zero();
             (zero_angle || is_plain).then(|| cos + one)
         };
         let mut entries: Entries = start.state.iter().map(known).collect();
         if system.forcing.is_some() {
-            entries.push(zero_angle.then_some(RBig::ONE));
-            entries.push(zero_angle.then_some(RBig::ZERO));
+            entries.push(zero_angle.then_some(Rational::ONE));
+            entries.push(zero_angle.then_some(Rational::ZERO));
         }
-        entries.push(Some(RBig::ONE));
+        entries.push(Some(Rational::ONE));
         Self { entries, fates: Vec::new() }
     }
 
@@ -60,7 +60,7 @@ impl<T: Number> Run<'_, T> {
             && own
                 .until
                 .get(guard)
-                .is_none_or(|it| it.guard.last().is_some_and(|c| *c < RBig::ZERO))
+                .is_none_or(|it| it.guard.last().is_some_and(|c| *c < Rational::ZERO))
     }
 
     /// The instant of a guard's crossing at which the search has arrived, if it is known exactly.

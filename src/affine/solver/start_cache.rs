@@ -3,11 +3,11 @@
 
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::Vector;
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{StartPoint, System};
 use crate::affine::zeros::graph::ZeroGraph;
 use crate::affine::zeros::residue::residues;
 use crate::affine::zeros::space::{ZeroSpace, kernel};
-use dashu::rational::RBig;
 
 /// The largest number of starts in the cache.
 const MOST: usize = 8;
@@ -80,16 +80,16 @@ impl<T: Copy> StartCache<T> {
 /// The left kernel of the start's coefficients over cos theta, sin theta and 1.
 fn zeros_at_start(system: &System, start: &StartPoint) -> Option<ZeroSpace> {
     let zero_angle = system.is_at_zero_angle(start);
-    let mut rows: Vec<[RBig; 3]> = start.state.clone();
+    let mut rows: Vec<[Rational; 3]> = start.state.clone();
     if system.forcing.is_some() {
-        rows.push([RBig::ONE, RBig::ZERO, RBig::ZERO]);
-        rows.push([RBig::ZERO, RBig::ONE, RBig::ZERO]);
+        rows.push([Rational::ONE, Rational::ZERO, Rational::ZERO]);
+        rows.push([Rational::ZERO, Rational::ONE, Rational::ZERO]);
     }
-    rows.push([RBig::ZERO, RBig::ZERO, RBig::ONE]);
-    let row = |[cos, sin, one]: &[RBig; 3]| {
+    rows.push([Rational::ZERO, Rational::ZERO, Rational::ONE]);
+    let row = |[cos, sin, one]: &[Rational; 3]| {
         // At theta = 0 the cosine is 1 and the sine 0.
         let row = if zero_angle {
-            vec![RBig::ZERO, RBig::ZERO, cos + one]
+            vec![Rational::ZERO, Rational::ZERO, cos + one]
         } else {
             vec![cos.clone(), sin.clone(), one.clone()]
         };

@@ -4,10 +4,10 @@
 //! of a^2 + b^2 - c^2 is rational, so are these points, and every other guard of the angle that
 //! passes through one is zero there by the model.
 
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::Row;
 use dashu::base::{SquareRoot, UnsignedAbs};
 use dashu::integer::UBig;
-use dashu::rational::RBig;
 
 /// A guard of the forcing angle alone.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub struct Circle {
     /// Whether the guard never changes its sign: it may touch zero.
     pub keeps_sign: bool,
     /// The two points (cos, sin) at which the guard is zero, if they are rational.
-    pub points: Option<[[RBig; 2]; 2]>,
+    pub points: Option<[[Rational; 2]; 2]>,
 }
 
 impl Circle {
@@ -24,25 +24,25 @@ impl Circle {
         let (own, angle) = guard.split_at(states);
         let [a, b, c] = angle else { return None };
         let turns = !(a.is_zero() && b.is_zero());
-        if !turns || !own.iter().all(RBig::is_zero) {
+        if !turns || !own.iter().all(Rational::is_zero) {
             return None;
         }
         let square = a * a + b * b;
         let rest = &square - c * c;
         let points = root(&rest).filter(|it| !it.is_zero()).map(|root| {
             let point =
-                |root: &RBig| [(-a * c - b * root) / &square, (-b * c + a * root) / &square];
+                |root: &Rational| [(-a * c - b * root) / &square, (-b * c + a * root) / &square];
             [point(&root), point(&-&root)]
         });
-        Some(Self { keeps_sign: rest <= RBig::ZERO, points })
+        Some(Self { keeps_sign: rest <= Rational::ZERO, points })
     }
 
     /// The number of the rational point that is nearest to an angle, if the two are well apart.
     pub fn nearest(&self, cos: f64, sin: f64) -> Option<usize> {
         /// The points' distances differ by much more than the rounding of f64.
         const APART: f64 = 1e-6;
-        let distance = |[x, y]: &[RBig; 2]| {
-            let (x, y) = (x.to_f64().value() - cos, y.to_f64().value() - sin);
+        let distance = |[x, y]: &[Rational; 2]| {
+            let (x, y) = (x.to_f64() - cos, y.to_f64() - sin);
             (x * x + y * y).sqrt()
         };
         let [first, second] = self.points.as_ref()?.each_ref().map(distance);
@@ -52,17 +52,17 @@ impl Circle {
 }
 
 /// The root of a rational number that is not negative, if it is rational.
-pub fn root(number: &RBig) -> Option<RBig> {
+pub fn root(number: &Rational) -> Option<Rational> {
     let whole = |it: UBig| -> Option<UBig> {
         let root = it.sqrt();
         (&root * &root == it).then_some(root)
     };
-    if *number < RBig::ZERO {
+    if *number < Rational::ZERO {
         return None;
     }
-    let above = whole(number.numerator().unsigned_abs())?;
-    let below = whole(number.denominator().clone())?;
-    Some(RBig::from_parts(above.into(), below))
+    let above = whole(number.big().numerator().unsigned_abs())?;
+    let below = whole(number.big().denominator().clone())?;
+    Some(Rational::from_parts(above.into(), below))
 }
 
 #[cfg(test)]
@@ -71,14 +71,14 @@ mod tests {
     use super::*;
 
     fn guard(entries: [i32; 4]) -> Row {
-        entries.into_iter().map(RBig::from).collect()
+        entries.into_iter().map(Rational::from).collect()
     }
 
     #[test]
     fn a_guard_of_the_angle_has_its_points() {
         let circle = Circle::of(&guard([0, 0, 10, -6]), 1).unwrap();
         assert!(!circle.keeps_sign);
-        let fifth = |n: i32| RBig::from(n) / RBig::from(5);
+        let fifth = |n: i32| Rational::from(n) / Rational::from(5);
         assert_eq!(circle.points, Some([[fifth(-4), fifth(3)], [fifth(4), fifth(3)]]));
         assert_eq!(circle.nearest(-0.8, 0.6), Some(0));
         assert_eq!(circle.nearest(0.8, 0.6), Some(1));

@@ -7,9 +7,8 @@
 //! from a crossing, or which of two guards that cross at one instant is the first.
 
 use super::circle::{Circle, root};
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{Mode, Row, Successor, System};
-use dashu::base::BitTest;
-use dashu::rational::RBig;
 
 /// The most bits of a rational entry: what is longer is not followed any more.
 const LONGEST: usize = 4096;
@@ -26,7 +25,7 @@ enum Kind {
     /// The row after the last is zero: a polynomial of the time.
     Polynomial,
     /// w M^3 = -s w M, with this positive s: a constant and an oscillation.
-    Oscillation(RBig),
+    Oscillation(Rational),
     Other,
 }
 
@@ -44,18 +43,18 @@ pub struct Fate {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Instant {
     /// A rational time after the entry.
-    Time(RBig),
+    Time(Rational),
     /// A time t at which cos(w t) and sin(w t)/w are rational, for the square of a frequency w.
-    Turn { square: RBig, cos: RBig, sin: RBig },
+    Turn { square: Rational, cos: Rational, sin: Rational },
 }
 
 /// Entries of z, of which some are known exactly.
-pub type Entries = Vec<Option<RBig>>;
+pub type Entries = Vec<Option<Rational>>;
 
 impl Chain {
     /// The chain of a row in a mode's motion.
     pub fn of(row: &Row, matrix: &[Row]) -> Self {
-        let is_zero = |row: &Row| row.iter().all(RBig::is_zero);
+        let is_zero = |row: &Row| row.iter().all(Rational::is_zero);
         let mut rows = vec![row.clone()];
         loop {
             let next = row_times(&rows[rows.len() - 1], matrix);
@@ -73,7 +72,7 @@ impl Chain {
     }
 
     /// The values of the row and its derivatives, if all entries that they need are known.
-    fn values(&self, entries: &Entries) -> Option<Vec<RBig>> {
+    fn values(&self, entries: &Entries) -> Option<Vec<Rational>> {
         self.rows.iter().map(|row| product(row, entries)).collect()
     }
 
@@ -107,7 +106,7 @@ impl Chain {
         let values = self.values(entries)?;
         match &self.kind {
             Kind::Polynomial => {
-                let away = |it: &RBig| (it.to_f64().value() - time).abs() / time.abs();
+                let away = |it: &Rational| (it.to_f64() - time).abs() / time.abs();
                 nearest(parabola_roots(&values), away).map(Instant::Time)
             }
             Kind::Oscillation(square) => Oscillation::of(&values, square)?.zero_near(time),
@@ -117,17 +116,18 @@ impl Chain {
 
     /// The row's value at an instant after the entry, where all that it needs is known: of what
     /// stands still no instant is needed.
-    pub fn at(&self, entries: &Entries, instant: Option<&Instant>) -> Option<RBig> {
+    pub fn at(&self, entries: &Entries, instant: Option<&Instant>) -> Option<Rational> {
         let values = self.values(entries)?;
-        if values[1..].iter().all(RBig::is_zero) {
+        if values[1..].iter().all(Rational::is_zero) {
             return values.into_iter().next();
         }
         match (&self.kind, instant) {
             (Kind::Polynomial, Some(Instant::Time(time))) => {
                 let orders = values.iter().enumerate().rev();
-                let step =
-                    |sum: RBig, (k, value): (usize, &RBig)| value + sum * time / RBig::from(k + 1);
-                Some(orders.fold(RBig::ZERO, step))
+                let step = |sum: Rational, (k, value): (usize, &Rational)| {
+                    value + sum * time / Rational::from(k + 1)
+                };
+                Some(orders.fold(Rational::ZERO, step))
             }
             (Kind::Oscillation(own), Some(Instant::Turn { square, cos, sin })) if own == square => {
                 Some(Oscillation::of(&values, own)?.at(cos, sin))
@@ -160,7 +160,7 @@ impl ExactMode {
             it.when.as_ref().map(|when| Chain::of(when, &system.modes[it.mode].matrix))
         };
         let unit = |n: usize| -> Row {
-            (0..mode.matrix.len()).map(|k| RBig::from(u8::from(k == n))).collect()
+            (0..mode.matrix.len()).map(|k| Rational::from(u8::from(k == n))).collect()
         };
         Self {
             circles: guards.clone().map(|it| Circle::of(it, states)).collect(),
@@ -182,7 +182,7 @@ impl ExactMode {
 
 /// The entries after a reset, as far as they are known and not too long.
 pub fn entries_after(reset: &[Row], entries: &Entries) -> Entries {
-    let is_short = |it: &RBig| it.numerator().bit_len() + it.denominator().bit_len() < LONGEST;
+    let is_short = |it: &Rational| it.bits().0 + it.bits().1 < LONGEST;
     reset.iter().map(|row| product(row, entries).filter(is_short)).collect()
 }
 
@@ -192,20 +192,20 @@ pub fn solve(row: &Row, entries: &mut Entries) {
     let open: Vec<usize> = (0..row.len()).filter(is_open).collect();
     if let [n] = open[..] {
         let mut others = row.clone();
-        others[n] = RBig::ZERO;
+        others[n] = Rational::ZERO;
         entries[n] = product(&others, entries).map(|sum| -sum / &row[n]);
     }
 }
 
 /// The product of a row with the entries, if all that it needs are known.
-fn product(row: &Row, entries: &Entries) -> Option<RBig> {
+fn product(row: &Row, entries: &Entries) -> Option<Rational> {
     let needed = row.iter().zip(entries).filter(|(factor, _)| !factor.is_zero());
     let mut terms = needed.map(|(factor, entry)| Some(factor * entry.as_ref()?));
-    terms.try_fold(RBig::ZERO, |sum, term| Some(sum + term?))
+    terms.try_fold(Rational::ZERO, |sum, term| Some(sum + term?))
 }
 
 fn row_times(row: &Row, matrix: &[Row]) -> Row {
-    let mut sums = vec![RBig::ZERO; row.len()];
+    let mut sums = vec![Rational::ZERO; row.len()];
     for (factor, own) in row.iter().zip(matrix).filter(|(factor, _)| !factor.is_zero()) {
         let entries = sums.iter_mut().zip(own).filter(|(_, entry)| !entry.is_zero());
         entries.for_each(|(sum, entry)| *sum += factor * entry);
@@ -215,40 +215,40 @@ fn row_times(row: &Row, matrix: &[Row]) -> Row {
 
 /// The square s of a frequency for which the next row is -s times the last but one, which is the
 /// second.
-fn oscillation(rows: &[Row], next: &Row) -> Option<RBig> {
+fn oscillation(rows: &[Row], next: &Row) -> Option<Rational> {
     let [_, rate, _] = rows else { return None };
     let at = rate.iter().position(|it| !it.is_zero())?;
     let square = -(&next[at] / &rate[at]);
-    let is_so = rate.iter().zip(next).all(|(a, b)| a * &square + b == RBig::ZERO);
-    (is_so && square > RBig::ZERO).then_some(square)
+    let is_so = rate.iter().zip(next).all(|(a, b)| a * &square + b == Rational::ZERO);
+    (is_so && square > Rational::ZERO).then_some(square)
 }
 
-fn first_sign(values: &[RBig]) -> Option<(usize, bool)> {
+fn first_sign(values: &[Rational]) -> Option<(usize, bool)> {
     let first = values.iter().position(|it| !it.is_zero())?;
-    Some((first, values[first] > RBig::ZERO))
+    Some((first, values[first] > Rational::ZERO))
 }
 
 /// Whether a parabola with these derivatives keeps the sign that it has at first.
-fn parabola_keeps_sign(values: &[RBig], rises: bool) -> bool {
-    let sign = RBig::from(if rises { -1 } else { 1 });
-    let order = |k: usize| values.get(k).map_or(RBig::ZERO, |it| it * &sign);
+fn parabola_keeps_sign(values: &[Rational], rises: bool) -> bool {
+    let sign = Rational::from(if rises { -1 } else { 1 });
+    let order = |k: usize| values.get(k).map_or(Rational::ZERO, |it| it * &sign);
     let [value, slope, bend] = [0, 1, 2].map(order);
     // The parabola is negative at first.
     if bend.is_zero() {
-        return slope <= RBig::ZERO;
+        return slope <= Rational::ZERO;
     }
-    let rest = &slope * &slope - RBig::from(2) * &value * &bend;
-    bend < RBig::ZERO && (slope <= RBig::ZERO || rest <= RBig::ZERO)
+    let rest = &slope * &slope - Rational::from(2) * &value * &bend;
+    bend < Rational::ZERO && (slope <= Rational::ZERO || rest <= Rational::ZERO)
 }
 
 /// The zeros of a polynomial of at most the second degree with these derivatives, if they are
 /// rational.
-fn parabola_roots(values: &[RBig]) -> Vec<RBig> {
+fn parabola_roots(values: &[Rational]) -> Vec<Rational> {
     let degree = values.iter().rposition(|it| !it.is_zero()).unwrap_or(0);
     match &values[..=degree] {
         [value, slope] => vec![-value / slope],
         [value, slope, bend] => {
-            let rest = slope * slope - RBig::from(2) * value * bend;
+            let rest = slope * slope - Rational::from(2) * value * bend;
             let roots = root(&rest).map(|it| [(-slope + &it) / bend, (-slope - &it) / bend]);
             roots.into_iter().flatten().collect()
         }
@@ -272,17 +272,17 @@ fn nearest<Z: PartialEq>(mut zeros: Vec<Z>, away: impl Fn(&Z) -> f64) -> Option<
 
 /// A constant and an oscillation: c + a cos(w t) + b sin(w t)/w.
 struct Oscillation<'a> {
-    square: &'a RBig,
-    constant: RBig,
-    cos: RBig,
-    sin: &'a RBig,
+    square: &'a Rational,
+    constant: Rational,
+    cos: Rational,
+    sin: &'a Rational,
     /// The square of the amplitude, a^2 + b^2/w^2.
-    amplitude: RBig,
+    amplitude: Rational,
 }
 
 impl<'a> Oscillation<'a> {
     /// The oscillation with these derivatives, by the square of its frequency.
-    fn of(values: &'a [RBig], square: &'a RBig) -> Option<Self> {
+    fn of(values: &'a [Rational], square: &'a Rational) -> Option<Self> {
         let [value, sin, bend] = values else { return None };
         let cos = -(bend / square);
         let amplitude = &cos * &cos + sin * sin / square;
@@ -294,7 +294,7 @@ impl<'a> Oscillation<'a> {
         !self.constant.is_zero() && self.amplitude <= &self.constant * &self.constant
     }
 
-    fn at(&self, cos: &RBig, sin: &RBig) -> RBig {
+    fn at(&self, cos: &Rational, sin: &Rational) -> Rational {
         &self.constant + &self.cos * cos + self.sin * sin
     }
 
@@ -305,15 +305,15 @@ impl<'a> Oscillation<'a> {
             return None;
         }
         let root = root(&((amplitude - constant * constant) / *square))?;
-        let frequency = square.to_f64().value().sqrt();
+        let frequency = square.to_f64().sqrt();
         let (sin_now, cos_now) = libm::sincos(frequency * time);
-        let zero = |root: &RBig| {
+        let zero = |root: &Rational| {
             let own = [-cos * constant - *sin * root, -*sin * constant / *square + cos * root];
             own.map(|it| it / amplitude)
         };
-        let away = |[cos, sin]: &[RBig; 2]| {
-            let sin = frequency * sin.to_f64().value() - sin_now;
-            (cos.to_f64().value() - cos_now).abs() + sin.abs()
+        let away = |[cos, sin]: &[Rational; 2]| {
+            let sin = frequency * sin.to_f64() - sin_now;
+            (cos.to_f64() - cos_now).abs() + sin.abs()
         };
         let [cos, sin] = nearest(vec![zero(&root), zero(&-&root)], away)?;
         Some(Instant::Turn { square: (*square).clone(), cos, sin })
@@ -326,11 +326,11 @@ mod tests {
     use super::*;
 
     fn rows(entries: &[&[i32]]) -> Vec<Row> {
-        entries.iter().map(|row| row.iter().map(|it| RBig::from(*it)).collect()).collect()
+        entries.iter().map(|row| row.iter().map(|it| Rational::from(*it)).collect()).collect()
     }
 
     fn known(entries: &[i32]) -> Entries {
-        entries.iter().map(|it| Some(RBig::from(*it))).collect()
+        entries.iter().map(|it| Some(Rational::from(*it))).collect()
     }
 
     /// x' = v, v' = -8 from x = 0 at v = 2: the crest is 1/4, at 1/4.
@@ -338,7 +338,7 @@ mod tests {
     fn a_throw_touches_its_crest_and_crosses_below_it() {
         let matrix = rows(&[&[0, 1, 0], &[0, 0, -8], &[0, 0, 0]]);
         let level = |above: i32, parts: i32| {
-            vec![RBig::ONE, RBig::ZERO, -RBig::from(above) / RBig::from(parts)]
+            vec![Rational::ONE, Rational::ZERO, -Rational::from(above) / Rational::from(parts)]
         };
         let start = known(&[0, 2, 1]);
         let fate = |level| Chain::of(&level, &matrix).fate(&start).unwrap();
@@ -347,7 +347,7 @@ mod tests {
         assert!(!fate(level(3, 16)).keeps_sign && !fate(level(1, 8)).keeps_sign);
         assert_eq!(fate(level(0, 1)).begin, Some((1, true)));
         let zero = |level, time| Chain::of(&level, &matrix).zero_near(&start, time);
-        let eighth = |n: i32| Some(Instant::Time(RBig::from(n) / RBig::from(8)));
+        let eighth = |n: i32| Some(Instant::Time(Rational::from(n) / Rational::from(8)));
         assert_eq!(zero(level(3, 16), 0.125), eighth(1));
         assert_eq!(zero(level(3, 16), 0.375), eighth(3));
         assert_eq!(zero(level(3, 16), 0.25), None);
@@ -360,7 +360,7 @@ mod tests {
         let matrix = rows(&[&[0, 1, 0], &[-4, 0, 0], &[0, 0, 0]]);
         let start = known(&[3, 8, 1]);
         let fate = |level: i32| {
-            let guard = vec![RBig::ONE, RBig::ZERO, -RBig::from(level)];
+            let guard = vec![Rational::ONE, Rational::ZERO, -Rational::from(level)];
             Chain::of(&guard, &matrix).fate(&start).unwrap()
         };
         assert!(fate(5).keeps_sign && fate(6).keeps_sign && fate(-5).keeps_sign);
@@ -372,20 +372,20 @@ mod tests {
     fn two_guards_of_an_oscillation_meet_at_a_rational_cosine() {
         let matrix = rows(&[&[0, 1, 0], &[-4, 0, 0], &[0, 0, 0]]);
         let start = known(&[5, 0, 1]);
-        let chain = |row: [i32; 3]| Chain::of(&row.map(RBig::from).to_vec(), &matrix);
+        let chain = |row: [i32; 3]| Chain::of(&row.map(Rational::from).to_vec(), &matrix);
         let instant = chain([1, 0, -3]).zero_near(&start, 0.5 * 0.6_f64.acos()).unwrap();
-        let fifth = |n: i32| RBig::from(n) / RBig::from(5);
-        let (square, cos) = (RBig::from(4), fifth(3));
+        let fifth = |n: i32| Rational::from(n) / Rational::from(5);
+        let (square, cos) = (Rational::from(4), fifth(3));
         assert_eq!(instant, Instant::Turn { square, cos, sin: fifth(2) });
-        assert_eq!(chain([0, 1, 8]).at(&start, Some(&instant)), Some(RBig::ZERO));
-        assert_eq!(chain([0, 1, 7]).at(&start, Some(&instant)), Some(-RBig::ONE));
+        assert_eq!(chain([0, 1, 8]).at(&start, Some(&instant)), Some(Rational::ZERO));
+        assert_eq!(chain([0, 1, 7]).at(&start, Some(&instant)), Some(-Rational::ONE));
     }
 
     #[test]
     fn what_is_not_known_tells_nothing() {
         let matrix = rows(&[&[0, 1, 0], &[0, 0, -8], &[0, 0, 0]]);
-        let guard = vec![RBig::ONE, RBig::ZERO, RBig::ZERO];
-        let start = vec![Some(RBig::ZERO), None, Some(RBig::ONE)];
+        let guard = vec![Rational::ONE, Rational::ZERO, Rational::ZERO];
+        let start = vec![Some(Rational::ZERO), None, Some(Rational::ONE)];
         assert!(Chain::of(&guard, &matrix).fate(&start).is_none());
     }
 }

@@ -7,8 +7,8 @@
 use super::circle::Circle;
 use super::residue::{Residue, Residues, residues, row_times};
 use super::space::ZeroSpace;
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{Mode, Row, Successor, System, Until};
-use dashu::rational::RBig;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -270,12 +270,12 @@ fn points(guard: &Row, states: usize) -> Option<[Vec<Residues>; 2]> {
     let Some(points) = Circle::of(guard, states).and_then(|it| it.points) else {
         return Some([Vec::new(), Vec::new()]);
     };
-    let row = |at: usize, value: &RBig| {
-        let mut row = vec![RBig::ZERO; states + 3];
-        (row[at], row[states + 2]) = (RBig::ONE, -value);
+    let row = |at: usize, value: &Rational| {
+        let mut row = vec![Rational::ZERO; states + 3];
+        (row[at], row[states + 2]) = (Rational::ONE, -value);
         residues(&row)
     };
-    let rows = |[cos, sin]: &[RBig; 2]| Some(vec![row(states, cos)?, row(states + 1, sin)?]);
+    let rows = |[cos, sin]: &[Rational; 2]| Some(vec![row(states, cos)?, row(states + 1, sin)?]);
     let [first, second] = &points;
     Some([rows(first)?, rows(second)?])
 }

@@ -4,9 +4,9 @@
 //! is dependent over the rationals is so modulo every prime; the converse fails for at most those
 //! primes that divide a minor, which for two primes at once has a probability of about 2^-122.
 
+use crate::affine::model::rational::Rational;
 use dashu::base::UnsignedAbs;
 use dashu::integer::{IBig, UBig};
-use dashu::rational::RBig;
 
 /// The number of bits of a residue, at most.
 const BITS: u32 = 61;
@@ -27,8 +27,8 @@ impl Residue {
 
     /// The residues of a number; none if its denominator, or its numerator but for 0, is a multiple
     /// of a prime.
-    pub fn of(number: &RBig) -> Option<Self> {
-        let (above, below) = (number.numerator(), number.denominator());
+    pub fn of(number: &Rational) -> Option<Self> {
+        let (above, below) = (number.big().numerator(), number.big().denominator());
         let mut residues = [0; 2];
         for (residue, prime) in residues.iter_mut().zip(PRIMES) {
             let above = signed_remainder(above, prime);
@@ -76,7 +76,7 @@ impl Residue {
 }
 
 /// The residues of a row; none if a number has none.
-pub fn residues(row: &[RBig]) -> Option<Residues> {
+pub fn residues(row: &[Rational]) -> Option<Residues> {
     row.iter().map(Residue::of).collect()
 }
 

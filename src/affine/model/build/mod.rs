@@ -5,8 +5,8 @@ mod names;
 
 use crate::affine::model::error::SystemError;
 use crate::affine::model::file::{GivenParameter, Scalar, StartTable, SystemFile};
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{LARGEST_COUNT, LARGEST_DIMENSION, StartPoint, System, TROUBLE};
-use dashu::rational::RBig;
 use mode::ModeReader;
 use names::{Accepts, Names};
 use std::collections::BTreeMap;
@@ -73,7 +73,7 @@ fn system(file: &SystemFile) -> Result<System, SystemError> {
 
 /// A parameter's name and value.
 fn parameter((name, it): (&String, &GivenParameter)) -> Option<(String, f64)> {
-    it.value.number().map(|value| (name.clone(), value.to_f64().value()))
+    it.value.number().map(|value| (name.clone(), value.to_f64()))
 }
 
 /// The index of each mode by its name.
@@ -120,7 +120,7 @@ fn start_point(
     names.accepts = Accepts::Forcing;
     let time = match table.entries.get("t") {
         Some(GivenParameter { value, place }) => names.constant_at("t", value, place)?,
-        _ => RBig::ZERO,
+        _ => Rational::ZERO,
     };
     let states = names.states.clone();
     let mut state = Vec::with_capacity(states.len());

@@ -5,9 +5,9 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::expression::{condition, expression};
 use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
 use crate::affine::model::form::Form;
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{Direction, LARGEST_COUNT, Mode, Row, Successor, Until, Watch};
 use crate::unknown_name::UnknownName;
-use dashu::rational::RBig;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 
@@ -19,7 +19,7 @@ const ENDINGS: [&str; 6] =
 pub(super) struct ModeReader<'a> {
     pub(super) file: &'a SystemFile,
     pub(super) places: &'a BTreeMap<String, usize>,
-    pub(super) omega: Option<&'a RBig>,
+    pub(super) omega: Option<&'a Rational>,
 }
 
 impl ModeReader<'_> {
@@ -33,12 +33,12 @@ impl ModeReader<'_> {
         let dimension = matrix.len() + if self.omega.is_some() { 3 } else { 1 };
         if let Some(omega) = self.omega {
             let cos = dimension - 3;
-            let mut rates = [vec![RBig::ZERO; dimension], vec![RBig::ZERO; dimension]];
+            let mut rates = [vec![Rational::ZERO; dimension], vec![Rational::ZERO; dimension]];
             rates[0][cos + 1] = -omega.clone();
             rates[1][cos] = omega.clone();
             matrix.extend(rates);
         }
-        matrix.push(vec![RBig::ZERO; dimension]);
+        matrix.push(vec![Rational::ZERO; dimension]);
         let count = table.until.len() + table.watch.len();
         if count > LARGEST_COUNT {
             let what =
@@ -131,8 +131,8 @@ impl ModeReader<'_> {
         let guard = self.guard(names, &table.guard)?;
         let dimension = guard.len();
         let unit = |index| {
-            let mut row = vec![RBig::ZERO; dimension];
-            row[index] = RBig::ONE;
+            let mut row = vec![Rational::ZERO; dimension];
+            row[index] = Rational::ONE;
             row
         };
         let mut reset: Vec<Row> = (0..dimension).map(unit).collect();

@@ -4,8 +4,8 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::expression::{Scope, expression, is_name};
 use crate::affine::model::file::{GivenParameter, Scalar, SystemFile};
 use crate::affine::model::form::Form;
+use crate::affine::model::rational::Rational;
 use crate::affine::model::system::Forcing;
-use dashu::rational::RBig;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 
@@ -102,7 +102,7 @@ impl<'a> Names<'a> {
         let Some(table) = &self.file.tables.forcing else { return Ok(None) };
         let omega = self.constant("omega", &table.omega)?;
         let phi = self.constant("phi", &table.phi)?;
-        if omega <= RBig::ZERO {
+        if omega <= Rational::ZERO {
             return Err(self.file.error(&table.omega.span(), "omega is accepted above 0"));
         }
         for (name, value) in [("omega", &omega), ("phi", &phi)] {
@@ -126,13 +126,13 @@ impl<'a> Names<'a> {
     pub(super) fn time_scale(&mut self, forcing: Option<&Forcing>) -> Result<f64, SystemError> {
         match (&self.file.tables.time_scale, forcing) {
             (Some(scale), _) => self.positive("time_scale", scale),
-            (None, Some(forcing)) => Ok(1.0 / forcing.omega.to_f64().value()),
+            (None, Some(forcing)) => Ok(1.0 / forcing.omega.to_f64()),
             (None, None) => Ok(1.0),
         }
     }
 
     fn positive(&mut self, key: &str, scalar: &Spanned<Scalar>) -> Result<f64, SystemError> {
-        let value = self.constant(key, scalar)?.to_f64().value();
+        let value = self.constant(key, scalar)?.to_f64();
         if value > 0.0 && value.is_finite() {
             return Ok(value);
         }
@@ -140,7 +140,7 @@ impl<'a> Names<'a> {
     }
 
     /// A number, or an expression of parameters.
-    fn constant(&mut self, key: &str, scalar: &Spanned<Scalar>) -> Result<RBig, SystemError> {
+    fn constant(&mut self, key: &str, scalar: &Spanned<Scalar>) -> Result<Rational, SystemError> {
         let place = self.file.source().place(&scalar.span());
         self.constant_at(key, scalar.get_ref(), &place)
     }
@@ -150,7 +150,7 @@ impl<'a> Names<'a> {
         key: &str,
         scalar: &Scalar,
         place: &str,
-    ) -> Result<RBig, SystemError> {
+    ) -> Result<Rational, SystemError> {
         let before = std::mem::replace(&mut self.accepts, Accepts::Constants);
         let form = self.affine(scalar);
         self.accepts = before;

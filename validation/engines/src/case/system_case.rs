@@ -136,7 +136,7 @@ pub fn parse_system_case(
 
 /// The clock's time at the start, rounded.
 fn begin(system: &System) -> Option<f64> {
-    Some(system.start.as_ref()?.time.to_f64().value())
+    Some(system.start.as_ref()?.time.to_f64())
 }
 
 impl SystemCase {

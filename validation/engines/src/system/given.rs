@@ -28,7 +28,7 @@ impl From<&affine::System> for System {
 }
 
 pub(super) fn rounded(number: &Rational) -> f64 {
-    number.to_f64().value()
+    number.to_f64()
 }
 
 fn mode(exact: &affine::Mode, states: usize) -> Mode {

@@ -84,7 +84,7 @@ impl SystemMatrices {
         let system = if case.backward { case.system.reversed() } else { case.system.clone() };
         let forced = usize::from(system.forcing.is_some());
         let scales = std::iter::repeat_n(1.0, forced).chain(system.scales.iter().copied());
-        let start = system.start.as_ref().map(|it| it.time.to_f64().value());
+        let start = system.start.as_ref().map(|it| it.time.to_f64());
         Self {
             forced,
             states: system.states.len(),
@@ -102,18 +102,18 @@ impl SystemMatrices {
 
     fn matrix(&self, rows: &[Row]) -> DMatrix<f64> {
         let size = self.system.dimension();
-        DMatrix::from_fn(size, size, |i, j| rows[i][j].to_f64().value())
+        DMatrix::from_fn(size, size, |i, j| rows[i][j].to_f64())
     }
 
     fn row(row: &Row) -> RowDVector<f64> {
-        RowDVector::from_iterator(row.len(), row.iter().map(|it| it.to_f64().value()))
+        RowDVector::from_iterator(row.len(), row.iter().map(|it| it.to_f64()))
     }
 
     /// The states with cos theta, sin theta and 1 appended.
     fn point(&self, state: &[f64], elapsed: f64) -> DVector<f64> {
         let mut z: Vec<f64> = state.to_vec();
         if let Some(forcing) = &self.system.forcing {
-            let (omega, phi) = (forcing.omega.to_f64().value(), forcing.phi.to_f64().value());
+            let (omega, phi) = (forcing.omega.to_f64(), forcing.phi.to_f64());
             // In a run back in time omega has changed its sign, and so has the start's time.
             let begin = if self.backward { -self.begin } else { self.begin };
             let (sin, cos) = (omega * (begin + elapsed) + phi).sin_cos();

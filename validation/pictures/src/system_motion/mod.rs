@@ -276,7 +276,7 @@ fn without_labels(mut panel: Panel) -> Panel {
 fn values(system: &System) -> String {
     let named = system.parameters.iter().map(|(name, value)| (name.as_str(), *value));
     let forcing = system.forcing.as_ref().map(|forcing| {
-        let number = |it: &percuss::affine::Rational| it.to_f64().value().abs();
+        let number = |it: &percuss::affine::Rational| it.to_f64().abs();
         [("\u{3c9}", number(&forcing.omega)), ("\u{3c6}", number(&forcing.phi))]
     });
     let is_parameter = |value: f64| system.parameters.values().any(|it| *it == value);

@@ -275,7 +275,7 @@ mod tests {
         let value = exact(high) + exact(low);
         let (least, most) = (&value - exact(error), &value + exact(error));
         let ten = |power: i32| {
-            let size = Rational::from(10).pow(power.unsigned_abs() as isize);
+            let size = Rational::from(10).pow(power.unsigned_abs());
             if power < 0 { Rational::ONE / size } else { size }
         };
         let size = |it: &Rational| if *it < Rational::ZERO { -it.clone() } else { it.clone() };

@@ -117,7 +117,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let Some(start) = &system.start else {
         return Err(without_start(&arguments.system, &system));
     };
-    let limits = limits(arguments, &system, start.time.to_f64().value())?;
+    let limits = limits(arguments, &system, start.time.to_f64())?;
     let shown = draw::shown(&system, arguments.states.as_deref())?;
     let destination = arguments.output.destination();
     let bar = long_work::run_bar(!format.is_picture() && destination.is_terminal());

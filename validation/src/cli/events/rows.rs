@@ -183,7 +183,7 @@ impl<T: Arithmetic> Rows<'_, T> {
     /// Shows the share of the run that is done: of its time, or of its events where that is more.
     fn show_progress(&self, event: &Event<T>, count: usize) {
         let Some(bar) = self.bar.filter(|_| count.is_multiple_of(RARELY)) else { return };
-        let start = self.system.start.as_ref().map_or(0.0, |it| it.time.to_f64().value());
+        let start = self.system.start.as_ref().map_or(0.0, |it| it.time.to_f64());
         let Limits { until, events, most } = self.limits;
         let of_time = (event.time.value().to_f64() - start) / (until - start);
         let of = |limit: Option<usize>| limit.map_or(0.0, |limit| count as f64 / limit as f64);

@@ -170,8 +170,8 @@ fn at_entry(guard: &[Rational], state: &[TwoWord]) -> [f64; 2] {
 
 /// A rational number, rounded to two words.
 fn two_words(exact: &Rational) -> TwoWord {
-    let high = exact.to_f64().value();
-    let low = Rational::try_from(high).map_or(0.0, |high| (exact - high).to_f64().value());
+    let high = exact.to_f64();
+    let low = Rational::try_from(high).map_or(0.0, |high| (exact - high).to_f64());
     TwoWord::sum(high, low)
 }
 
