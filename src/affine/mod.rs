@@ -25,8 +25,8 @@ pub use model::system::{
 };
 pub use run::Run;
 pub use run::arithmetic::{Arithmetic, EnclosedRun};
+pub use solver::Solver;
 pub use solver::event::{Ending, Errors, Event, What};
-pub use solver::{Solver, Unprepared};
 
 /// Implements [`Arithmetic`] for a number of so many bits.
 macro_rules! arithmetic {
@@ -35,7 +35,7 @@ macro_rules! arithmetic {
             const BITS: u32 = $bits;
 
             $(#[$inline])?
-            fn solver(system: &System, backward: bool) -> Result<Solver<Self>, Unprepared> {
+            fn solver(system: &System, backward: bool) -> Result<Solver<Self>, SystemError> {
                 if backward { Solver::backward(system) } else { Solver::new(system) }
             }
 
@@ -44,8 +44,8 @@ macro_rules! arithmetic {
                 solver: &'a Solver<Self>,
                 start: &StartPoint,
                 until: Self,
-            ) -> Option<Box<dyn EnclosedRun<Self> + 'a>> {
-                Some(Box::new(solver.run_enclosed(start, until)?))
+            ) -> Result<Box<dyn EnclosedRun<Self> + 'a>, SystemError> {
+                Ok(Box::new(solver.run_enclosed(start, until)?))
             }
         }
     };

@@ -2,6 +2,7 @@
 
 mod attack;
 mod brute;
+mod by_hand;
 mod close_rates;
 mod decided;
 mod enclosed;

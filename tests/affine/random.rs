@@ -251,8 +251,8 @@ fn agreement(system: &System, met: &mut Met) -> Result<(), String> {
     let (Ok(narrow), Ok(wide)) = prepared else { return Err("not taken apart".to_owned()) };
     let start = system.start.as_ref().ok_or("no start")?;
     let begun = (narrow.run_enclosed(start, UNTIL), narrow.run(start, UNTIL));
-    let (Some(mut enclosed), Some(mut plain)) = begun else { return Err("no run".to_owned()) };
-    let mut wide = wide.run(start, DoubleDouble::exact(UNTIL)).ok_or("no run")?;
+    let (Ok(mut enclosed), Ok(mut plain)) = begun else { return Err("no run".to_owned()) };
+    let mut wide = wide.run(start, DoubleDouble::exact(UNTIL)).map_err(|_| "no run")?;
     for n in 0..EVENTS {
         let (Some(bounded), Some(event)) = (enclosed.next(), plain.next()) else { return Ok(()) };
         let Some(truth) = wide.next() else { return Err(format!("event {n} is not there")) };
@@ -321,7 +321,7 @@ fn crest(system: &System, met: &mut Met) -> Result<(), String> {
     mode.watch.push(Watch { name, guard: slope, direction: Direction::Falling });
     let solver = Solver::<DoubleDouble>::new(&looked_at).map_err(|error| error.to_string())?;
     let start = looked_at.start.as_ref().ok_or("no start")?;
-    let mut run = solver.run(start, DoubleDouble::exact(UNTIL)).ok_or("no run")?;
+    let mut run = solver.run(start, DoubleDouble::exact(UNTIL)).map_err(|_| "no run")?;
     // The level is in the last entry of the row, whose factor is 1.
     let states = looked_at.states.len();
     let value = |event: &Event<DoubleDouble>| {
@@ -357,7 +357,7 @@ fn crest(system: &System, met: &mut Met) -> Result<(), String> {
         mode.until = vec![percuss::affine::Until { guard, ..until.clone() }];
         mode.watch.clear();
         let solver = Solver::<f64>::new(&planted).map_err(|error| error.to_string())?;
-        let mut run = solver.run(start, UNTIL).ok_or("no run")?;
+        let mut run = solver.run(start, UNTIL).map_err(|_| "no run")?;
         let first = run.next().ok_or("no event")?;
         // Rounding moves guards of large factors by more than the margin, which the run counts.
         if run.work().undecidable > 0 {

@@ -74,7 +74,7 @@ fn watched(mut system: System) -> System {
             let mut guard = vec![Rational::ZERO; dimension];
             guard[state] = Rational::ONE;
             guard[dimension - 1] = Rational::from(1 - 3 * level) / Rational::from(14);
-            let name = format!("x{state}-at-{level}");
+            let name = format!("x{state}-at-level-{}", level + 1);
             mode.watch.push(Watch { name, guard, direction: Direction::Both });
         }
     }

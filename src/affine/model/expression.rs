@@ -192,9 +192,3 @@ impl Reader<'_> {
         word.to_owned()
     }
 }
-
-/// Whether a text is a name that an expression can use.
-pub(super) fn is_name(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_ascii_alphabetic())
-        && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-}

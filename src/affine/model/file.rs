@@ -2,6 +2,7 @@
 //! format.
 
 use super::error::{Source, SystemError};
+use super::naming::check_kebab;
 use crate::affine::model::rational::Rational;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, IgnoredAny, Visitor};
@@ -225,16 +226,8 @@ impl SystemFile {
 
     /// A name of lower-case words that are joined by hyphens.
     pub(super) fn kebab(&self, name: &Spanned<String>) -> Result<String, SystemError> {
-        let text = name.get_ref();
-        let word = |word: &str| {
-            let belongs = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit();
-            !word.is_empty() && word.chars().all(belongs)
-        };
-        if text.split('-').all(word) {
-            return Ok(text.clone());
-        }
-        let what = format!("{text:?} is not accepted: lower-case words joined by hyphens are");
-        Err(self.error(&name.span(), &what))
+        check_kebab(name.get_ref()).map_err(|what| self.error(&name.span(), &what))?;
+        Ok(name.get_ref().clone())
     }
 
     pub(super) fn source(&self) -> Source<'_> {

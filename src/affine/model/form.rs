@@ -105,20 +105,26 @@ impl Form {
 
     /// Refuses coefficients beyond the range of f64.
     pub fn check_range(&self) -> Result<(), String> {
-        let far =
-            |(above, below): &(usize, usize)| *above > 0 && above.abs_diff(*below) > LARGEST_POWER;
-        let Some((above, below)) = self.0.iter().map(Rational::bits).find(far) else {
-            return Ok(());
-        };
-        let (sign, power) = (if above < below { "-" } else { "" }, above.abs_diff(below));
-        Err(format!(
-            "a coefficient of about 2^{sign}{power} is not accepted: 0 is, and sizes from \
-             2^-{LARGEST_POWER} to 2^{LARGEST_POWER}"
-        ))
+        check_range(&self.0)
     }
 }
 
-fn check_size(number: &Rational) -> Result<(), String> {
+/// Refuses coefficients beyond the range of f64.
+pub(super) fn check_range(coefficients: &[Rational]) -> Result<(), String> {
+    let far =
+        |(above, below): &(usize, usize)| *above > 0 && above.abs_diff(*below) > LARGEST_POWER;
+    let Some((above, below)) = coefficients.iter().map(Rational::bits).find(far) else {
+        return Ok(());
+    };
+    let (sign, power) = (if above < below { "-" } else { "" }, above.abs_diff(below));
+    Err(format!(
+        "a coefficient of about 2^{sign}{power} is not accepted: 0 is, and sizes from \
+             2^-{LARGEST_POWER} to 2^{LARGEST_POWER}"
+    ))
+}
+
+/// Refuses a number of too many bits.
+pub(super) fn check_size(number: &Rational) -> Result<(), String> {
     let (above, below) = number.bits();
     let bits = above.max(below);
     if bits > LARGEST_BITS {

@@ -3,13 +3,16 @@
 //! [`system`] says what a piecewise-affine system is; the other rooms use nothing else of this one.
 //! [`mod@file`] has the tables of a `*.system.toml` as they are written, and [`build`] makes a
 //! system of them. The text of an equation or a guard ([`expression`]) becomes a form with rational
-//! coefficients ([`form`], of [`mod@rational`] numbers), and what is refused becomes an [`error`] with its place. Read `system`
+//! coefficients ([`form`], of [`mod@rational`] numbers), and what is refused becomes an [`error`] with its place.
+//! [`check`] refuses systems that were made by hand and describe none. Read `system`
 //! first, then `file` and `build`.
 
 mod build;
+mod check;
 pub mod error;
 mod expression;
 pub mod file;
 mod form;
+mod naming;
 pub mod rational;
 pub mod system;

@@ -44,7 +44,11 @@ pub const TROUBLE: [&str; 19] = [
 ];
 
 /// A piecewise-affine hybrid system.
+///
+/// All fields may be read and changed; [`System::check`] says whether what they hold is a system,
+/// and every [`Solver`](super::Solver) asks it.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct System {
     /// The system's name.
     pub name: String,

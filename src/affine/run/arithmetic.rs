@@ -3,9 +3,10 @@
 
 use super::Run;
 use crate::affine::arithmetic::clock::Time;
+use crate::affine::model::error::SystemError;
 use crate::affine::model::system::{StartPoint, System};
+use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Ending, Event, What};
-use crate::affine::solver::{Solver, Unprepared};
 use crate::numeric::number::Number;
 
 /// A run that follows its errors, as an object: [`Run`] has the same methods.
@@ -40,15 +41,18 @@ pub trait Arithmetic: Number {
     /// A solver of a system, forward or [backward](Solver::backward).
     ///
     /// # Errors
-    /// A system whose structural zeros cannot be decided.
-    fn solver(system: &System, backward: bool) -> Result<Solver<Self>, Unprepared>;
+    /// Those of [`Solver::new`].
+    fn solver(system: &System, backward: bool) -> Result<Solver<Self>, SystemError>;
 
     /// A run of a solver that follows its errors, by [`Solver::run_enclosed`].
+    ///
+    /// # Errors
+    /// Those of [`Solver::run_enclosed`].
     fn enclosed<'a>(
         solver: &'a Solver<Self>,
         start: &StartPoint,
         until: Self,
-    ) -> Option<Box<dyn EnclosedRun<Self> + 'a>>;
+    ) -> Result<Box<dyn EnclosedRun<Self> + 'a>, SystemError>;
 }
 
 impl<T: Number> EnclosedRun<T> for Run<'_, T> {

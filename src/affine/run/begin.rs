@@ -9,6 +9,7 @@ use crate::affine::arithmetic::vector::{Vector, rounded};
 use crate::affine::first_crossing::taylor::FailedAttempts;
 use crate::affine::guards::point::{Ends, GuardedSegment};
 use crate::affine::guards::track::SearchWork;
+use crate::affine::model::error::SystemError;
 use crate::affine::model::system::{LARGEST_DIMENSION, StartPoint};
 use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Event, What};
@@ -18,18 +19,22 @@ use std::collections::VecDeque;
 impl<T: Number> Solver<T> {
     /// A run from a start up to a time.
     ///
-    /// None for a start whose structural zeros cannot be decided.
-    pub fn run(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
+    /// # Errors
+    /// A start in no mode, with more or fewer states than the system has, or whose structural zeros
+    /// cannot be decided.
+    pub fn run(&self, start: &StartPoint, until: T) -> Result<Run<'_, T>, SystemError> {
         let mut run = self.at_start(start, until)?;
         run.begin(None);
-        Some(run)
+        Ok(run)
     }
 
     /// A run that follows its own errors: each event has bounds of them, and what they leave open
     /// ends the run as undecided.
     ///
-    /// None for a start whose structural zeros cannot be decided.
-    pub fn run_enclosed(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
+    /// # Errors
+    /// A start in no mode, with more or fewer states than the system has, or whose structural zeros
+    /// cannot be decided.
+    pub fn run_enclosed(&self, start: &StartPoint, until: T) -> Result<Run<'_, T>, SystemError> {
         let mut run = self.at_start(start, until)?;
         // Three products and two sums an entry; sine and cosine are good to two units.
         let error = |size: T| T::unit() * 8.0 * size.bound().abs();
@@ -48,17 +53,20 @@ impl<T: Number> Solver<T> {
         sizes[self.system.dimension() - 1] = T::Bound::ZERO;
         run.exact = Some(ExactRun::at_start(&self.system, start));
         run.begin(Some(Enclosure::of(&sizes)));
-        Some(run)
+        Ok(run)
     }
 
     /// A run whose first segment is not entered yet.
-    fn at_start(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
+    fn at_start(&self, start: &StartPoint, until: T) -> Result<Run<'_, T>, SystemError> {
         let mut graph = self.pool.lend();
-        let begin = graph.run_start(&self.system, start, || self.time_and_state(start))?;
+        self.system.check_start(start)?;
+        let begin = graph.run_start(&self.system, start, || self.time_and_state(start));
+        let item = || format!("a start of {}", self.system.name);
+        let begin = begin.ok_or_else(|| SystemError::Undecidable { item: item() })?;
         let mode = start.mode;
         let first =
             Event { what: What::Start, time: begin.time, state: Vec::new(), mode, errors: None };
-        Some(Run {
+        Ok(Run {
             solver: self,
             graph,
             work: SearchWork::default(),

@@ -16,6 +16,7 @@ use crate::affine::closed_form::bound;
 use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::guards::row::ModalRow;
 use crate::affine::modal;
+use crate::affine::model::error::SystemError;
 use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, System};
 use crate::affine::zeros::exact::ExactMode;
 use crate::affine::zeros::graph::ZeroGraph;
@@ -55,27 +56,13 @@ pub(super) struct SolverMode<T: Number> {
 /// An entry of z that a reset changes, and the factors of the entries before it.
 pub(super) type Change<T> = (usize, Vec<(usize, T)>);
 
-/// The error of a system that cannot be prepared, because its structural zeros cannot be decided.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unprepared {
-    /// The name of the system.
-    pub system: String,
-}
-
-impl std::fmt::Display for Unprepared {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "the structural zeros of {} cannot be decided", self.system)
-    }
-}
-
-impl std::error::Error for Unprepared {}
-
 impl<T: Number> Solver<T> {
     /// Prepares a system for runs: decomposes the matrix of each mode.
     ///
     /// # Errors
-    /// A system whose structural zeros cannot be decided.
-    pub fn new(system: &System) -> Result<Self, Unprepared> {
+    /// A system that [`System::check`] refuses, or whose structural zeros cannot be decided.
+    pub fn new(system: &System) -> Result<Self, SystemError> {
+        system.check()?;
         Self::prepared(system.clone(), false)
     }
 
@@ -83,19 +70,20 @@ impl<T: Number> Solver<T> {
     /// ends where the guard of an `until` would become positive.
     ///
     /// # Errors
-    /// A system whose structural zeros cannot be decided.
-    pub fn backward(system: &System) -> Result<Self, Unprepared> {
+    /// A system that [`System::check`] refuses, or whose structural zeros cannot be decided.
+    pub fn backward(system: &System) -> Result<Self, SystemError> {
+        system.check()?;
         Self::prepared(system.reversed(), true)
     }
 
-    fn prepared(system: System, backward: bool) -> Result<Self, Unprepared> {
+    fn prepared(system: System, backward: bool) -> Result<Self, SystemError> {
         let mut blocks = Vec::new();
         for mode in &system.modes {
             let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale, bits_for::<T>());
             blocks.push(bound::ordered(blocks_of_mode));
         }
         let graph = ZeroGraph::of(&system);
-        let graph = graph.ok_or_else(|| Unprepared { system: system.name.clone() })?;
+        let graph = graph.ok_or_else(|| SystemError::Undecidable { item: system.name.clone() })?;
         let flows: Vec<ModeFlow<T>> = blocks.iter().map(|it| ModeFlow::of(it)).collect();
         let row = |row: &Row, mode: usize| ModalRow::of(row, &flows[mode].blocks, &blocks[mode]);
         let mode = |(n, mode): (usize, &Mode)| {

@@ -5,15 +5,12 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::expression::{condition, expression};
 use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
 use crate::affine::model::form::Form;
+use crate::affine::model::naming::check_event;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{Direction, LARGEST_COUNT, Mode, Row, Successor, Until, Watch};
 use crate::unknown_name::UnknownName;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
-
-/// The names of a run's endings, which no event may have.
-const ENDINGS: [&str; 6] =
-    ["end", "accumulation", "leaves-domain", "no-progress", "beyond-guard", "undecided"];
 
 /// A reader of a mode's tables, with all that they refer to but the names of expressions.
 pub(super) struct ModeReader<'a> {
@@ -56,13 +53,11 @@ impl ModeReader<'_> {
         let until = table.until.iter().map(|it| &it.name);
         let mut seen = BTreeSet::new();
         for name in until.chain(table.watch.iter().map(|it| &it.name)) {
-            if ENDINGS.contains(&name.get_ref().as_str()) {
-                let what = format!("{:?} is the name of an ending", name.get_ref());
-                return Err(self.file.error(&name.span(), &what));
-            }
-            if !seen.insert(self.file.kebab(name)?) {
+            let refuse = |what: String| self.file.error(&name.span(), &what);
+            check_event(name.get_ref()).map_err(refuse)?;
+            if !seen.insert(name.get_ref()) {
                 let what = format!("the event {:?} is there twice in its mode", name.get_ref());
-                return Err(self.file.error(&name.span(), &what));
+                return Err(refuse(what));
             }
         }
         Ok(())

@@ -1,19 +1,14 @@
 //! The values of the names in a file's expressions.
 
 use crate::affine::model::error::SystemError;
-use crate::affine::model::expression::{Scope, expression, is_name};
+use crate::affine::model::expression::{Scope, expression};
 use crate::affine::model::file::{GivenParameter, Scalar, SystemFile};
 use crate::affine::model::form::Form;
+use crate::affine::model::naming::check_symbol;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::Forcing;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
-
-/// Names that expressions cannot give to anything else.
-const RESERVED: [&str; 4] = ["cos", "sin", "omega", "phi"];
-
-/// Keys of a start beside the states.
-const OF_A_START: [&str; 2] = ["t", "mode"];
 
 /// The names that a file's expressions may use, with their values.
 pub(super) struct Names<'a> {
@@ -71,19 +66,14 @@ impl<'a> Names<'a> {
         let lets = tables.lets.iter().map(|(name, it)| (name, place(it.span())));
         let mut seen = BTreeSet::new();
         for (name, place) in states.chain(parameters).chain(lets) {
-            let is_state = self.states.contains(name);
-            let what = if is_state && OF_A_START.contains(&name.as_str()) {
-                format!("{name} is no name of a state: a start holds a {name} beside the states")
-            } else if RESERVED.contains(&name.as_str()) {
-                format!("{name} is reserved for theta = omega t + phi")
-            } else if !is_name(name) {
-                format!("{name:?} is no name: a letter, then letters, digits and underscores are")
-            } else if !seen.insert(name) {
-                format!("{name} is given twice; states, parameters and [let] share their names")
-            } else {
-                continue;
-            };
-            return Err(SystemError::at(&place, &what));
+            check_symbol(name, self.states.contains(name))
+                .map_err(|what| SystemError::at(&place, &what))?;
+            if !seen.insert(name) {
+                let what = format!(
+                    "{name} is given twice; states, parameters and [let] share their names"
+                );
+                return Err(SystemError::at(&place, &what));
+            }
         }
         Ok(())
     }

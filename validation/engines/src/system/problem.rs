@@ -41,7 +41,8 @@ impl SystemProblem {
     /// # Errors
     /// A start that the engines do not take.
     pub fn from_start(&self, start: StartPoint) -> Result<Self, Failure> {
-        let exact = affine::System { start: Some(start.clone()), ..self.exact.clone() };
+        let mut exact = self.exact.clone();
+        exact.start = Some(start.clone());
         let checked = checked(&exact, self.backward)?;
         Ok(Self { exact, solver: self.solver.clone(), checked, start, backward: self.backward })
     }

@@ -81,7 +81,7 @@ impl SystemReplay<'_> {
     fn events(&self, start: &StartPoint) -> Result<Vec<Event<DoubleDouble>>, String> {
         let past = if self.case.backward { -self.nearest() } else { self.nearest() };
         let run = self.solver.run_enclosed(start, DoubleDouble::exact(self.case.until + past));
-        let mut run = run.ok_or("its start is not decided in 106 bits")?;
+        let mut run = run.map_err(|it| it.to_string())?;
         let mut events = vec![run.start()];
         for event in run.by_ref() {
             events.push(event);

@@ -130,10 +130,7 @@ impl<T: Arithmetic> Rows<'_, T> {
 
     /// A run from the system's start.
     pub(super) fn run(&self, until: T) -> Result<Box<dyn EnclosedRun<T> + '_>> {
-        let start = self.system.start.as_ref();
-        let run = start.and_then(|it| T::enclosed(self.solver, it, until));
-        let Some(run) = run else { bail!("{}: its start is not decided", self.system.name) };
-        Ok(run)
+        Ok(T::enclosed(self.solver, self.system.start()?, until)?)
     }
 
     /// Whether an event is one more than a run may have.

@@ -14,7 +14,7 @@ pub(super) fn run(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
         problem.ok_or_else(|| Failure::new("the system's exact coefficients are not there"))?;
     let horizon = problem.clock(task.span);
     let run = problem.solver.run(&problem.start, horizon);
-    let mut run = run.ok_or_else(|| Failure::new("the start is not decided"))?;
+    let mut run = run.map_err(Failure::new)?;
     let begin = Time::of(&problem.start.time);
     let mut record = Record { problem, task, begin, outcome: Outcome::default() };
     let mut segment = run.start();
@@ -41,7 +41,7 @@ pub(super) fn run(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
 /// does by itself. It is here because generic code is as fast as the crate that compiles it.
 #[must_use]
 pub fn end_of_exact_run(problem: &SystemProblem, span: f64) -> Option<Values> {
-    let run = problem.solver.run(&problem.start, problem.clock(span))?;
+    let run = problem.solver.run(&problem.start, problem.clock(span)).ok()?;
     let last = run.map(black_box).last()?;
     Some(Values::of(&last.state))
 }
