@@ -16,6 +16,7 @@ pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 pub use arithmetic::clock::Time;
 pub use guards::track::SearchWork;
+pub use model::builder::{Expression, ModeBuilder, SystemBuilder, UntilBuilder};
 pub use model::error::SystemError;
 pub use model::file::SystemFile;
 pub use model::rational::{Rational, RationalError};

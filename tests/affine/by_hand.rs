@@ -244,7 +244,7 @@ fn structural_zeros_that_cannot_be_decided_are_refused() {
 }
 
 /// The systems of the repository.
-fn all() -> &'static [System] {
+pub(super) fn all() -> &'static [System] {
     static ALL: OnceLock<Vec<System>> = OnceLock::new();
     ALL.get_or_init(|| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/systems");

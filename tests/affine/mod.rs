@@ -2,6 +2,7 @@
 
 mod attack;
 mod brute;
+mod built;
 mod by_hand;
 mod close_rates;
 mod decided;

@@ -1,13 +1,13 @@
 //! The tables of a `*.system.toml` before their meaning is checked; docs/SYSTEM_FORMAT.md has the
 //! format.
 
-use super::error::{Source, SystemError};
+use super::error::SystemError;
 use super::naming::check_kebab;
-use crate::affine::model::rational::Rational;
+use super::scalar::{Assignment, Condition, Scalar};
+use super::source::{Source, SourceText};
 use serde::Deserialize;
-use serde::de::{self, Deserializer, IgnoredAny, Visitor};
+use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -15,8 +15,7 @@ use toml::Spanned;
 /// replaced.
 #[derive(Clone, Debug)]
 pub struct SystemFile {
-    pub(super) file: String,
-    pub(super) text: String,
+    pub(super) source: Source,
     pub(super) tables: Tables,
     pub(super) parameters: BTreeMap<String, GivenParameter>,
     pub(super) start: Option<StartTable>,
@@ -54,12 +53,12 @@ pub(super) struct Tables {
     pub time_scale: Option<Spanned<Scalar>>,
     pub forcing: Option<ForcingTable>,
     #[serde(default)]
-    parameters: Entries,
+    pub parameters: Entries,
     #[serde(default, rename = "let")]
     pub lets: BTreeMap<String, Spanned<String>>,
     #[serde(default)]
     pub mode: Vec<ModeTable>,
-    start: Option<Spanned<Entries>>,
+    pub start: Option<Spanned<Entries>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -73,7 +72,7 @@ pub(super) struct ForcingTable {
 #[serde(deny_unknown_fields, expecting = "a table, [[mode]]")]
 pub(super) struct ModeTable {
     pub name: Spanned<String>,
-    pub equations: Spanned<Vec<Spanned<String>>>,
+    pub equations: Spanned<Vec<Spanned<Assignment>>>,
     #[serde(default)]
     pub until: Vec<UntilTable>,
     #[serde(default)]
@@ -84,16 +83,16 @@ pub(super) struct ModeTable {
 #[serde(deny_unknown_fields, expecting = "a table, [[mode.until]]")]
 pub(super) struct UntilTable {
     pub name: Spanned<String>,
-    pub guard: Spanned<String>,
+    pub guard: Spanned<Condition>,
     #[serde(default)]
-    pub reset: Vec<Spanned<String>>,
+    pub reset: Vec<Spanned<Assignment>>,
     pub next: Option<Spanned<Vec<NextTable>>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table, { when = \"...\", mode = \"...\" }")]
 pub(super) struct NextTable {
-    pub when: Option<Spanned<String>>,
+    pub when: Option<Spanned<Condition>>,
     pub mode: Spanned<String>,
 }
 
@@ -101,7 +100,7 @@ pub(super) struct NextTable {
 #[serde(deny_unknown_fields, expecting = "a table, [[mode.watch]]")]
 pub(super) struct WatchTable {
     pub name: Spanned<String>,
-    pub guard: Spanned<String>,
+    pub guard: Spanned<Condition>,
     pub direction: Option<Spanned<String>>,
 }
 
@@ -113,58 +112,21 @@ struct Replacing {
     start: Option<Spanned<Entries>>,
 }
 
-/// A number, or an expression.
-#[derive(Clone, Debug)]
-pub(super) enum Scalar {
-    Integer(i64),
-    Decimal(f64),
-    Text(String),
-}
-
-impl Scalar {
-    /// The exact value of a number; none of text and of what is not finite.
-    pub fn number(&self) -> Option<Rational> {
-        match self {
-            Self::Integer(integer) => Some(Rational::from(*integer)),
-            Self::Decimal(decimal) => Rational::try_from(*decimal).ok(),
-            Self::Text(_) => None,
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Scalar {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Read;
-        impl Visitor<'_> for Read {
-            type Value = Scalar;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number or an expression")
-            }
-            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Scalar, E> {
-                Ok(Scalar::Integer(value))
-            }
-            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Scalar, E> {
-                Ok(Scalar::Decimal(value))
-            }
-            fn visit_str<E: de::Error>(self, value: &str) -> Result<Scalar, E> {
-                Ok(Scalar::Text(value.to_owned()))
-            }
-        }
-        deserializer.deserialize_any(Read)
-    }
-}
-
 impl SystemFile {
     /// Reads the text of a system's file; `file` is its name in errors.
     ///
     /// # Errors
     /// Text that is not TOML of this shape, with file and line.
     pub fn read(file: &str, text: &str) -> Result<Self, SystemError> {
-        let source = Source { file, text };
-        let mut tables: Tables = source.parse()?;
-        let parameters = placed(source, std::mem::take(&mut tables.parameters));
-        let start = tables.start.take().map(|it| start(source, it));
-        Ok(Self { file: file.to_owned(), text: text.to_owned(), tables, parameters, start })
+        Self::of(SourceText::of_file(file, text))
+    }
+
+    /// The tables of a text.
+    pub(super) fn of(text: SourceText) -> Result<Self, SystemError> {
+        let mut tables: Tables = text.parse()?;
+        let parameters = placed(&text, std::mem::take(&mut tables.parameters));
+        let start = tables.start.take().map(|it| start(&text, it));
+        Ok(Self { source: Source::Text(text), tables, parameters, start })
     }
 
     /// The name that the file gives the system.
@@ -193,19 +155,19 @@ impl SystemFile {
         text: &str,
         others_accepted: bool,
     ) -> Result<(), SystemError> {
-        let source = Source { file, text };
+        let source = SourceText::of_file(file, text);
         let tables: BTreeMap<String, Spanned<IgnoredAny>> = source.parse()?;
         let other = |key: &&String| !["parameters", "start"].contains(&key.as_str());
         if let (Some(key), false) = (tables.keys().find(other), others_accepted) {
             let what = format!("{key} is not accepted here: [start] and [parameters] are");
-            return Err(source.error(&tables[key].span(), &what));
+            return Err(SystemError::at(&source.place(&tables[key].span()), &what));
         }
         let replacing: Replacing = source.parse()?;
-        for (name, parameter) in placed(source, replacing.parameters) {
+        for (name, parameter) in placed(&source, replacing.parameters) {
             self.replace(&name, parameter)?;
         }
         if let Some(table) = replacing.start {
-            self.start = Some(start(source, table));
+            self.start = Some(start(&source, table));
         }
         Ok(())
     }
@@ -230,16 +192,12 @@ impl SystemFile {
         Ok(name.get_ref().clone())
     }
 
-    pub(super) fn source(&self) -> Source<'_> {
-        Source { file: &self.file, text: &self.text }
-    }
-
     pub(super) fn error(&self, span: &Range<usize>, what: &str) -> SystemError {
-        self.source().error(span, what)
+        self.source.error(span, what)
     }
 }
 
-fn placed(source: Source<'_>, entries: Entries) -> BTreeMap<String, GivenParameter> {
+fn placed(source: &SourceText, entries: Entries) -> BTreeMap<String, GivenParameter> {
     let place = |(name, value): (String, Spanned<Scalar>)| {
         let place = source.place(&value.span());
         (name, GivenParameter { value: value.into_inner(), place })
@@ -247,7 +205,7 @@ fn placed(source: Source<'_>, entries: Entries) -> BTreeMap<String, GivenParamet
     entries.into_iter().map(place).collect()
 }
 
-fn start(source: Source<'_>, table: Spanned<Entries>) -> StartTable {
+fn start(source: &SourceText, table: Spanned<Entries>) -> StartTable {
     let place = source.place(&table.span());
     StartTable { place, entries: placed(source, table.into_inner()) }
 }

@@ -4,10 +4,11 @@
 //! [`mod@file`] has the tables of a `*.system.toml` as they are written, and [`build`] makes a
 //! system of them. The text of an equation or a guard ([`expression`]) becomes a form with rational
 //! coefficients ([`form`], of [`mod@rational`] numbers), and what is refused becomes an [`error`] with its place.
-//! [`check`] refuses systems that were made by hand and describe none. Read `system`
+//! [`mod@builder`] fills the same tables without a file, and [`check`] refuses systems that were made by hand and describe none. Read `system`
 //! first, then `file` and `build`.
 
 mod build;
+pub mod builder;
 mod check;
 pub mod error;
 mod expression;
@@ -15,4 +16,6 @@ pub mod file;
 mod form;
 mod naming;
 pub mod rational;
+mod scalar;
+mod source;
 pub mod system;

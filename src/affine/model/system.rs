@@ -5,10 +5,12 @@
 
 use super::error::SystemError;
 use super::file::SystemFile;
+use super::source::SourceText;
 use crate::affine::model::rational::Rational;
 use crate::unknown_name::UnknownName;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 use std::str::FromStr;
 
 /// A row of exact coefficients, one for each entry of z.
@@ -195,6 +197,55 @@ impl System {
     /// What is not accepted, with file and line.
     pub fn parse(file: &str, text: &str) -> Result<Self, SystemError> {
         SystemFile::read(file, text)?.system()
+    }
+
+    /// Reads a system from a text of the format of docs/SYSTEM_FORMAT.md. Errors name a line of it;
+    /// [`System::parse`] is for texts that have the name of a file.
+    ///
+    /// # Errors
+    /// What is not accepted, with its line.
+    ///
+    /// ```
+    /// use percuss::affine::System;
+    ///
+    /// let text = r#"
+    /// schema = 1
+    /// name = "ball"
+    /// states = ["x", "v"]
+    /// [[mode]]
+    /// name = "flight"
+    /// equations = ["x' = v", "v' = -10"]
+    /// "#;
+    /// assert_eq!(System::from_toml(text)?.dimension(), 3);
+    /// let error = System::from_toml(&text.replace("= v", "= w")).unwrap_err();
+    /// assert_eq!(
+    ///     error.to_string(),
+    ///     "line 7: w is not known: accepted are x, v"
+    /// );
+    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// ```
+    pub fn from_toml(text: &str) -> Result<Self, SystemError> {
+        SystemFile::of(SourceText { file: None, text: text.to_owned() })?.system()
+    }
+
+    /// Reads a system from a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, and what is not accepted in it, with file and line.
+    ///
+    /// ```
+    /// use percuss::affine::System;
+    ///
+    /// let error = System::from_file("missing.system.toml").unwrap_err();
+    /// assert!(error.to_string().starts_with("missing.system.toml: the file cannot be read: "));
+    /// ```
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, SystemError> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            SystemError::at(&name, &format!("the file cannot be read: {error}"))
+        })?;
+        Self::parse(&name, &text)
     }
 
     /// Number of entries of z.

@@ -4,8 +4,9 @@ mod mode;
 mod names;
 
 use crate::affine::model::error::SystemError;
-use crate::affine::model::file::{GivenParameter, Scalar, StartTable, SystemFile};
+use crate::affine::model::file::{GivenParameter, StartTable, SystemFile};
 use crate::affine::model::rational::Rational;
+use crate::affine::model::scalar::Scalar;
 use crate::affine::model::system::{LARGEST_COUNT, LARGEST_DIMENSION, StartPoint, System, TROUBLE};
 use mode::ModeReader;
 use names::{Accepts, Names};

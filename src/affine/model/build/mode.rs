@@ -2,11 +2,12 @@
 
 use super::names::Names;
 use crate::affine::model::error::SystemError;
-use crate::affine::model::expression::{condition, expression};
+use crate::affine::model::expression::expression;
 use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
 use crate::affine::model::form::Form;
 use crate::affine::model::naming::check_event;
 use crate::affine::model::rational::Rational;
+use crate::affine::model::scalar::{Assignment, Condition};
 use crate::affine::model::system::{Direction, LARGEST_COUNT, Mode, Row, Successor, Until, Watch};
 use crate::unknown_name::UnknownName;
 use std::collections::{BTreeMap, BTreeSet};
@@ -82,25 +83,23 @@ impl ModeReader<'_> {
         }
     }
 
-    /// Reads `x' = ...`, or without the prime `x = ...`: the state's index, and the row.
+    /// The index of the state that an equation or an assignment is for, and the row.
     fn assignment(
         &self,
         names: &mut Names,
-        text: &Spanned<String>,
+        assignment: &Spanned<Assignment>,
         primed: bool,
     ) -> Result<(usize, Row), SystemError> {
-        let refuse = |what: &str| self.file.error(&text.span(), what);
-        let prime = if primed { "'" } else { "" };
-        let shape = format!("`x{prime} = ...` with a state x is accepted");
-        let Some((left, right)) = text.get_ref().split_once('=') else {
-            return Err(refuse(&shape));
+        let read = match assignment.get_ref() {
+            Assignment::Text(text) => read_assignment(names, text, primed),
+            Assignment::To { state, value } => state_index(names, state)
+                .ok_or_else(|| {
+                    format!("{state:?} is no state: accepted is one of {}", names.states.join(", "))
+                })
+                .and_then(|index| Ok((index, names.affine(value)?))),
         };
-        let left = left.trim();
-        let name = if primed { left.strip_suffix('\'').map(str::trim_end) } else { Some(left) };
-        let state = name.and_then(|name| names.states.iter().position(|it| it == name));
-        let state = state.ok_or_else(|| refuse(&format!("{left:?}: {shape}")))?;
-        let form = expression(right, names).map_err(|what| refuse(&what))?;
-        Ok((state, self.row(form).map_err(|what| refuse(&what))?))
+        let read = read.and_then(|(state, form)| Ok((state, self.row(form)?)));
+        read.map_err(|what| self.file.error(&assignment.span(), &what))
     }
 
     fn row(&self, form: Form) -> Result<Row, String> {
@@ -111,8 +110,8 @@ impl ModeReader<'_> {
         Ok(form.0.into_iter().enumerate().filter_map(kept).collect())
     }
 
-    fn guard(&self, names: &mut Names, text: &Spanned<String>) -> Result<Row, SystemError> {
-        let form = condition(text.get_ref(), names);
+    fn guard(&self, names: &mut Names, text: &Spanned<Condition>) -> Result<Row, SystemError> {
+        let form = names.condition(text.get_ref());
         let row = form.and_then(|form| self.row(form));
         row.map_err(|what| self.file.error(&text.span(), &what))
     }
@@ -187,4 +186,21 @@ impl ModeReader<'_> {
         let guard = self.guard(names, &table.guard)?;
         Ok(Watch { name: table.name.get_ref().clone(), guard, direction })
     }
+}
+
+/// The index of the state of a name.
+fn state_index(names: &Names, name: &str) -> Option<usize> {
+    names.states.iter().position(|it| it == name)
+}
+
+/// Reads `x' = ...`, or without the prime `x = ...`: the state's index, and the right side.
+fn read_assignment(names: &mut Names, text: &str, primed: bool) -> Result<(usize, Form), String> {
+    let prime = if primed { "'" } else { "" };
+    let shape = format!("`x{prime} = ...` with a state x is accepted");
+    let Some((left, right)) = text.split_once('=') else { return Err(shape) };
+    let left = left.trim();
+    let name = if primed { left.strip_suffix('\'').map(str::trim_end) } else { Some(left) };
+    let state = name.and_then(|name| state_index(names, name));
+    let state = state.ok_or_else(|| format!("{left:?}: {shape}"))?;
+    Ok((state, expression(right, names)?))
 }

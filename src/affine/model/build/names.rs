@@ -1,11 +1,12 @@
 //! The values of the names in a file's expressions.
 
 use crate::affine::model::error::SystemError;
-use crate::affine::model::expression::{Scope, expression};
-use crate::affine::model::file::{GivenParameter, Scalar, SystemFile};
+use crate::affine::model::expression::{Scope, condition, expression};
+use crate::affine::model::file::{GivenParameter, SystemFile};
 use crate::affine::model::form::Form;
 use crate::affine::model::naming::check_symbol;
 use crate::affine::model::rational::Rational;
+use crate::affine::model::scalar::{Condition, Scalar};
 use crate::affine::model::system::Forcing;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
@@ -60,7 +61,7 @@ impl<'a> Names<'a> {
 
     fn check_names(&self) -> Result<(), SystemError> {
         let tables = &self.file.tables;
-        let place = |span| self.file.source().place(&span);
+        let place = |span| self.file.source.place(&span);
         let states = tables.states.get_ref().iter().map(|it| (it.get_ref(), place(it.span())));
         let parameters = self.file.parameters.iter().map(|(name, it)| (name, it.place.clone()));
         let lets = tables.lets.iter().map(|(name, it)| (name, place(it.span())));
@@ -131,7 +132,7 @@ impl<'a> Names<'a> {
 
     /// A number, or an expression of parameters.
     fn constant(&mut self, key: &str, scalar: &Spanned<Scalar>) -> Result<Rational, SystemError> {
-        let place = self.file.source().place(&scalar.span());
+        let place = self.file.source.place(&scalar.span());
         self.constant_at(key, scalar.get_ref(), &place)
     }
 
@@ -153,6 +154,7 @@ impl<'a> Names<'a> {
     pub(super) fn affine(&mut self, scalar: &Scalar) -> Result<Form, String> {
         let form = match scalar {
             Scalar::Text(text) => expression(text, self)?,
+            Scalar::Row(entries) => self.row(entries)?,
             other => other
                 .number()
                 .map(|number| Form::number(self.states.len(), number))
@@ -160,6 +162,48 @@ impl<'a> Names<'a> {
         };
         form.check_range()?;
         Ok(form)
+    }
+
+    /// The form that is positive where a condition holds.
+    pub(super) fn condition(&mut self, Condition(scalar): &Condition) -> Result<Form, String> {
+        match scalar {
+            Scalar::Text(text) => condition(text, self),
+            row => self.affine(row),
+        }
+    }
+
+    /// A form by its factors, in the order of z.
+    fn row(&mut self, entries: &[Scalar]) -> Result<Form, String> {
+        let states = self.states.len();
+        let mut form = Form::zero(states);
+        let (accepted, turning) =
+            if self.forced { (states + 3, " cos, sin,") } else { (states + 1, "") };
+        if entries.len() != accepted {
+            return Err(format!(
+                "a row of {} entries is not accepted: {accepted} are, of the states,{turning} and 1",
+                entries.len()
+            ));
+        }
+        let before = std::mem::replace(&mut self.accepts, Accepts::Constants);
+        let numbers: Result<Vec<Rational>, String> =
+            entries.iter().map(|it| self.factor(it)).collect();
+        self.accepts = before;
+        let numbers = numbers?;
+        let places = (0..states + 3).filter(|n| self.forced || *n < states || *n == states + 2);
+        for (place, number) in places.zip(numbers) {
+            form.0[place] = number;
+        }
+        form.check_size()?;
+        Ok(form)
+    }
+
+    /// An entry of a row.
+    fn factor(&mut self, entry: &Scalar) -> Result<Rational, String> {
+        let what = "an entry of a row is a number or an expression of parameters";
+        if matches!(entry, Scalar::Row(_)) {
+            return Err(what.to_owned());
+        }
+        self.affine(entry)?.constant().cloned().ok_or_else(|| what.to_owned())
     }
 }
 

@@ -1,0 +1,163 @@
+//! From a builder to the tables that a file has, whose spans are the indices of items.
+
+use super::mode::{ModeBuilder, UntilBuilder};
+use super::{Expression, SystemBuilder};
+use crate::affine::model::error::SystemError;
+use crate::affine::model::file::{
+    ForcingTable, GivenParameter, ModeTable, NextTable, StartTable, SystemFile, Tables, UntilTable,
+    WatchTable,
+};
+use crate::affine::model::scalar::{Assignment, Condition, Scalar};
+use crate::affine::model::source::Source;
+use crate::affine::model::system::Direction;
+use std::collections::BTreeMap;
+use toml::Spanned;
+
+/// The file that a builder stands for.
+pub(super) fn file(builder: SystemBuilder) -> Result<SystemFile, SystemError> {
+    let mut items = Items::default();
+    let start = start(builder.start, builder.start_time)?;
+    let parameters = placed("parameters", builder.parameters)?;
+    let mut lets = BTreeMap::new();
+    for (name, text) in builder.definitions {
+        let text = items.at("definitions", text);
+        insert(&mut lets, "definitions", name, text)?;
+    }
+    let system = format!("system {:?}", builder.name);
+    let of_system = |items: &mut Items, it: Expression| items.at(&system, it.0);
+    let states = builder.states.into_iter().map(|it| items.at("states", it)).collect();
+    let trouble = builder.trouble.into_iter().map(|it| items.at(&system, it)).collect();
+    let scales = builder.scales.map(|scales| {
+        let scales = scales.into_iter().map(|it| of_system(&mut items, it)).collect();
+        items.at(&system, scales)
+    });
+    let time_scale = builder.time_scale.map(|it| of_system(&mut items, it));
+    let forcing = builder.forcing.map(|[omega, phi]| ForcingTable {
+        omega: of_system(&mut items, omega),
+        phi: of_system(&mut items, phi),
+    });
+    let tables = Tables {
+        schema: items.at(&system, 1),
+        states: items.at(&system, states),
+        name: items.at(&system, builder.name),
+        why: builder.why,
+        trouble,
+        source: builder.source,
+        scales,
+        time_scale,
+        forcing,
+        parameters: BTreeMap::new(),
+        lets,
+        mode: builder.modes.into_iter().map(|it| items.mode(it)).collect(),
+        start: None,
+    };
+    Ok(SystemFile { source: Source::Items(items.0), tables, parameters, start })
+}
+
+fn start(
+    states: Option<(String, Vec<(String, Expression)>)>,
+    time: Option<Expression>,
+) -> Result<Option<StartTable>, SystemError> {
+    let place = "start".to_owned();
+    let Some((mode, states)) = states else {
+        let what = "a time of the start is not accepted without a start";
+        return time.map_or(Ok(None), |_| Err(SystemError::at(&place, what)));
+    };
+    // A state of these names is refused where states are named.
+    let mode = ("mode".to_owned(), Expression(Scalar::Text(mode)));
+    let time = time.map(|it| ("t".to_owned(), it));
+    let entries = placed(&place, [mode].into_iter().chain(time).chain(states))?;
+    Ok(Some(StartTable { place, entries }))
+}
+
+/// Values by their names, all from one place.
+fn placed(
+    place: &str,
+    values: impl IntoIterator<Item = (String, Expression)>,
+) -> Result<BTreeMap<String, GivenParameter>, SystemError> {
+    let mut entries = BTreeMap::new();
+    for (name, Expression(value)) in values {
+        insert(&mut entries, place, name, GivenParameter { value, place: place.to_owned() })?;
+    }
+    Ok(entries)
+}
+
+/// Refuses a name that is there already: a table would keep the later value without a word.
+fn insert<T>(
+    entries: &mut BTreeMap<String, T>,
+    place: &str,
+    name: String,
+    value: T,
+) -> Result<(), SystemError> {
+    if entries.contains_key(&name) {
+        return Err(SystemError::at(place, &format!("{name} is given twice")));
+    }
+    entries.insert(name, value);
+    Ok(())
+}
+
+/// The names of the items that have been met.
+#[derive(Default)]
+struct Items(Vec<String>);
+
+impl Items {
+    /// A value of an item.
+    fn at<T>(&mut self, item: &str, value: T) -> Spanned<T> {
+        let index = self.0.len();
+        self.0.push(item.to_owned());
+        Spanned::new(index..index, value)
+    }
+
+    fn mode(&mut self, mode: ModeBuilder) -> ModeTable {
+        let item = format!("mode {:?}", mode.name);
+        let assigned = |it| self.assignment(&item, ["equation", "rate"], it);
+        let equations = mode.equations.into_iter().map(assigned).collect();
+        ModeTable {
+            equations: self.at(&item, equations),
+            until: mode.until.into_iter().map(|it| self.until(&item, it)).collect(),
+            watch: mode.watch.into_iter().map(|it| self.watch(&item, it)).collect(),
+            name: self.at(&item, mode.name),
+        }
+    }
+
+    /// An assignment of an item, which is called differently where only its right side is given.
+    fn assignment(
+        &mut self,
+        item: &str,
+        [whole, right]: [&str; 2],
+        assignment: Assignment,
+    ) -> Spanned<Assignment> {
+        let item = match &assignment {
+            Assignment::Text(text) => format!("{item}, {whole} `{text}`"),
+            Assignment::To { state, .. } => format!("{item}, {right} of {state:?}"),
+        };
+        self.at(&item, assignment)
+    }
+
+    fn until(&mut self, mode: &str, until: UntilBuilder) -> UntilTable {
+        let item = format!("{mode}, until {:?}", until.name);
+        let assigned = |it| self.assignment(&item, ["reset", "assignment"], it);
+        let reset = until.reset.into_iter().map(assigned).collect();
+        let successors = (1..).zip(until.next).map(|(n, (when, mode))| {
+            let item = format!("{item}, successor {n}");
+            NextTable { when: when.map(|it| self.at(&item, it)), mode: self.at(&item, mode) }
+        });
+        let next: Vec<_> = successors.collect();
+        UntilTable {
+            guard: self.at(&format!("{item}, guard"), until.guard),
+            reset,
+            next: if next.is_empty() { None } else { Some(self.at(&item, next)) },
+            name: self.at(&item, until.name),
+        }
+    }
+
+    fn watch(&mut self, mode: &str, watch: (String, Condition, Direction)) -> WatchTable {
+        let (name, guard, direction) = watch;
+        let item = format!("{mode}, watch {name:?}");
+        WatchTable {
+            guard: self.at(&format!("{item}, guard"), guard),
+            direction: Some(self.at(&item, direction.as_str().to_owned())),
+            name: self.at(&item, name),
+        }
+    }
+}
