@@ -21,7 +21,8 @@
 //!
 //! - `parallel`: diagrams, attractors and basins on all threads; results are the same without.
 //! - `lanes`: ensembles in the processor's vectors.
-//! - `affine` (on by default): any piecewise-affine system, solved in closed form between its events.
+//! - `affine` (on by default): any piecewise-affine system, solved in closed form between its
+//!   events.
 //! - `serde`: parameters, starts, states, samples, growths, counters and names are read and
 //!   written. With `serde_json` enable its `float_roundtrip`: its usual parser may be a unit off.
 

@@ -1,4 +1,4 @@
-//! Arithmetic of 106 bits, in double-double: proved runs and the truths of tests are computed in it.
+//! Arithmetic of 106 bits, in double-double: for proved runs, and for the truths of tests.
 //!
 //! Sums, products, quotients, square root and exponential are those of `xprec` (Joldes, Muller and
 //! Popescu 2017: a few units of 2^-106 each). Its sine reduces the argument by two words of pi/2
@@ -11,7 +11,17 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use xprec::Df64;
 use xprec::arith::mul_dd;
 
-/// An unevaluated sum of two `f64`, about 32 decimal digits.
+/// A number of 106 bits, about 32 decimal digits: an unevaluated sum of two `f64`.
+///
+/// ```
+/// use percuss::affine::DoubleDouble;
+/// use percuss::number::Number;
+///
+/// let third = DoubleDouble::exact(1.0) / DoubleDouble::exact(3.0);
+/// let product = third * DoubleDouble::exact(3.0);
+/// assert_eq!(third.words().0, 1.0 / 3.0);
+/// assert!((product - DoubleDouble::exact(1.0)).to_f64().abs() <= 8.0 * DoubleDouble::UNIT);
+/// ```
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 pub struct DoubleDouble(Df64);
 

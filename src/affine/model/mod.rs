@@ -2,10 +2,11 @@
 //!
 //! [`system`] says what a piecewise-affine system is; the other rooms use nothing else of this one.
 //! [`mod@file`] has the tables of a `*.system.toml` as they are written, and [`build`] makes a
-//! system of them. The text of an equation or a guard ([`expression`]) becomes a form with rational
-//! coefficients ([`form`], of [`mod@rational`] numbers), and what is refused becomes an [`error`] with its place.
-//! [`mod@builder`] fills the same tables without a file, and [`check`] refuses systems that were made by hand and describe none. Read `system`
-//! first, then `file` and `build`.
+//! system of them; [`mod@builder`] fills the same tables without a file. The text of an equation or
+//! a guard ([`expression`]) becomes a form with rational coefficients ([`form`], of
+//! [`mod@rational`] numbers), and what is refused becomes an [`error`] with its place in the
+//! [`source`]. [`check`] refuses systems that were changed by hand and are none any more. Read
+//! `system` first, then `file` and `build`.
 
 mod build;
 pub mod builder;

@@ -12,8 +12,9 @@ const LARGEST_EXPONENT: u32 = 10_000;
 
 /// An exact rational number: the numerator and the denominator have as many digits as they need.
 ///
-/// Coefficients of a [`System`](super::System) are such numbers, so that a coefficient is zero
-/// where the model's is. An `f64` is taken exactly, which 0.1 is not; a text is taken as written.
+/// Coefficients of a [`System`](crate::affine::System) are such numbers, so that a coefficient is
+/// zero where the model's is. An `f64` is taken exactly: 0.1 becomes the number that the `f64` next
+/// to it holds. A text is taken as written.
 ///
 /// ```
 /// use percuss::affine::Rational;

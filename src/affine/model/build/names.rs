@@ -180,7 +180,8 @@ impl<'a> Names<'a> {
             if self.forced { (states + 3, " cos, sin,") } else { (states + 1, "") };
         if entries.len() != accepted {
             return Err(format!(
-                "a row of {} entries is not accepted: {accepted} are, of the states,{turning} and 1",
+                "a row of {} entries is not accepted: {accepted} are, of the states,{turning} \
+                 and 1",
                 entries.len()
             ));
         }

@@ -318,8 +318,8 @@ impl SystemBuilder {
         self
     }
 
-    /// What the system is for, where it is from, and the kinds of [`TROUBLE`](super::TROUBLE) that
-    /// it makes.
+    /// What the system is for, where it is from, and the kinds of trouble that it makes, of those
+    /// in [`TROUBLE`](crate::affine::TROUBLE).
     ///
     /// ```
     /// # use percuss::affine::{ModeBuilder, System};
