@@ -42,6 +42,16 @@ mod run;
 mod state;
 mod unknown_name;
 
+#[cfg(feature = "affine")]
+pub use affine::events::{
+    Answer, Cause, Ending, Event, Events, Kind, Proved, Run, Samples, Solver,
+};
+#[cfg(feature = "affine")]
+pub use affine::gallery;
+#[cfg(feature = "affine")]
+pub use affine::{
+    Bits212, Bits424, Bits848, Bits1696, Bits3392, DoubleDouble, Rational, System, SystemError,
+};
 pub use crossing::Counters;
 pub use error::InputError;
 pub use model::Model;

@@ -38,10 +38,12 @@
 //! ```
 
 // The rooms, each of which uses only those before it: model, zeros, arithmetic, modal, closed_form,
-// guards, first_crossing, solver, run.
+// guards, first_crossing, solver, run, events.
 mod arithmetic;
 mod closed_form;
+pub(crate) mod events;
 mod first_crossing;
+pub mod gallery;
 mod guards;
 mod modal;
 mod model;

@@ -98,6 +98,11 @@ pub enum SystemError {
         /// The item, such as `mode "flight", until "impact"`.
         item: String,
     },
+    /// Forcing periods are asked for of a system that has none.
+    NoForcing {
+        /// The name of the system.
+        system: String,
+    },
     /// A system without a start, where one is asked for.
     NoStart {
         /// The name of the system.
@@ -151,6 +156,9 @@ impl fmt::Display for SystemError {
                 f,
                 "{item}: every successor but the last has a condition, and the last has none"
             ),
+            Self::NoForcing { system } => {
+                write!(f, "{system} has no forcing, and so no periods")
+            }
             Self::NoStart { system } => write!(f, "{system} has no start"),
             Self::Undecidable { item } => {
                 write!(f, "the structural zeros of {item} cannot be decided")

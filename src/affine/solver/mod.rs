@@ -125,6 +125,12 @@ impl<T: Number> Solver<T> {
         state
     }
 
+    /// Whether the solver runs back in time.
+    #[must_use]
+    pub fn is_backward(&self) -> bool {
+        self.backward
+    }
+
     /// The system that is solved; a backward solver has the [reversed](System::reversed) one.
     #[must_use]
     pub fn system(&self) -> &System {

@@ -7,7 +7,8 @@ use crate::cli::shared::names;
 use crate::picture::{self, MOST_STATES, SystemMotion};
 use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};
-use percuss::affine::{Event, Solver, System};
+use percuss::affine::{self, Arithmetic, System, Time, What};
+use percuss::{Event, Kind, Proved};
 
 /// The indices of the states that `--states` names, or of the first ones.
 pub(super) fn shown(system: &System, states: Option<&str>) -> Result<Vec<usize>> {
@@ -37,16 +38,32 @@ pub(super) fn shown(system: &System, states: Option<&str>) -> Result<Vec<usize>>
     Ok(shown)
 }
 
+/// An event in 106 bits, without the bounds of its errors; of an ending it has time and state.
+pub(super) fn in_106_bits(event: &Event<'_, Proved>) -> affine::Event<DoubleDouble> {
+    let number = |it: &Proved| DoubleDouble::from(it.to_two_words());
+    let what = match event.kind() {
+        Kind::Until(mode, index) => What::Until(mode, index),
+        Kind::Watch(mode, index) => What::Watch(mode, index),
+        Kind::End(_) => What::End(affine::Ending::Horizon),
+        _ => What::Start,
+    };
+    let time = Time { high: number(event.time()), low: DoubleDouble::default() };
+    let state = event.state().iter().map(number).collect();
+    affine::Event { what, time, state, mode: event.mode_index(), errors: None }
+}
+
 /// Draws a run, given by its start and its events.
 pub(super) fn write(
-    solver: &Solver<DoubleDouble>,
-    run: &[Event<DoubleDouble>],
+    system: &System,
+    backward: bool,
+    run: &[affine::Event<DoubleDouble>],
     shown: &[usize],
     output: &OutputFlags<Format>,
     format: Format,
 ) -> Result<()> {
-    let motion = SystemMotion::of(solver, run, shown);
-    let all = solver.system().states.len();
+    let solver = DoubleDouble::solver(system, backward)?;
+    let motion = SystemMotion::of(&solver, run, shown);
+    let all = system.states.len();
     if shown.len() == MOST_STATES && all > MOST_STATES {
         note(&format!("{MOST_STATES} of {all} states are shown: --states chooses"));
     }

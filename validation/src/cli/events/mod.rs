@@ -1,15 +1,12 @@
 //! `events`: the events of a piecewise-affine system, with digits that are proved, or a picture of
 //! its run.
 
-mod digits;
 mod draw;
 mod ending;
 mod no_progress;
-mod precision;
 mod progress;
 mod rows;
 mod samples;
-mod sizes;
 mod write;
 
 use super::shared::format::OutputFlags;
@@ -22,11 +19,14 @@ use crate::systems::{SYSTEMS, named};
 use crate::truth::DoubleDouble;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::{Arithmetic, Event, System, SystemFile};
-use precision::{InBits, Precision};
+use percuss::affine::{self, SystemFile};
+use percuss::{Proved, Solver, System};
 use progress::RunEnd;
-use rows::{Limits, Outcome, Rows};
+use rows::{Limits, Rows};
 use std::path::{Path, PathBuf};
+
+/// The fewest and the most bits of an arithmetic.
+const BITS: std::ops::RangeInclusive<u32> = 106..=3392;
 
 /// The horizon of --events, in the system's units of time.
 const LONGEST: f64 = 1e9;
@@ -63,7 +63,7 @@ pub(super) struct Arguments {
     max_events: Option<usize>,
     /// The most bits that a run may take: it begins with 106 and takes twice as many where these
     /// do not decide or have too few digits [default: 3392]
-    #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(*precision::BITS.start(), *precision::BITS.end()), allow_hyphen_values = true)]
+    #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(u64::from(*BITS.start()), u64::from(*BITS.end())), allow_hyphen_values = true)]
     max_bits: Option<u32>,
     /// A file whose [start] replaces the system's, and whose [parameters] replace some; a case of
     /// the system serves too
@@ -121,18 +121,26 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let shown = draw::shown(&system, arguments.states.as_deref())?;
     let destination = arguments.output.destination();
     let bar = long_work::run_bar(!format.is_picture() && destination.is_terminal());
-    let precision = Precision::of(arguments, &system, limits, bar.as_ref());
+    let solver: Solver<Proved> =
+        if arguments.backward { system.backward_solver()? } else { system.solver()? };
+    let rows = Rows {
+        system: &system,
+        solver: &solver,
+        digits: if arguments.digits.as_deref() == Some("25") { 25 } else { 17 },
+        limits,
+        most_bits: arguments.max_bits.unwrap_or(*BITS.end()),
+        bar: bar.as_ref(),
+    };
     let mut end = RunEnd::default();
     if format.is_picture() {
         let run;
-        (run, end) = drawn(&precision)?;
-        let solver = DoubleDouble::solver(&system, arguments.backward)?;
-        draw::write(&solver, &run, &shown, &arguments.output, format)?;
+        (run, end) = drawn(&rows)?;
+        draw::write(&system, arguments.backward, &run, &shown, &arguments.output, format)?;
     } else {
         destination.write(|out| {
             end = match format {
-                Format::Json => write::json(&precision, arguments.samples, out)?,
-                _ => write::csv(&precision, arguments.samples, out)?,
+                Format::Json => write::json(&rows, arguments.samples, out)?,
+                _ => write::csv(&rows, arguments.samples, out)?,
             };
             Ok(())
         })?;
@@ -168,28 +176,19 @@ fn max_events(text: &str) -> Result<usize, String> {
     number.map(|it| it as usize).ok_or_else(|| "accepted is an integer, 1 to 1e9".to_owned())
 }
 
-/// The start and all events, for a picture.
-fn drawn(precision: &Precision<'_>) -> Result<(Vec<Event<DoubleDouble>>, RunEnd)> {
-    let mut run = Drawn(Vec::new());
-    let end = precision.each(&mut run)?;
-    Ok((run.0, end))
-}
-
-/// The events of a picture.
-struct Drawn(Vec<Event<DoubleDouble>>);
-
-impl InBits for Drawn {
-    fn run<T: Arithmetic>(&mut self, rows: &Rows<'_, T>) -> Result<Outcome> {
-        rows.each(&mut |_, event| {
-            if self.0.len() > MOST_DRAWN {
-                bail!(
-                    "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format of csv or json is, or a shorter run"
-                );
-            }
-            self.0.push(event());
-            Ok(())
-        })
-    }
+/// The start and all events, for a picture, in 106 bits.
+fn drawn(rows: &Rows<'_>) -> Result<(Vec<affine::Event<DoubleDouble>>, RunEnd)> {
+    let mut run = Vec::new();
+    let end = rows.each(&mut |_, event| {
+        if run.len() > MOST_DRAWN {
+            bail!(
+                "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format of csv or json is, or a shorter run"
+            );
+        }
+        run.push(draw::in_106_bits(event));
+        Ok(())
+    })?;
+    Ok((run, end))
 }
 
 /// Refuses flags that the run takes no notice of.

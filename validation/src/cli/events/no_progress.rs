@@ -1,8 +1,8 @@
 //! What is said of a run that makes no progress: which events take turns in one instant, why, and
 //! what to write in the system's file.
 
-use super::progress::AT_ONCE;
-use percuss::affine::{Rational, Row, System, Until, What};
+use super::progress::{AT_ONCE, Turned};
+use percuss::affine::{Rational, Row, System, Until};
 use std::collections::VecDeque;
 
 /// The largest number of events that are named.
@@ -17,7 +17,7 @@ struct Turn<'a> {
 
 /// The events that take turns, by their names and modes; `recent` are a run's last events with the
 /// modes that they begin, the last first.
-pub(super) fn note<T>(system: &System, recent: &VecDeque<(What<T>, usize)>) -> String {
+pub(super) fn note(system: &System, recent: &VecDeque<Turned>) -> String {
     let turns = turns(system, recent);
     let name = |mode: usize| &system.modes[mode].name;
     let named = turns.iter().take(MOST_NAMED).map(|turn| {
@@ -37,7 +37,7 @@ pub(super) fn note<T>(system: &System, recent: &VecDeque<(What<T>, usize)>) -> S
 }
 
 /// Why the events take turns, and what to write.
-pub(super) fn remedy<T>(system: &System, recent: &VecDeque<(What<T>, usize)>) -> Option<String> {
+pub(super) fn remedy(system: &System, recent: &VecDeque<Turned>) -> Option<String> {
     let turns = turns(system, recent);
     let text = match &turns[..] {
         [] => return None,
@@ -65,15 +65,8 @@ pub(super) fn remedy<T>(system: &System, recent: &VecDeque<(What<T>, usize)>) ->
 
 /// The shortest list of events that a run repeats, in their order; all events where it repeats
 /// none.
-fn turns<'a, T>(system: &'a System, recent: &VecDeque<(What<T>, usize)>) -> Vec<Turn<'a>> {
-    let all: Vec<(usize, usize, usize)> = recent
-        .iter()
-        .rev()
-        .filter_map(|(what, next)| match what {
-            What::Until(mode, index) => Some((*mode, *index, *next)),
-            _ => None,
-        })
-        .collect();
+fn turns<'a>(system: &'a System, recent: &VecDeque<Turned>) -> Vec<Turn<'a>> {
+    let all: Vec<Turned> = recent.iter().rev().copied().collect();
     let half = all.len() / 2;
     let repeats = |length: &usize| (half..all.len()).all(|n| all[n] == all[n - length]);
     let length = (1..=half).find(repeats).unwrap_or(all.len());
@@ -81,10 +74,10 @@ fn turns<'a, T>(system: &'a System, recent: &VecDeque<(What<T>, usize)>) -> Vec<
     let last = &all[all.len() - length..];
     let first = (0..length).min_by_key(|n| last[*n]).unwrap_or(0);
     let order = last[first..].iter().chain(&last[..first]);
-    let turn = |(mode, index, next): &(usize, usize, usize)| Turn {
-        until: &system.modes[*mode].until[*index],
-        mode: *mode,
-        next: *next,
+    let turn = |it: &Turned| Turn {
+        until: &system.modes[it.mode].until[it.until],
+        mode: it.mode,
+        next: it.next,
     };
     order.map(turn).collect()
 }

@@ -1,18 +1,27 @@
 //! What a run has passed so far, and how it ended.
 
-use percuss::affine::What;
+use percuss::Kind;
 use serde::Serialize;
 use std::collections::VecDeque;
 
 /// The number of `until` events in one instant that ends a run, and that are kept to name them.
 pub(super) const AT_ONCE: usize = 64;
 
+/// An `until` of a mode by its index, with the mode that it begins.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Turned {
+    pub(super) mode: usize,
+    pub(super) until: usize,
+    pub(super) next: usize,
+}
+
 /// The events that a run has passed, as far as its end is told by them.
-pub(super) struct Passed<T> {
+#[derive(Default)]
+pub(super) struct Passed {
     /// Their number, which is that of the last row.
     pub(super) count: usize,
-    /// The last `until` events, each with the mode that it begins; the latest is the first.
-    pub(super) recent: VecDeque<(What<T>, usize)>,
+    /// The last `until` events, the latest first.
+    pub(super) recent: VecDeque<Turned>,
     /// Whether it was said that the time has few digits.
     pub(super) few_digits: bool,
 }
@@ -32,19 +41,13 @@ pub(super) struct Accumulation {
     pub(super) latest: String,
 }
 
-impl<T> Default for Passed<T> {
-    fn default() -> Self {
-        Self { count: 0, recent: VecDeque::new(), few_digits: false }
-    }
-}
-
-impl<T> Passed<T> {
+impl Passed {
     /// Counts an event, and keeps an `until` with the mode that it begins.
-    pub(super) fn add(&mut self, what: What<T>, mode: usize) {
+    pub(super) fn add(&mut self, kind: Kind, next: usize) {
         self.count += 1;
-        if let What::Until(..) = what {
+        if let Kind::Until(mode, until) = kind {
             self.recent.truncate(AT_ONCE - 1);
-            self.recent.push_front((what, mode));
+            self.recent.push_front(Turned { mode, until, next });
         }
     }
 }

@@ -1,12 +1,11 @@
 //! The rows of `events` as CSV and as JSON.
 
-use super::precision::{InBits, Precision};
 use super::progress::RunEnd;
-use super::rows::{EventRow, Outcome, Rows};
+use super::rows::{EventRow, Rows};
 use super::samples::SampleRow;
 use crate::cli::shared::output::json_value;
 use anyhow::Result;
-use percuss::affine::{Arithmetic, System};
+use percuss::System;
 use std::borrow::Cow;
 use std::io::Write;
 
@@ -14,11 +13,7 @@ use std::io::Write;
 const COLUMNS: [&str; 4] = ["n", "time", "event", "mode"];
 
 /// Writes CSV, a row as soon as it is known.
-pub(super) fn csv(
-    run: &Precision<'_>,
-    samples: Option<u32>,
-    out: &mut dyn Write,
-) -> Result<RunEnd> {
+pub(super) fn csv(run: &Rows<'_>, samples: Option<u32>, out: &mut dyn Write) -> Result<RunEnd> {
     let states = || run.system.states.iter().map(|name| column(name));
     let header = |names: &[&'static str], out: &mut dyn Write| {
         let names: Vec<_> = names.iter().map(|name| Cow::from(*name)).chain(states()).collect();
@@ -26,35 +21,17 @@ pub(super) fn csv(
     };
     if let Some(samples) = samples {
         header(&["time", "mode"], out)?;
-        return run.each(&mut EachSample(samples, |row: SampleRow| {
+        return run.each_sample(samples, &mut |row: SampleRow| {
             let first = [row.time.as_str(), &row.mode];
             line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
-        }));
+        });
     }
     header(&COLUMNS, out)?;
-    run.each(&mut EachEvent(|row: EventRow| {
+    run.each(&mut |row: EventRow, _| {
         let n = row.n.to_string();
         let first = [n.as_str(), &row.time, &row.event, &row.mode];
         line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
-    }))
-}
-
-/// What is done with each event.
-struct EachEvent<F>(F);
-
-impl<F: FnMut(EventRow) -> Result<()>> InBits for EachEvent<F> {
-    fn run<T: Arithmetic>(&mut self, rows: &Rows<'_, T>) -> Result<Outcome> {
-        rows.each(&mut |row, _| self.0(row))
-    }
-}
-
-/// What is done with each of so many samples in a unit of time.
-struct EachSample<F>(u32, F);
-
-impl<F: FnMut(SampleRow) -> Result<()>> InBits for EachSample<F> {
-    fn run<T: Arithmetic>(&mut self, rows: &Rows<'_, T>) -> Result<Outcome> {
-        rows.each_sample(self.0, &mut |row| self.1(row))
-    }
+    })
 }
 
 /// The column of a state: its name, unless that is another column's.
@@ -70,11 +47,7 @@ fn line<'a>(out: &mut dyn Write, cells: impl Iterator<Item = &'a str>) -> Result
 }
 
 /// Writes JSON. What is known at the end only stands after the rows.
-pub(super) fn json(
-    run: &Precision<'_>,
-    samples: Option<u32>,
-    out: &mut dyn Write,
-) -> Result<RunEnd> {
+pub(super) fn json(run: &Rows<'_>, samples: Option<u32>, out: &mut dyn Write) -> Result<RunEnd> {
     begin_json(run.system, out)?;
     let mut is_first = true;
     let mut separate = |out: &mut dyn Write| {
@@ -82,14 +55,14 @@ pub(super) fn json(
         writeln!(out, "{separator}")
     };
     let end = match samples {
-        Some(samples) => run.each(&mut EachSample(samples, |row: SampleRow| {
+        Some(samples) => run.each_sample(samples, &mut |row: SampleRow| {
             separate(out)?;
             json_value(out, &row)
-        }))?,
-        None => run.each(&mut EachEvent(|row: EventRow| {
+        })?,
+        None => run.each(&mut |row: EventRow, _| {
             separate(out)?;
             json_value(out, &row)
-        }))?,
+        })?,
     };
     write!(out, "],\"accumulation\":")?;
     json_value(out, &end.accumulation)?;

@@ -1,21 +1,21 @@
 //! Whether the digits of an event suffice, beside the sizes that its states have had.
 
-use percuss::affine::{Arithmetic, Event};
-use percuss::number::Bound;
+use crate::affine::solver::event::Event;
+use crate::numeric::number::{Bound, Number};
 
 /// The largest size of each state so far, beside which a value may be zero.
 pub(super) struct Sizes<B>(Vec<B>);
 
 impl<B: Bound> Sizes<B> {
     /// The sizes at the start of a run.
-    pub(super) fn of<T: Arithmetic<Bound = B>>(start: &Event<T>) -> Self {
+    pub fn of<T: Number<Bound = B>>(start: &Event<T>) -> Self {
         Self(start.state.iter().map(|it| it.bound().abs()).collect())
     }
 
     /// Adds the sizes of an event, and says whether the time or a state has fewer digits than are
     /// wanted. A value that may be zero has enough of them if it is known that well beside the
     /// largest that the state has had: more bits would not make it another one than zero.
-    pub(super) fn have_too_few_digits<T: Arithmetic<Bound = B>>(
+    pub fn have_too_few_digits<T: Number<Bound = B>>(
         &mut self,
         event: &Event<T>,
         digits: usize,

@@ -1,0 +1,267 @@
+//! Runs whose digits are proved: in 106 bits with enclosed errors, and in twice as many bits where
+//! these do not decide or have too few digits.
+
+use super::answer::{Answer, Running, sealed};
+use super::cause::Cause;
+use super::event::{Event, Kind};
+use super::plain::prepared;
+use super::proved::Proved;
+use super::request::Request;
+use super::sizes::Sizes;
+use super::steps::{Sampling, Step, Steps, first_horizon};
+use crate::affine::model::error::SystemError;
+use crate::affine::model::system::System;
+use crate::affine::solver::Solver;
+use crate::affine::solver::event as engine;
+use crate::numeric::double_double::DoubleDouble;
+use crate::numeric::number::{Bound, Number};
+use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
+use std::sync::OnceLock;
+
+/// The bits of the arithmetics, one after the other.
+const BITS: [u32; 6] = [106, 212, 424, 848, 1696, 3392];
+
+/// The most bits of an arithmetic.
+pub(super) const MOST_BITS: u32 = BITS[5];
+
+/// A system with a solver in each arithmetic, which is prepared when a run needs it.
+pub struct ProvedSolver {
+    system: System,
+    backward: bool,
+    bits106: OnceLock<Solver<DoubleDouble>>,
+    bits212: OnceLock<Solver<Bits212>>,
+    bits424: OnceLock<Solver<Bits424>>,
+    bits848: OnceLock<Solver<Bits848>>,
+    bits1696: OnceLock<Solver<Bits1696>>,
+    bits3392: OnceLock<Solver<Bits3392>>,
+}
+
+impl ProvedSolver {
+    /// The run in the arithmetic of this number.
+    fn begin<'a>(
+        &'a self,
+        level: usize,
+        request: &Request,
+    ) -> Result<Box<dyn Level<'a> + 'a>, SystemError> {
+        match level {
+            0 => self.begin_in(&self.bits106, request),
+            1 => self.begin_in(&self.bits212, request),
+            2 => self.begin_in(&self.bits424, request),
+            3 => self.begin_in(&self.bits848, request),
+            4 => self.begin_in(&self.bits1696, request),
+            _ => self.begin_in(&self.bits3392, request),
+        }
+    }
+
+    fn begin_in<'a, T: Number>(
+        &'a self,
+        solver: &'a OnceLock<Solver<T>>,
+        request: &Request,
+    ) -> Result<Box<dyn Level<'a> + 'a>, SystemError> {
+        let solver = match solver.get() {
+            Some(solver) => solver,
+            None => {
+                let made = prepared(&self.system, self.backward)?;
+                solver.get_or_init(|| made)
+            }
+        };
+        let (system, backward) = (solver.system(), solver.is_backward());
+        let until = first_horizon(request, system, backward);
+        let run = solver.run_enclosed(&request.start, until)?;
+        let sizes = Sizes::of(&run.start());
+        let steps = Steps::of(run, Sampling::of(request, system, backward));
+        Ok(Box::new(InArithmetic { system: &self.system, steps, step: None, sizes }))
+    }
+}
+
+impl sealed::Sealed for Proved {}
+
+impl Answer for Proved {
+    type Value = Self;
+    type Prepared = ProvedSolver;
+
+    fn prepare(system: &System, backward: bool) -> Result<ProvedSolver, SystemError> {
+        let first = OnceLock::from(prepared(system, backward)?);
+        Ok(ProvedSolver {
+            system: system.clone(),
+            backward,
+            bits106: first,
+            bits212: OnceLock::new(),
+            bits424: OnceLock::new(),
+            bits848: OnceLock::new(),
+            bits1696: OnceLock::new(),
+            bits3392: OnceLock::new(),
+        })
+    }
+
+    fn system(prepared: &ProvedSolver) -> &System {
+        &prepared.system
+    }
+
+    fn is_backward(prepared: &ProvedSolver) -> bool {
+        prepared.backward
+    }
+
+    fn begin<'a>(
+        prepared: &'a ProvedSolver,
+        request: &Request,
+    ) -> Result<Box<dyn Running<'a, Self> + 'a>, SystemError> {
+        Ok(Box::new(Escalating::begin(prepared, request)?))
+    }
+}
+
+/// A run in one arithmetic with enclosed errors.
+trait Level<'a> {
+    fn start(&self) -> Event<'a, Proved>;
+
+    /// Whether the start has fewer digits than are wanted.
+    fn start_needs_more_bits(&mut self, digits: usize) -> bool;
+
+    /// Goes to the next step; false if there is none.
+    fn advance(&mut self) -> bool;
+
+    /// Whether more bits may decide the step, or give the digits that are wanted: asked once.
+    fn needs_more_bits(&mut self, digits: usize) -> bool;
+
+    /// The step, as an event.
+    fn event(&self) -> Option<Event<'a, Proved>>;
+
+    fn cause(&self) -> Option<Cause>;
+}
+
+struct InArithmetic<'a, T: Number> {
+    system: &'a System,
+    steps: Steps<'a, T>,
+    step: Option<Step<T>>,
+    sizes: Sizes<T::Bound>,
+}
+
+impl<'a, T: Number> InArithmetic<'a, T> {
+    fn proved(&self, event: &engine::Event<T>, kind: Kind) -> Event<'a, Proved> {
+        let errors = event.errors.as_ref();
+        let error = |it: Option<&T::Bound>| it.copied().unwrap_or(T::Bound::INFINITY);
+        let time = Proved::of(event.time.value(), error(errors.map(|it| &it.time)));
+        let state = event.state.iter().enumerate();
+        let state = state
+            .map(|(n, value)| Proved::of(*value, error(errors.and_then(|it| it.state.get(n)))));
+        Event {
+            system: self.system,
+            kind,
+            mode: event.mode,
+            time,
+            state: state.collect(),
+            accumulation: accumulation(event),
+        }
+    }
+}
+
+impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
+    fn start(&self) -> Event<'a, Proved> {
+        self.proved(&self.steps.run.start(), Kind::Start)
+    }
+
+    fn start_needs_more_bits(&mut self, digits: usize) -> bool {
+        self.sizes.have_too_few_digits(&self.steps.run.start(), digits)
+    }
+
+    fn advance(&mut self) -> bool {
+        self.step = self.steps.next();
+        self.step.is_some()
+    }
+
+    fn needs_more_bits(&mut self, digits: usize) -> bool {
+        let Some(Step { event, is_sample }) = &self.step else { return false };
+        match event.what {
+            engine::What::End(engine::Ending::Undecided) => !self.steps.run.is_exhausted(),
+            // Of a run with samples these alone are read.
+            _ if self.steps.has_samples() && !is_sample => false,
+            _ => self.sizes.have_too_few_digits(event, digits),
+        }
+    }
+
+    fn event(&self) -> Option<Event<'a, Proved>> {
+        let Step { event, is_sample } = self.step.as_ref()?;
+        Some(self.proved(event, if *is_sample { Kind::Sample } else { Kind::of(&event.what) }))
+    }
+
+    fn cause(&self) -> Option<Cause> {
+        Cause::of(&self.steps.run, self.system)
+    }
+}
+
+/// The earliest and the latest time at which impacts accumulate, of an ending by an accumulation.
+fn accumulation<T: Number>(last: &engine::Event<T>) -> Option<Box<[Proved; 2]>> {
+    let engine::What::End(engine::Ending::Accumulation(from, to)) = last.what else { return None };
+    let time = last.time.value();
+    let error = last.errors.as_ref().map_or(0.0, |it| it.time.to_f64());
+    let middle = time + (from + to) * T::exact(0.5);
+    // The rounding of these operations is below the last term.
+    let width = 0.5 * (to - from).to_f64() + error + 1e-29 * time.to_f64().abs();
+    let end = |width: f64| Proved::of(middle + T::exact(width), T::Bound::ZERO);
+    Some(Box::new([end(-width), end(width)]))
+}
+
+/// A run in one arithmetic after the other.
+struct Escalating<'a> {
+    solver: &'a ProvedSolver,
+    request: Request,
+    level: usize,
+    run: Box<dyn Level<'a> + 'a>,
+    /// The number of steps that were given out.
+    given: u64,
+}
+
+impl<'a> Escalating<'a> {
+    fn begin(solver: &'a ProvedSolver, request: &Request) -> Result<Self, SystemError> {
+        let run = solver.begin(0, request)?;
+        let mut own = Self { solver, request: request.clone(), level: 0, run, given: 0 };
+        let has_samples = request.samples.is_some();
+        while own.may_go_on() && !has_samples && own.run.start_needs_more_bits(request.digits) {
+            own.run = solver.begin(own.level + 1, request)?;
+            own.level += 1;
+        }
+        Ok(own)
+    }
+
+    fn may_go_on(&self) -> bool {
+        BITS.get(self.level + 1).is_some_and(|bits| *bits <= self.request.most_bits)
+    }
+
+    /// Begins again in more bits, up to the step that these did not decide.
+    fn raise(&mut self) -> bool {
+        let Ok(mut run) = self.solver.begin(self.level + 1, &self.request) else { return false };
+        for _ in 0..self.given {
+            if !run.advance() {
+                return false;
+            }
+            // The sizes of the states are kept.
+            run.needs_more_bits(self.request.digits);
+        }
+        self.run = run;
+        self.level += 1;
+        self.run.advance()
+    }
+}
+
+impl<'a> Running<'a, Proved> for Escalating<'a> {
+    fn start(&self) -> Event<'a, Proved> {
+        self.run.start()
+    }
+
+    fn next(&mut self) -> Option<Event<'a, Proved>> {
+        if !self.run.advance() {
+            return None;
+        }
+        while self.may_go_on() && self.run.needs_more_bits(self.request.digits) && self.raise() {}
+        self.given += 1;
+        self.run.event()
+    }
+
+    fn cause(&self) -> Option<Cause> {
+        self.run.cause()
+    }
+
+    fn bits(&self) -> u32 {
+        BITS[self.level]
+    }
+}

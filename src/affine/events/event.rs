@@ -1,0 +1,244 @@
+//! Events with their names, and the endings of runs.
+
+use crate::affine::model::system::System;
+use crate::affine::solver::event as engine;
+use crate::unknown_name::UnknownName;
+use std::fmt;
+use std::str::FromStr;
+
+/// An event of a run: the start, an event of the system, a sample at a given time, or the ending.
+///
+/// Time and state are f64 in a run of a `Solver<f64>`, and [`Proved`](crate::Proved) numbers in one
+/// of a `Solver<Proved>`.
+///
+/// ```
+/// use percuss::{System, gallery};
+///
+/// let ball = System::from_toml(gallery::BOUNCING_BALL)?;
+/// let solver = ball.solver::<f64>()?;
+/// let events: Vec<_> = solver.run().until(2.0)?.collect();
+/// let [impact, end] = &events[..] else { panic!("one impact, and the ending") };
+/// assert_eq!((impact.name(), impact.mode()), ("impact", "flight"));
+/// // The state is that just after the event: the ball flies up again.
+/// assert!(impact.state()[1] > 0.0);
+/// assert_eq!((end.name(), *end.time()), ("end", 2.0));
+/// # Ok::<(), percuss::SystemError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Event<'a, V> {
+    pub(super) system: &'a System,
+    pub(super) kind: Kind,
+    pub(super) mode: usize,
+    pub(super) time: V,
+    pub(super) state: Vec<V>,
+    pub(super) accumulation: Option<Box<[V; 2]>>,
+}
+
+/// The kind of an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Kind {
+    /// The start of the run.
+    Start,
+    /// A mode ends: by the `until` of the second index of the mode of the first.
+    Until(usize, usize),
+    /// A watched guard is crossed: the `watch` of the second index of the mode of the first.
+    Watch(usize, usize),
+    /// A time at which the state was asked for.
+    Sample,
+    /// The run ends.
+    End(Ending),
+}
+
+/// The ending of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Ending {
+    /// The time that was asked for is reached.
+    Horizon,
+    /// Infinitely many impacts accumulate, between the two times of [`Event::accumulation`].
+    Accumulation,
+    /// A run back in time reaches the boundary of its mode.
+    LeavesDomain,
+    /// Too many events lie in one instant: the motion slides, chatters or repeats an event.
+    NoProgress,
+    /// A mode is entered where one of its guards is positive already.
+    BeyondGuard,
+    /// The arithmetic has too few digits to decide which event is next.
+    Undecided,
+}
+
+impl Ending {
+    /// All endings.
+    pub const ALL: [Self; 6] = [
+        Self::Horizon,
+        Self::Accumulation,
+        Self::LeavesDomain,
+        Self::NoProgress,
+        Self::BeyondGuard,
+        Self::Undecided,
+    ];
+
+    /// The name, which no event of a system may have.
+    ///
+    /// ```
+    /// use percuss::Ending;
+    ///
+    /// assert_eq!(Ending::Horizon.as_str(), "end");
+    /// assert_eq!("accumulation".parse(), Ok(Ending::Accumulation));
+    /// ```
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Horizon => "end",
+            Self::Accumulation => "accumulation",
+            Self::LeavesDomain => "leaves-domain",
+            Self::NoProgress => "no-progress",
+            Self::BeyondGuard => "beyond-guard",
+            Self::Undecided => "undecided",
+        }
+    }
+
+    /// Whether the run ends because the model says so or the time is over, and not because the
+    /// solver could not go on.
+    #[must_use]
+    pub const fn is_decided(self) -> bool {
+        matches!(self, Self::Horizon | Self::Accumulation | Self::LeavesDomain)
+    }
+
+    pub(super) fn of<T>(ending: &engine::Ending<T>) -> Self {
+        match ending {
+            engine::Ending::Horizon => Self::Horizon,
+            engine::Ending::Accumulation(..) => Self::Accumulation,
+            engine::Ending::LeavesDomain => Self::LeavesDomain,
+            engine::Ending::NoProgress => Self::NoProgress,
+            engine::Ending::BeyondGuard => Self::BeyondGuard,
+            engine::Ending::Undecided => Self::Undecided,
+        }
+    }
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+impl FromStr for Ending {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        UnknownName::find("ending", &Self::ALL, Self::as_str, name)
+    }
+}
+
+impl Kind {
+    pub(super) fn of<T>(what: &engine::What<T>) -> Self {
+        match what {
+            engine::What::Start => Self::Start,
+            engine::What::Until(mode, index) => Self::Until(*mode, *index),
+            engine::What::Watch(mode, index) => Self::Watch(*mode, *index),
+            engine::What::End(ending) => Self::End(Ending::of(ending)),
+        }
+    }
+
+    /// The name of an event of this kind: that of the system's file, `start`, `sample`, or that of
+    /// the [ending](Ending::as_str).
+    pub(super) fn name(self, system: &System) -> &str {
+        match self {
+            Self::Start => "start",
+            Self::Sample => "sample",
+            Self::Until(mode, index) => &system.modes[mode].until[index].name,
+            Self::Watch(mode, index) => &system.modes[mode].watch[index].name,
+            Self::End(ending) => ending.as_str(),
+        }
+    }
+}
+
+impl<'a, V> Event<'a, V> {
+    /// The kind of event.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// The name: that of the system's file, `start`, `sample`, or that of the
+    /// [ending](Ending::as_str).
+    #[must_use]
+    pub fn name(&self) -> &'a str {
+        self.kind.name(self.system)
+    }
+
+    /// The name of the mode that begins with the event, or goes on after it.
+    #[must_use]
+    pub fn mode(&self) -> &'a str {
+        &self.system.modes[self.mode].name
+    }
+
+    /// The index of that mode among those of the system.
+    #[must_use]
+    pub fn mode_index(&self) -> usize {
+        self.mode
+    }
+
+    /// The time of the event, in the system's unit.
+    #[must_use]
+    pub fn time(&self) -> &V {
+        &self.time
+    }
+
+    /// The state just after the event, in the order of [`System::states`].
+    #[must_use]
+    pub fn state(&self) -> &[V] {
+        &self.state
+    }
+
+    /// The value of the state of this name just after the event; none if the system has no such
+    /// state.
+    ///
+    /// ```
+    /// use percuss::{System, gallery};
+    ///
+    /// let ball = System::from_toml(gallery::BOUNCING_BALL)?;
+    /// let solver = ball.solver::<f64>()?;
+    /// let impact = solver.run().events(1)?.next().expect("an impact");
+    /// assert_eq!(impact.value("x"), Some(&0.0));
+    /// assert_eq!(impact.value("y"), None);
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    #[must_use]
+    pub fn value(&self, state: &str) -> Option<&V> {
+        let index = self.system.states.iter().position(|it| it == state)?;
+        self.state.get(index)
+    }
+
+    /// The ending, of the last event of a run that ends.
+    #[must_use]
+    pub fn ending(&self) -> Option<Ending> {
+        match self.kind {
+            Kind::End(ending) => Some(ending),
+            _ => None,
+        }
+    }
+
+    /// The times between which infinitely many impacts accumulate, of an ending by an
+    /// [accumulation](Ending::Accumulation).
+    ///
+    /// ```
+    /// use percuss::{Ending, Proved, System, gallery};
+    ///
+    /// let ball = System::from_toml(gallery::BOUNCING_BALL)?;
+    /// let solver = ball.solver::<Proved>()?;
+    /// let end = solver.run().until(10.0)?.last().expect("an ending");
+    /// assert_eq!(end.ending(), Some(Ending::Accumulation));
+    /// // With e = 1/2 from the height 1 it is 3 times the time of the first fall.
+    /// let [from, to] = end.accumulation().expect("the times");
+    /// let limit = 3.0 * 2_f64.sqrt();
+    /// assert!((from.midpoint() - limit).abs() < 1e-14 && from.midpoint() <= to.midpoint());
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    #[must_use]
+    pub fn accumulation(&self) -> Option<&[V; 2]> {
+        self.accumulation.as_deref()
+    }
+}
