@@ -5,7 +5,7 @@ use percuss::TwoWord;
 use percuss::{Entry, GrowthRecorder, Instant, Model, Segment, Trajectory};
 
 /// k of the bound |error| <= k eps (1 + |value|) growth switches. Ten roundings a switch is the
-/// promise; what is reached is printed, and stands in the README.
+/// promise; what is reached is printed, and stands in METHODOLOGY.md.
 const ROUNDINGS_A_SWITCH: f64 = 10.0;
 
 fn run(table: &Table) -> (Model, Entry, Trajectory) {

@@ -1,9 +1,9 @@
-//! Puts the figures of a `bench` into README.md, or into another page that has a block for them.
+//! Puts the figures of a `bench` into a page that has a block for them.
 //!
 //! ```sh
 //! cargo run --release -- bench --out target/bench
 //! cargo run --release -p percuss-validation --example speed_table -- \
-//!   target/bench/bench.json README.md
+//!   target/bench/bench.json docs/SPEED.md
 //! ```
 
 use anyhow::{Context, Result};

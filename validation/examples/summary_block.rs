@@ -1,10 +1,10 @@
-//! Puts the summary of a run of `validate` into README.md: the ranking and what follows it in one
-//! block, the details that are printed above it in another.
+//! Puts the summary of a run of `validate` into docs/RESULTS.md: the ranking and what follows it in
+//! one block, the details that are printed above it in another.
 //!
 //! ```sh
 //! cargo run --release -- validate --out target/quick |
 //!   cargo run --release -p percuss-validation --example summary_block -- \
-//!   target/quick/report.json README.md
+//!   target/quick/report.json docs/RESULTS.md
 //! ```
 
 use anyhow::{Context, Result};
@@ -15,17 +15,17 @@ const SUMMARY: &str = "summary";
 const DETAILS: &str = "details";
 
 fn main() -> Result<()> {
-    let usage = "takes the report.json of a run and the README.md to write; its summary on stdin";
-    let [report, readme]: [String; 2] =
+    let usage = "takes the report.json of a run and the page to write; its summary on stdin";
+    let [report, page_file]: [String; 2] =
         std::env::args().skip(1).collect::<Vec<_>>().try_into().ok().context(usage)?;
     let mut summary = String::new();
     std::io::stdin().read_to_string(&mut summary)?;
     let text = std::fs::read_to_string(&report).with_context(|| report.clone())?;
     let (details, ranking) = summary.split_once("\n#  engine").context("no summary on stdin")?;
     let ranking = format!("{}#  engine{ranking}", headline(&serde_json::from_str(&text)?));
-    let page = std::fs::read_to_string(&readme).with_context(|| readme.clone())?;
+    let page = std::fs::read_to_string(&page_file).with_context(|| page_file.clone())?;
     let page = spliced(&page, SUMMARY, &ranking)?;
-    std::fs::write(&readme, spliced(&page, DETAILS, details)?)?;
+    std::fs::write(&page_file, spliced(&page, DETAILS, details)?)?;
     Ok(())
 }
 
@@ -38,10 +38,14 @@ fn spliced(page: &str, block: &str, text: &str) -> Result<String> {
     Ok(format!("{before}{begin}```text\n{text}```\n{end}{after}"))
 }
 
+/// The digits of the commit that a headline shows; all of them stand in the report.
+const COMMIT_DIGITS: usize = 12;
+
 /// What was run where.
 fn headline(report: &Value) -> String {
     let text = |key: &str| report[key].as_str().unwrap_or("unknown").to_owned();
     let (version, commit, suite, cpu) =
         (text("percuss"), text("commit"), text("suite"), text("cpu"));
+    let commit: String = commit.chars().take(COMMIT_DIGITS).collect();
     format!("percuss {version} at {commit}, suite {suite}, on {cpu}\n")
 }

@@ -87,6 +87,55 @@ fn flags_are_those_of_the_program() {
     }
 }
 
+/// The examples of a command's long help, without where a shell sends their output.
+fn help_examples(command: &Command) -> Vec<String> {
+    let help = command.get_after_long_help().map(ToString::to_string).unwrap_or_default();
+    let whole = help.replace(" \\\n     ", "");
+    let lines = whole.lines().filter_map(|line| line.strip_prefix("  percuss "));
+    lines.map(|line| format!("percuss {}", line.split(" >").next().unwrap_or_default())).collect()
+}
+
+/// Every example parses, and one of each verb is run as an example of the page.
+#[test]
+fn the_help_of_every_verb_has_an_example_that_works() {
+    let page = read();
+    let shown: BTreeSet<String> = commands(&page)
+        .iter()
+        .map(|it| it.split(" >").next().unwrap_or_default().to_owned())
+        .collect();
+    for verb in command().get_subcommands() {
+        let examples = help_examples(verb);
+        assert!(examples.iter().any(|it| shown.contains(it)), "{}: {examples:?}", verb.get_name());
+        // What answers `bench compare` is started by it alone.
+        let inner: Vec<Vec<String>> = verb
+            .get_subcommands()
+            .filter(|it| it.get_name() != "worker")
+            .map(help_examples)
+            .collect();
+        assert!(inner.iter().all(|it| !it.is_empty()), "{}: {inner:?}", verb.get_name());
+        for example in inner.into_iter().flatten().chain(examples) {
+            let parsed = command().try_get_matches_from(words(&example));
+            assert!(parsed.is_ok(), "{example}: {:?}", parsed.err());
+        }
+    }
+}
+
+/// A terminal of 80 columns shows help as it is laid out, and a manual page, which is indented by
+/// seven columns and fills its lines, keeps examples and words apart.
+#[test]
+fn help_fits_where_it_is_shown() {
+    const TERMINAL: usize = 80;
+    const MANUAL: usize = 72;
+    let widest = |text: String| text.lines().map(|line| line.chars().count()).max();
+    for verb in command().get_subcommands() {
+        let about = verb.get_long_about().map(ToString::to_string).unwrap_or_default();
+        let after = verb.get_after_long_help().map(ToString::to_string).unwrap_or_default();
+        let (_, answer) = about.split_once("\n\n").unwrap_or_default();
+        assert!(widest(answer.to_owned()) <= Some(TERMINAL), "{}", verb.get_name());
+        assert!(widest(after) <= Some(MANUAL), "{}", verb.get_name());
+    }
+}
+
 /// The last digits are those of one platform's sine.
 #[test]
 fn examples_print_what_they_show() {

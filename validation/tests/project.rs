@@ -6,6 +6,9 @@ use percuss_validation::integrators::all;
 use percuss_validation::suite::{Suite, SuiteScope, size};
 use std::path::{Path, PathBuf};
 
+/// The page of the suite's results.
+const RESULTS: &str = "docs/RESULTS.md";
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -36,12 +39,12 @@ fn ci_runs_the_readmes_commands() {
 /// The last digits of an integrator's error are those of one platform's sine.
 #[test]
 #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
-fn the_readmes_blocks_are_what_their_commands_print() {
+fn the_blocks_of_the_results_are_what_their_commands_print() {
     const BEGIN: &str = "<!-- begin: cargo run --release -- ";
     const END: &str = "<!-- end -->";
-    let readme = read("README.md");
+    let results = read(RESULTS);
     let mut spliced = String::new();
-    let mut rest = readme.as_str();
+    let mut rest = results.as_str();
     let mut blocks = 0;
     while let Some((before, block)) = rest.split_once(BEGIN) {
         let (command, block) = block.split_once(" -->\n").expect("the command's line ends");
@@ -55,12 +58,12 @@ fn the_readmes_blocks_are_what_their_commands_print() {
         blocks += 1;
     }
     spliced += rest;
-    assert!(blocks > 0, "README.md has no block");
+    assert!(blocks > 0, "{RESULTS} has no block");
     if std::env::var_os("PERCUSS_SPLICE").is_some() {
-        std::fs::write(root().join("README.md"), &spliced).expect("README.md can be written");
+        std::fs::write(root().join(RESULTS), &spliced).expect("the page can be written");
     } else {
         assert_eq!(
-            readme, spliced,
+            results, spliced,
             "PERCUSS_SPLICE=1 cargo test --test harness project:: makes them equal"
         );
     }
@@ -69,9 +72,9 @@ fn the_readmes_blocks_are_what_their_commands_print() {
 /// The block of the bench is written by the commands that docs/LONG_TESTS.md names; times are not
 /// asserted. It must be of the cases that are timed today.
 #[test]
-fn the_readmes_bench_is_of_todays_cases() {
-    let readme = read("README.md");
-    let (_, block) = readme.split_once("<!-- begin: bench -->\n```text\n").expect("a block");
+fn the_speed_table_is_of_todays_cases() {
+    let page = read("docs/SPEED.md");
+    let (_, block) = page.split_once("<!-- begin: bench -->\n```text\n").expect("a block");
     let (block, _) = block.split_once("```\n<!-- end: bench -->").expect("it ends");
     let lines: Vec<_> = block.lines().collect();
     assert!(lines[0].starts_with("percuss ") && lines[0].contains(" at "), "{}", lines[0]);
@@ -85,9 +88,9 @@ fn the_readmes_bench_is_of_todays_cases() {
 /// The summary is written by the command that docs/LONG_TESTS.md names. It must be of a run that
 /// was clean, of today's engines and of as many rows as the suite has today.
 #[test]
-fn the_readmes_summary_is_of_todays_suite() {
-    let readme = read("README.md");
-    let (_, block) = readme.split_once("<!-- begin: summary -->\n```text\n").expect("a block");
+fn the_summary_is_of_todays_suite() {
+    let results = read(RESULTS);
+    let (_, block) = results.split_once("<!-- begin: summary -->\n```text\n").expect("a block");
     let (block, _) = block.split_once("```\n<!-- end: summary -->").expect("it ends");
     assert!(block.starts_with("percuss ") && block.contains(", suite quick, "), "{block}");
     for engine in all() {
@@ -100,7 +103,7 @@ fn the_readmes_summary_is_of_todays_suite() {
     assert!(block.contains(" 0 fail, 0 error, ") && block.contains("\nrank: "), "{block}");
     let widest = block.lines().map(|line| line.chars().count()).max();
     assert!(widest.is_some_and(|widest| widest <= 100), "{widest:?}: {block}");
-    let (_, details) = readme.split_once("<!-- begin: details -->\n```text\n").expect("a block");
+    let (_, details) = results.split_once("<!-- begin: details -->\n```text\n").expect("a block");
     let (details, _) = details.split_once("```\n<!-- end: details -->").expect("it ends");
     assert!(details.contains("\nnot run: ") && details.contains("\npower: "), "{details}");
 }

@@ -12,7 +12,7 @@ const RUNS: usize = 2000;
 /// Forcing periods of a run.
 const PERIODS: u64 = 40;
 /// The promise, in roundings per event beside the largest state so far. These draws reach 2.3, and
-/// others 7.0, by slow forcing, whose flights are 1e4 high. The README states both.
+/// others 7.0, by slow forcing, whose flights are 1e4 high. METHODOLOGY.md states both.
 const PROMISED: f64 = 10.0;
 /// Where errors have grown to this share of the state so far, they no longer grow as the linear
 /// theory of the growth says.

@@ -1,5 +1,6 @@
 //! `bifurcation`: a brute-force diagram, as a table or a picture.
 
+use super::help;
 use super::note;
 use super::shared::format::OutputFlags;
 use super::shared::long_work;
@@ -14,8 +15,12 @@ use percuss::dynamics::diagram::{Diagram, DiagramStep, Follow};
 use percuss::{InputError, Parameter};
 use std::io::Write;
 
-/// Brute-force bifurcation diagram, with drift per period
+/// Draw a brute-force bifurcation diagram, with the drift
+///
+/// Answers what settles at each value of a parameter, and how fast it goes
+/// forward there.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::BIFURCATION)]
 pub(super) struct Arguments {
     /// What varies: a, b, xi, omega, g or phi
     #[arg(long, value_name = "NAME", value_parser = parse::parameter)]

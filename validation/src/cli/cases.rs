@@ -1,5 +1,6 @@
 //! `cases`: what engines are held to.
 
+use super::help;
 use super::shared::format::OutputFlags;
 use super::shared::list::{self, Format};
 use crate::case::{Case, Cases, FileError, Horizon, SystemCase};
@@ -12,7 +13,11 @@ use serde::Serialize;
 use std::path::PathBuf;
 
 /// List the cases that validate and bench run
+///
+/// Answers what engines are asked, and why each case is there. The names are what
+/// -c of `validate`, `bench` and `export` selects from.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::CASES)]
 pub(super) struct Arguments {
     /// Reads the cases from this folder instead of those inside the binary
     #[arg(long, value_name = "DIR")]

@@ -1,6 +1,7 @@
 //! `completions`: prints shell completion scripts.
 
 use super::command;
+use super::help;
 use super::shared::output::Destination;
 use anyhow::Result;
 use clap::Args;
@@ -8,9 +9,7 @@ use clap_complete::{Shell, generate};
 
 /// Print the completions of a shell
 #[derive(Args)]
-#[command(
-    after_help = "Examples:\n  bash        percuss completions bash > ~/.local/share/bash-completion/completions/percuss\n  zsh         percuss completions zsh > ~/.zfunc/_percuss\n  fish        percuss completions fish > ~/.config/fish/completions/percuss.fish\n  powershell  percuss completions powershell >> $PROFILE"
-)]
+#[command(after_long_help = help::COMPLETIONS)]
 pub(super) struct Arguments {
     /// The shell
     #[arg(value_name = "SHELL", value_enum)]

@@ -1,5 +1,6 @@
 //! `engines`: what can be run.
 
+use super::help;
 use super::shared::format::OutputFlags;
 use super::shared::list::{self, Format};
 use super::shared::programs::ProgramFlags;
@@ -9,8 +10,12 @@ use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
 
-/// List the engines
+/// List the engines that validate and bench run
+///
+/// Answers which ODE solvers percuss runs, in which versions, and who locates
+/// their events.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::ENGINES)]
 pub(super) struct Arguments {
     #[command(flatten)]
     programs: ProgramFlags,

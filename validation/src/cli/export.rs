@@ -1,5 +1,6 @@
 //! `export`: what cases ask, as files for readers of any language.
 
+use super::help;
 use super::shared::compact;
 use super::shared::judged::CaseFlags;
 use super::shared::output::{Destination, make_folder, write_whole};
@@ -11,7 +12,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Write what the cases ask, as JSON and CSV for any language
+///
+/// Answers what a solver has to solve: for each case its modes as matrices,
+/// guards, resets, start, horizon and the times of samples, as JSON, as CSV and
+/// as equations to read. `percuss score` judges the answers.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::EXPORT)]
 pub(super) struct Arguments {
     /// The folder that the files are written into
     #[arg(long, value_name = "DIR")]

@@ -1,5 +1,6 @@
 //! `lyapunov`: the exponents of one motion.
 
+use super::help;
 use super::note;
 use super::orbits::Format;
 use super::shared::format::OutputFlags;
@@ -16,8 +17,12 @@ use percuss::dynamics::batches::{BATCHES, Batches, LEAST_COUNT, LEAST_LENGTH, St
 use percuss::dynamics::lyapunov::Spectrum;
 use serde::Serialize;
 
-/// Lyapunov exponents with saltation
+/// Compute the Lyapunov exponents and the drift of one motion, with their errors
+///
+/// Answers whether a motion is chaotic, how fast it forgets a disturbance, and
+/// how fast it goes forward on average.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::LYAPUNOV)]
 pub(super) struct Arguments {
     /// Forcing periods that are left out
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]

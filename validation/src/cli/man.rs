@@ -1,6 +1,7 @@
 //! `man`: the manual, a page a verb.
 
 use super::command;
+use super::help;
 use super::shared::output::{make_folder, write_whole};
 use anyhow::{Context, Result};
 use clap::{Args, Command};
@@ -8,7 +9,10 @@ use clap_mangen::Man;
 use std::path::{Path, PathBuf};
 
 /// Write the manual pages into a folder
+///
+/// Answers the same as --help, as pages for `man`: one per verb.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::MAN)]
 pub(super) struct Arguments {
     /// The folder, as ~/.local/share/man/man1
     #[arg(long, value_name = "DIR")]

@@ -9,6 +9,7 @@ mod completions;
 mod engines;
 mod events;
 mod export;
+mod help;
 mod lyapunov;
 mod man;
 mod orbits;
@@ -31,9 +32,9 @@ use shared::{output, parse, terminal};
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// Exact solver of the visco-elastic impact oscillator with drift, and integrators held against it.
+/// Exact events of systems with impacts, friction and switches, and ODE solvers held against them
 #[derive(Parser)]
-#[command(name = "percuss", version, subcommand_required = true)]
+#[command(name = "percuss", version, subcommand_required = true, after_help = help::PROGRAM)]
 struct Arguments {
     #[command(subcommand)]
     verb: Verb,
@@ -51,24 +52,24 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Verb {
+    Validate(Box<validate::Arguments>),
+    Score(Box<score::Arguments>),
+    Export(export::Arguments),
+    Engines(engines::Arguments),
+    Cases(cases::Arguments),
+    Bench(bench::Arguments),
+    Events(events::Arguments),
+    Systems(systems::Arguments),
     Simulate(Box<simulate::Arguments>),
     Poincare(Box<poincare::Arguments>),
     Lyapunov(Box<lyapunov::Arguments>),
     Bifurcation(Box<bifurcation::Arguments>),
     Attractors(Box<basins::AttractorArguments>),
     Basins(Box<basins::BasinArguments>),
-    Engines(engines::Arguments),
-    Validate(Box<validate::Arguments>),
-    Export(export::Arguments),
-    Score(Box<score::Arguments>),
-    Reproduce(reproduce::Arguments),
-    Bench(bench::Arguments),
     Orbit(Box<orbits::find::Arguments>),
     Continue(Box<orbits::follow::Arguments>),
     Sweep(sweep::Arguments),
-    Cases(cases::Arguments),
-    Events(events::Arguments),
-    Systems(systems::Arguments),
+    Reproduce(reproduce::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
 }

@@ -1,5 +1,6 @@
 //! `poincare`: a stroboscopic section, as a table, an array or a picture.
 
+use super::help;
 use super::note;
 use super::shared::format::OutputFlags;
 use super::shared::long_work::{self, Bar};
@@ -17,8 +18,13 @@ use percuss::dynamics::section::Section;
 use percuss::{Entry, Instant};
 use std::io::Write;
 
-/// Stroboscopic section of one motion
+/// Print the stroboscopic section of one motion
+///
+/// Answers what a motion settles on: the state once a forcing period. A motion of
+/// period k repeats k points, a quasi-periodic one draws a curve, a chaotic one a
+/// strange attractor.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::POINCARE)]
 pub(super) struct Arguments {
     /// Forcing periods that are left out
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]

@@ -1,5 +1,6 @@
 //! `score`: answers in files, judged as the runs of `validate` are.
 
+use super::help;
 use super::shared::judged::JudgedFlags;
 use super::shared::long_work;
 use super::shared::names::{CASES, held_by};
@@ -19,18 +20,23 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Judge answers in files, made by any program from what export wrote
+///
+/// Answers how your solver does where it is no engine of percuss: a program in
+/// any language reads what `percuss export` wrote and writes its events, and they
+/// are judged as `percuss validate` judges.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::SCORE)]
 pub(super) struct Arguments {
-    /// What answered: 1 to 40 lower-case letters, digits, -, _, . and +
+    /// Name of the solver in the report: 1 to 40 lower-case letters, digits, -, _, . and +
     #[arg(long, value_name = "X", value_parser = name)]
     name: String,
-    /// Its library (default: its name)
+    /// The solver's library (default: its name)
     #[arg(long, value_name = "L", value_parser = words)]
     library: Option<String>,
     /// The library's version
     #[arg(long, value_name = "V", value_parser = words, default_value = "unknown")]
     version: String,
-    /// The language it is written in
+    /// The language that the solver is written in
     #[arg(long, value_name = "LANGUAGE", value_parser = words, default_value = "unknown")]
     language: String,
     /// The tolerance that the answers were made with, which errors are counted in

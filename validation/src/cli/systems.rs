@@ -1,5 +1,6 @@
 //! `systems`: the piecewise-affine systems inside the program.
 
+use super::help;
 use super::shared::format::OutputFlags;
 use super::shared::list::{self, Format};
 use crate::systems::SYSTEMS;
@@ -9,7 +10,11 @@ use percuss::affine::System;
 use serde::Serialize;
 
 /// List the piecewise-affine systems inside the program
+///
+/// Answers which systems come with the program. Each name may be given to
+/// `percuss events`.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::SYSTEMS)]
 pub(super) struct Arguments {
     #[command(flatten)]
     output: OutputFlags<Format>,

@@ -6,6 +6,7 @@
 //! lines; splicing keeps as many lines before and after it as there are.
 
 use super::{percuss, text};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 const GAP: &str = "...";
@@ -54,6 +55,26 @@ pub fn hold(page: &Path, folder: &Path, test: &str) {
     } else if is_the_pages_platform() {
         assert!(page_text == whole, "PERCUSS_SPLICE=1 cargo test --test harness {test}\n{whole}");
     }
+}
+
+/// Holds the pictures that a page shows from `docs/SHOWN/` against those that its commands made in
+/// a folder; their names. With `PERCUSS_SPLICE=1` they are written anew.
+pub fn hold_pictures(page: &Path, shown: &str, made_in: &Path) -> BTreeSet<String> {
+    let text = read(page);
+    let opening = format!("]({shown}/");
+    let names = text.split(&opening).skip(1).filter_map(|it| it.split(')').next());
+    let names: BTreeSet<String> = names.map(str::to_owned).collect();
+    for name in &names {
+        let made = std::fs::read(made_in.join(name)).expect("a command makes it");
+        let kept = page.with_file_name(shown).join(name);
+        if is_splicing() {
+            std::fs::create_dir_all(kept.parent().expect("a folder")).expect("made");
+            std::fs::write(kept, made).expect("written");
+        } else if is_the_pages_platform() {
+            assert!(std::fs::read(kept).ok() == Some(made), "{name} is not as it is made");
+        }
+    }
+    names
 }
 
 /// The commands of a text's transcripts.

@@ -8,7 +8,7 @@ use crate::number::brief;
 use comfy_table::{CellAlignment, Table, presets};
 
 /// The exact solver's cost on each case, and its closest competitors at their most accurate and at
-/// equal accuracy. README.md holds it.
+/// equal accuracy. docs/SPEED.md holds it.
 #[must_use]
 pub fn summary(bench: &Bench) -> String {
     let floor = bench.floor;

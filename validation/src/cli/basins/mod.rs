@@ -5,6 +5,7 @@ pub(super) mod json;
 mod npz;
 mod table;
 
+use super::help;
 use super::shared::format::{self, OutputFlags};
 use super::shared::long_work;
 use super::shared::model::ModelFlags;
@@ -19,8 +20,12 @@ use percuss::dynamics::attractor::{
 use percuss::dynamics::strobe::StrobeMap;
 use std::path::PathBuf;
 
-/// Attractors that a grid of starts reaches
+/// List the attractors that a grid of starts reaches
+///
+/// Answers which motions starts settle into, how large a share of them does, and
+/// how fast each goes forward.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::ATTRACTORS)]
 pub(super) struct AttractorArguments {
     #[command(flatten)]
     pub(super) grid: GridFlags,
@@ -39,8 +44,12 @@ enum AttractorFormat {
     Table,
 }
 
-/// Basins of attraction: which start of a grid reaches which attractor
+/// Draw basins of attraction: which start of a grid reaches which attractor
+///
+/// Answers which start leads where. The labels go to a picture or to arrays for
+/// NumPy, and the attractors to stdout, as `percuss attractors` prints them.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::BASINS)]
 pub(super) struct BasinArguments {
     #[command(flatten)]
     pub(super) grid: GridFlags,

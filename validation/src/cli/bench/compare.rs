@@ -1,5 +1,6 @@
 //! `bench compare OLD NEW`: two binaries, or two recorded versions.
 
+use super::super::help;
 use super::{DONE, OUT_OF_BOUNDS};
 use crate::bench::compare::binaries::{Common, LIVES, Pair, TimeQuotient, common, quotients};
 use crate::bench::compare::recorded::changes;
@@ -18,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 /// Compare the speed of two versions: exit 1 where it is slower by 2 % twice in a row
 #[derive(Args)]
+#[command(after_long_help = help::BENCH_COMPARE)]
 pub(in super::super) struct Arguments {
     /// A built percuss, or a recorded version: its number or its commit's first seven digits or
     /// more

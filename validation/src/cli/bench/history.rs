@@ -1,5 +1,6 @@
 //! `bench history`: the history as a picture.
 
+use super::super::help;
 use crate::bench::history::{self, History};
 use crate::bench::history_picture;
 use crate::cli::shared::format::OutputFlags;
@@ -8,8 +9,9 @@ use anyhow::{Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// Draw the history
+/// Draw the history of the recorded versions
 #[derive(Args)]
+#[command(after_long_help = help::BENCH_HISTORY)]
 pub(in super::super) struct Arguments {
     /// The history
     #[arg(long, value_name = "FILE", default_value = history::FILE)]

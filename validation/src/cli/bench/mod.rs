@@ -4,6 +4,7 @@ mod compare;
 mod history;
 mod record;
 
+use super::help;
 use super::shared::names::{CASES, Selection};
 use super::shared::output::{Destination, make_folder, reader_left, write_whole};
 use super::shared::programs::ProgramFlags;
@@ -28,7 +29,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Time every engine against the exact solver in interleaved rounds
+///
+/// Answers how much longer a solver takes than the exact solver, at its most
+/// accurate setting and at equal errors. A wrong answer has no time.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::BENCH)]
 #[command(args_conflicts_with_subcommands = true)]
 pub(super) struct Arguments {
     #[command(subcommand)]

@@ -1,5 +1,6 @@
 //! `bench record`: lines of this version, appended to the history.
 
+use super::super::help;
 use super::usual_cases;
 use crate::bench::contestant::enter;
 use crate::bench::floor::{self, Floors};
@@ -16,8 +17,9 @@ use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// Append this version to the history
+/// Time this version and append it to the history
 #[derive(Args)]
+#[command(after_long_help = help::BENCH_RECORD)]
 pub(in super::super) struct Arguments {
     /// The history
     #[arg(long, value_name = "FILE", default_value = history::FILE)]

@@ -9,6 +9,7 @@ mod rows;
 mod samples;
 mod write;
 
+use super::help;
 use super::shared::format::OutputFlags;
 use super::shared::long_work::{self, Bar};
 use super::shared::names;
@@ -38,8 +39,14 @@ const USUAL_MAX_EVENTS: usize = 1_000_000;
 /// A picture of more events than this shows nothing.
 const MOST_DRAWN: usize = 20_000;
 
-/// Print the events of a piecewise-affine system, computed in 106 bits or more with enclosed errors
+/// Print the events of a piecewise-affine system, every digit of them proved
+///
+/// Answers when the events of a system are, which they are, and what the state is
+/// just after each. The system is a file of your own or a name of `percuss
+/// systems`. The run is computed in 106 bits or more with enclosed errors, so it
+/// needs no tolerance.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::EVENTS)]
 #[command(group(ArgGroup::new("length").required(true).args(["until", "events"])))]
 pub(super) struct Arguments {
     /// A *.system.toml, or a name that `percuss systems` prints

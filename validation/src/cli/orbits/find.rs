@@ -1,5 +1,6 @@
 //! `orbit`: periodic orbits, by Newton's method.
 
+use super::super::help;
 use super::json::{OrbitJson, OrbitsJson};
 use super::table;
 use crate::cli::shared::format::OutputFlags;
@@ -12,8 +13,12 @@ use clap::{Args, ValueEnum};
 use percuss::dynamics::orbit::{Orbit, scan};
 use percuss::dynamics::strobe::StrobeMap;
 
-/// Find a periodic orbit, stable or not, from a guess (--p, --y, --q) or from a scan of starts
+/// Find periodic orbits, stable or not, from a guess (--p, --y, --q) or from a scan of starts
+///
+/// Answers which motions repeat after K forcing periods, and whether they are
+/// stable.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::ORBIT)]
 pub(crate) struct Arguments {
     /// Forcing periods of the orbit; one that closes after a divisor is reported with that
     #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true)]

@@ -1,5 +1,6 @@
 //! `continue`: a branch of periodic orbits.
 
+use super::super::help;
 use super::Format;
 use super::find::{first_scanned, preferred};
 use super::json::{BranchJson, Doubled, Followed};
@@ -19,7 +20,11 @@ use percuss::dynamics::strobe::StrobeMap;
 use percuss::{InputError, Parameter};
 
 /// Follow a periodic orbit, stable or not, in a parameter, and locate its bifurcations
+///
+/// Answers how far in a parameter an orbit exists, where it is stable, and what
+/// ends it.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::CONTINUE)]
 pub(crate) struct Arguments {
     /// The parameter that varies: a, b, xi, omega, g or phi
     #[arg(long, value_name = "NAME", value_parser = parse::parameter)]

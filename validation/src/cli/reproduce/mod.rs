@@ -3,6 +3,7 @@
 mod claims;
 mod store;
 
+use super::help;
 use super::shared::long_work;
 use super::shared::names::nearest;
 use super::shared::output::{Destination, make_folder, reader_left, write_whole};
@@ -17,7 +18,11 @@ use std::path::{Path, PathBuf};
 use store::Store;
 
 /// Compute every table and figure of the paper and settle its claims
+///
+/// Answers which claims of Pavlovskaia and Wiercigroch (2004) hold. A claim that
+/// differs is a result, not a failure.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::REPRODUCE)]
 pub(super) struct Arguments {
     /// Only these claims or items; several are alternatives
     #[arg(long, value_name = "ID")]

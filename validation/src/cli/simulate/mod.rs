@@ -5,6 +5,7 @@ mod json;
 mod plan;
 mod rows;
 
+use super::help;
 use super::note;
 use super::shared::format::OutputFlags;
 use super::shared::long_work;
@@ -16,8 +17,13 @@ use clap::{ArgGroup, Args, ValueEnum};
 use plan::{PlannedRun, RunEnding};
 use std::io::Write;
 
-/// Run the exact solver from one start
+/// Run the exact solver of the impact oscillator from one start
+///
+/// Answers what one motion does: the state at which each phase begins, or
+/// samples, or a picture. Between events the motion is a closed form, and each
+/// event is proved to be the first.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::SIMULATE)]
 #[command(group(ArgGroup::new("length").required(true).args(["events", "periods", "until"])))]
 pub(super) struct Arguments {
     /// Ends after this many events

@@ -11,6 +11,7 @@ mod verb;
 
 #[cfg(feature = "mpi")]
 use super::REFUSED;
+use super::help;
 use super::shared::format::OutputFlags;
 use super::shared::long_work::{self, Bar};
 use super::shared::output::{self, Destination};
@@ -27,7 +28,12 @@ use shown::{Format, StatusJson};
 use std::path::PathBuf;
 
 /// Run a verb over a grid of one or two parameters, split into shards, on this machine or many
+///
+/// Answers how basins, attractors, diagrams, exponents or branches change over
+/// one or two parameters. A plan says what; `run` computes, `status` says what is
+/// missing, `merge` joins.
 #[derive(Args)]
+#[command(verbatim_doc_comment, after_long_help = help::SWEEP)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     step: SweepStep,
@@ -53,6 +59,7 @@ struct SweepFlags {
 
 /// Compute one shard, or all that are not finished
 #[derive(Args)]
+#[command(after_long_help = help::SWEEP_RUN)]
 struct RunArguments {
     #[command(flatten)]
     sweep: SweepFlags,
@@ -62,8 +69,9 @@ struct RunArguments {
     shard: Option<[u32; 2]>,
 }
 
-/// Which shards are done, running, missing and damaged; exit code 0 where all are done
+/// Say which shards are done, running, missing and damaged; exit code 0 where all are done
 #[derive(Args)]
+#[command(after_long_help = help::SWEEP_STATUS)]
 struct StatusArguments {
     #[command(flatten)]
     sweep: SweepFlags,
@@ -73,6 +81,7 @@ struct StatusArguments {
 
 /// Join all shards into one file of arrays for NumPy
 #[derive(Args)]
+#[command(after_long_help = help::SWEEP_MERGE)]
 struct MergeArguments {
     #[command(flatten)]
     sweep: SweepFlags,
