@@ -1,14 +1,17 @@
 //! Every place where the version of the workspace stands.
 
+use crate::changelog;
 use crate::edit::Edit;
 use crate::process::Folder;
 use anyhow::{Context, Result, bail, ensure};
-use semver::{Comparator, Op, Version};
+use semver::{Comparator, Op, Version, VersionReq};
 use std::collections::BTreeSet;
 use toml_edit::{DocumentMut, Item, TableLike, value};
 
 const ROOT: &str = "Cargo.toml";
 const CITATION: &str = "CITATION.cff";
+/// Pages on what was.
+const ARCHIVE: &str = "docs/archive/";
 
 /// The version that the workspace has now.
 pub fn current(root: &Folder) -> Result<Version> {
@@ -29,7 +32,8 @@ pub fn may_break(old: &Version, new: &Version) -> bool {
     !compatible.matches(new)
 }
 
-/// The edits that give the workspace the version `new` of this day: manifests, lock files, citation.
+/// The edits that give the workspace the version `new` of this day: manifests, lock files, what
+/// pages tell users to depend on, citation.
 pub fn edits(root: &Folder, old: &Version, new: &Version, day: &str) -> Result<Vec<Edit>> {
     let manifests = manifests(root)?;
     let mut edits = vec![Edit::of(root, ROOT, |text| workspace(text, new))?];
@@ -45,6 +49,11 @@ pub fn edits(root: &Folder, old: &Version, new: &Version, day: &str) -> Result<V
     }
     for path in root.output("git", &["ls-files", "Cargo.lock", "*/Cargo.lock"])?.lines() {
         edits.push(Edit::of(root, path, |text| lock(text, &packages, new))?);
+    }
+    for path in root.output("git", &["ls-files", "*.md"])?.lines() {
+        if path != changelog::FILE && !path.starts_with(ARCHIVE) {
+            edits.push(Edit::of(root, path, |text| Ok(page(text, old, new)))?);
+        }
     }
     edits.push(Edit::of(root, CITATION, |text| citation(text, new, day))?);
     edits.retain(Edit::changes);
@@ -131,6 +140,34 @@ fn lock(text: &str, packages: &BTreeSet<String>, new: &Version) -> Result<String
     Ok(lock.to_string())
 }
 
+/// A page whose lines `percuss = "0.1"`, which users copy, ask for `new` where it is not what they
+/// ask for. What a version has printed, results and their version, stays.
+fn page(text: &str, old: &Version, new: &Version) -> String {
+    let outdated = |word: &str| {
+        let asks = word.parse::<VersionReq>().ok();
+        asks.is_some_and(|it| it != VersionReq::STAR && it.matches(old) && !it.matches(new))
+    };
+    let renewed = |(i, word): (usize, &str)| {
+        // Every second piece stands between quotation marks.
+        if i % 2 == 0 || !outdated(word) {
+            return word.to_owned();
+        }
+        let operator = word.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+        let numbers = word.matches('.').count() + 1;
+        let all = [new.major, new.minor, new.patch].map(|number| number.to_string());
+        format!("{operator}{}", all[..numbers.min(3)].join("."))
+    };
+    let line = |line: &str| {
+        let name = line.split(" = ").next().unwrap_or_default();
+        if name == "percuss" || name.starts_with("percuss-") {
+            line.split('"').enumerate().map(renewed).collect::<Vec<_>>().join("\"")
+        } else {
+            line.to_owned()
+        }
+    };
+    text.split('\n').map(line).collect::<Vec<_>>().join("\n")
+}
+
 /// The citation with the version and its day.
 fn citation(text: &str, new: &Version, day: &str) -> Result<String> {
     let mut replaced = 0;
@@ -200,6 +237,19 @@ mod tests {
             source = \"elsewhere\"\n\n[[package]]\nname = \"c\"\nversion = \"0.1.0\"\n";
         let expected = text.replacen("\"0.1.0\"", "\"0.2.0\"", 1);
         assert_eq!(lock(text, &packages, &version("0.2.0")).unwrap(), expected);
+    }
+
+    #[test]
+    fn pages_ask_for_the_new_version() {
+        let text = "percuss 0.1.0 at commit 1\n```toml\npercuss = \"0.1\"\n\
+            percuss-engines = { version = \"=0.1.0\", features = [\"0\"] }\nserde = \"0.1\"\n```";
+        let expected = text
+            .replace("percuss = \"0.1\"", "percuss = \"0.2\"")
+            .replace("\"=0.1.0\"", "\"=0.2.0\"");
+        let old = version("0.1.0");
+        assert_eq!(page(text, &old, &version("0.2.0")), expected);
+        let expected = text.replace("\"=0.1.0\"", "\"=0.1.1\"");
+        assert_eq!(page(text, &old, &version("0.1.1")), expected);
     }
 
     #[test]
