@@ -103,7 +103,7 @@ const PACKAGES: [Package; 7] = [
     },
     Package {
         sources: "validation/xtask/src",
-        rooms: &["process", "changelog", "edit", "interface", "versions", "release", "main"],
+        rooms: &["process", "changelog", "edit", "versions", "interface", "release", "main"],
         least_uses: 5,
     },
 ];

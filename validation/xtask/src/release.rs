@@ -16,7 +16,7 @@ const SCOREBOARD: &str = "docs/SCOREBOARD.md";
 /// Make a version: checks, changelog, version numbers, speed, scoreboard, packages, tag
 ///
 /// Everything is done by default, in this order: the interface (cargo install cargo-semver-checks),
-/// the checks of .ci/run (half an hour on two cores), the files, a trial of `cargo publish` for every
+/// the files, the checks of .ci/run (half an hour on two cores), a trial of `cargo publish` for every
 /// package (minutes), a commit, the speed (minutes; needs valgrind and a QUIET MACHINE), the
 /// scoreboard (half an hour and the integrators of other languages; times in it need a QUIET
 /// MACHINE), a second commit, the tag. Nothing is pushed or published.
@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Leaves out `cargo xtask interface`
     #[arg(long)]
     without_interface: bool,
-    /// Leaves out .ci/run, for a commit that has passed it
+    /// Leaves out .ci/run, which is run with the new version
     #[arg(long)]
     without_checks: bool,
     /// Leaves out the trial of `cargo publish`
@@ -81,8 +81,10 @@ fn make(root: &Folder, arguments: &Arguments, plan: &Plan) -> Result<()> {
     let version = &arguments.version;
     let begun = Instant::now();
     let step = |name: &str| println!("\n== {name} ({}s)", begun.elapsed().as_secs());
-    check(root, arguments, plan, &step)?;
-
+    if !arguments.without_interface {
+        step("interface");
+        hold_interface(root, plan.may_break)?;
+    }
     step("files");
     write(root, arguments, plan, &step)
         .context("nothing is committed yet: `git restore .` takes back what is written")?;
@@ -154,26 +156,26 @@ fn clean(root: &Folder) -> Result<()> {
     Ok(())
 }
 
-fn check(root: &Folder, arguments: &Arguments, plan: &Plan, step: &impl Fn(&str)) -> Result<()> {
-    if !arguments.without_interface
-        && let Some(baseline) = interface::last_release(root)?
-    {
-        step("interface");
-        interface::check(root, &baseline, plan.may_break)?;
+/// Holds the interface against that of the last version, where there is one.
+fn hold_interface(root: &Folder, may_break: bool) -> Result<()> {
+    match interface::last_release(root)? {
+        Some(baseline) => interface::check(root, &baseline, may_break),
+        None => {
+            println!("{}", interface::NO_VERSION);
+            Ok(())
+        }
     }
-    if !arguments.without_checks {
-        step("checks");
-        root.run("bash", &[".ci/run"])?;
-        clean(root)?;
-    }
-    Ok(())
 }
 
-/// Writes the files of the version, and tries whether its packages can be published.
+/// Writes the files of the version, checks them, and tries whether its packages can be published.
 fn write(root: &Folder, arguments: &Arguments, plan: &Plan, step: &impl Fn(&str)) -> Result<()> {
     plan.edits.iter().try_for_each(|edit| edit.write(root))?;
     // Fails where a manifest and the lock file do not fit together.
     root.output("cargo", &["tree", "--workspace", "--depth", "0", "--locked"])?;
+    if !arguments.without_checks {
+        step("checks");
+        root.run("bash", &[".ci/run"])?;
+    }
     if !arguments.without_packages {
         step("a trial of `cargo publish`");
         packages(root, &arguments.version)?;

@@ -141,7 +141,8 @@ fn lock(text: &str, packages: &BTreeSet<String>, new: &Version) -> Result<String
 }
 
 /// A page whose lines `percuss = "0.1"`, which users copy, ask for `new` where it is not what they
-/// ask for. What a version has printed, results and their version, stays.
+/// ask for, and whose examples print `"percuss": "0.1.0"`, because tests run them. Results stay those
+/// of the version that printed them.
 fn page(text: &str, old: &Version, new: &Version) -> String {
     let outdated = |word: &str| {
         let asks = word.parse::<VersionReq>().ok();
@@ -157,9 +158,12 @@ fn page(text: &str, old: &Version, new: &Version) -> String {
         let all = [new.major, new.minor, new.patch].map(|number| number.to_string());
         format!("{operator}{}", all[..numbers.min(3)].join("."))
     };
+    let printed = format!("\"percuss\": \"{old}\"");
     let line = |line: &str| {
         let name = line.split(" = ").next().unwrap_or_default();
-        if name == "percuss" || name.starts_with("percuss-") {
+        if line.trim_start().starts_with(&printed) {
+            line.replacen(&old.to_string(), &new.to_string(), 1)
+        } else if name == "percuss" || name.starts_with("percuss-") {
             line.split('"').enumerate().map(renewed).collect::<Vec<_>>().join("\"")
         } else {
             line.to_owned()
@@ -242,13 +246,15 @@ mod tests {
     #[test]
     fn pages_ask_for_the_new_version() {
         let text = "percuss 0.1.0 at commit 1\n```toml\npercuss = \"0.1\"\n\
-            percuss-engines = { version = \"=0.1.0\", features = [\"0\"] }\nserde = \"0.1\"\n```";
+            percuss-engines = { version = \"=0.1.0\", features = [\"0\"] }\nserde = \"0.1\"\n```\n\
+            {\n  \"percuss\": \"0.1.0\",\n";
         let expected = text
             .replace("percuss = \"0.1\"", "percuss = \"0.2\"")
-            .replace("\"=0.1.0\"", "\"=0.2.0\"");
+            .replace("\"=0.1.0\"", "\"=0.2.0\"")
+            .replace("\"0.1.0\"", "\"0.2.0\"");
         let old = version("0.1.0");
         assert_eq!(page(text, &old, &version("0.2.0")), expected);
-        let expected = text.replace("\"=0.1.0\"", "\"=0.1.1\"");
+        let expected = text.replace("=0.1.0\"", "=0.1.1\"").replace("\"0.1.0\"", "\"0.1.1\"");
         assert_eq!(page(text, &old, &version("0.1.1")), expected);
     }
 
