@@ -188,7 +188,8 @@ fn write(root: &Folder, arguments: &Arguments, plan: &Plan, step: &impl Fn(&str)
 fn packages(root: &Folder, version: &Version) -> Result<()> {
     forget_unpacked(version)?;
     let arguments = ["publish", "--workspace", "--dry-run", "--locked", "--allow-dirty"];
-    root.run("cargo", &arguments).context("needs cargo 1.90 or later")
+    root.run("cargo", &arguments)
+        .context("a package cannot be published (cargo before 1.90 can try none)")
 }
 
 /// Removes what an earlier trial of the same version has unpacked: cargo would take it for the new
