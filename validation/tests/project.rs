@@ -218,9 +218,9 @@ fn anchors(page: &str) -> Vec<String> {
     headings.map(anchor).collect()
 }
 
-/// The pages of the repository's root and of `docs/`.
+/// The pages of the repository's root, of `docs/` and of its archive.
 fn pages() -> Vec<PathBuf> {
-    let folders = [root(), root().join("docs")];
+    let folders = ["", "docs", "docs/archive"].map(|folder| root().join(folder));
     let files = folders.iter().flat_map(|it| std::fs::read_dir(it).expect("a folder"));
     let paths = files.map(|file| file.expect("a file").path());
     paths.filter(|path| path.extension().is_some_and(|it| it == "md")).collect()
