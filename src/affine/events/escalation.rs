@@ -117,8 +117,8 @@ trait Level<'a> {
     /// Whether the start has fewer digits than are wanted.
     fn start_needs_more_bits(&mut self, digits: usize) -> bool;
 
-    /// Goes to the next step; false if there is none.
-    fn advance(&mut self) -> bool;
+    /// Goes to the next step, and says whether it is a sample; none if there is no step.
+    fn advance(&mut self) -> Option<bool>;
 
     /// Whether more bits may decide the step, or give the digits that are wanted: asked once.
     fn needs_more_bits(&mut self, digits: usize) -> bool;
@@ -164,9 +164,9 @@ impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
         self.sizes.have_too_few_digits(&self.steps.run.start(), digits)
     }
 
-    fn advance(&mut self) -> bool {
+    fn advance(&mut self) -> Option<bool> {
         self.step = self.steps.next();
-        self.step.is_some()
+        self.step.as_ref().map(|it| it.is_sample)
     }
 
     fn needs_more_bits(&mut self, digits: usize) -> bool {
@@ -207,18 +207,41 @@ struct Escalating<'a> {
     request: Request,
     level: usize,
     run: Box<dyn Level<'a> + 'a>,
-    /// The number of steps that were given out.
-    given: u64,
+    given: Count,
+    /// The steps that fewer bits have given out, and that are not given out again.
+    repeated: Count,
+}
+
+/// A number of events and samples. They are counted apart, because rounding may change the order of
+/// an event and a sample at the same time.
+#[derive(Clone, Copy, Default)]
+struct Count {
+    events: u64,
+    samples: u64,
+}
+
+impl Count {
+    fn of(&mut self, is_sample: bool) -> &mut u64 {
+        if is_sample { &mut self.samples } else { &mut self.events }
+    }
+
+    /// Takes a step off, and says whether it was among those that are counted.
+    fn take(&mut self, is_sample: bool) -> bool {
+        let count = self.of(is_sample);
+        let is_there = *count > 0;
+        *count = count.saturating_sub(1);
+        is_there
+    }
 }
 
 impl<'a> Escalating<'a> {
     fn begin(solver: &'a ProvedSolver, request: &Request) -> Result<Self, SystemError> {
         let run = solver.begin(0, request)?;
-        let mut own = Self { solver, request: request.clone(), level: 0, run, given: 0 };
+        let (given, repeated) = (Count::default(), Count::default());
+        let mut own = Self { solver, request: request.clone(), level: 0, run, given, repeated };
         let has_samples = request.samples.is_some();
         while own.may_go_on() && !has_samples && own.run.start_needs_more_bits(request.digits) {
-            own.run = solver.begin(own.level + 1, request)?;
-            own.level += 1;
+            own.raise();
         }
         Ok(own)
     }
@@ -227,19 +250,13 @@ impl<'a> Escalating<'a> {
         BITS.get(self.level + 1).is_some_and(|bits| *bits <= self.request.most_bits)
     }
 
-    /// Begins again in more bits, up to the step that these did not decide.
-    fn raise(&mut self) -> bool {
-        let Ok(mut run) = self.solver.begin(self.level + 1, &self.request) else { return false };
-        for _ in 0..self.given {
-            if !run.advance() {
-                return false;
-            }
-            // The sizes of the states are kept.
-            run.needs_more_bits(self.request.digits);
+    /// Begins again in twice as many bits.
+    fn raise(&mut self) {
+        // A system and a start that one arithmetic accepts are accepted by each.
+        if let Ok(run) = self.solver.begin(self.level + 1, &self.request) {
+            (self.run, self.repeated) = (run, self.given);
         }
-        self.run = run;
         self.level += 1;
-        self.run.advance()
     }
 }
 
@@ -249,12 +266,20 @@ impl<'a> Running<'a, Proved> for Escalating<'a> {
     }
 
     fn next(&mut self) -> Option<Event<'a, Proved>> {
-        if !self.run.advance() {
-            return None;
+        while let Some(is_sample) = self.run.advance() {
+            // It is asked of steps that are repeated, too, which have the sizes of the states.
+            let needs_more = self.may_go_on() && self.run.needs_more_bits(self.request.digits);
+            if self.repeated.take(is_sample) {
+                continue;
+            }
+            if needs_more {
+                self.raise();
+                continue;
+            }
+            *self.given.of(is_sample) += 1;
+            return self.run.event();
         }
-        while self.may_go_on() && self.run.needs_more_bits(self.request.digits) && self.raise() {}
-        self.given += 1;
-        self.run.event()
+        None
     }
 
     fn cause(&self) -> Option<Cause> {
