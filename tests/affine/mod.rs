@@ -14,6 +14,7 @@ mod oscillator;
 mod random;
 mod sizes;
 mod spectra;
+mod still;
 mod tables;
 mod together;
 mod touches;
