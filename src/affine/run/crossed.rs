@@ -53,12 +53,12 @@ impl<T: Number> Run<'_, T> {
             }
             return;
         }
-        if self.solver.backward {
-            (self.entered, self.state, self.enclosure) = (time, state, errors);
-            return self.end(Ending::LeavesDomain);
-        }
         let guards = self.graph.tied(self.node, zero, false) | exactly_tied;
         let zero = self.zero_guards(guards, &state);
+        if self.solver.backward {
+            (self.entered, self.state, self.enclosure) = (time, state, errors);
+            return self.leave(zero, false);
+        }
         let until = ending.trailing_zeros() as usize;
         self.enclosure = errors;
         self.fire(Firing { until, zero, at_entry: false }, time, state);

@@ -3,7 +3,7 @@
 use super::digits::outward;
 use super::no_progress;
 use super::progress::{Accumulation, Passed, RunEnd};
-use super::rows::Rows;
+use super::rows::{Rows, UNDECIDED};
 use percuss::affine::{Arithmetic, EnclosedRun, Ending, Event, What};
 use percuss::number::{Bound, Number};
 
@@ -30,7 +30,8 @@ impl<T: Arithmetic> Rows<'_, T> {
                 ("beyond-guard", "the mode is entered beyond one of its guards".to_owned(), false)
             }
             Ending::Undecided => {
-                ("undecided", format!("what comes next is not decided by {} bits", T::BITS), false)
+                self.is_undecided(&self.time(event), end);
+                return UNDECIDED.to_owned();
             }
         };
         end.notes.push(format!("the run ends at {}: {note}", self.time(event)));
@@ -39,6 +40,14 @@ impl<T: Arithmetic> Rows<'_, T> {
         }
         end.undecided = !decided;
         name.to_owned()
+    }
+
+    /// Says that a run ends undecided at a time.
+    pub(super) fn is_undecided(&self, time: &str, end: &mut RunEnd) {
+        let bits = T::BITS;
+        end.notes
+            .push(format!("the run ends at {time}: what comes next is not decided by {bits} bits"));
+        end.undecided = true;
     }
 
     /// The name of the ending of a run that has as many events as it may have, which leaves a note.
@@ -69,27 +78,27 @@ impl<T: Arithmetic> Rows<'_, T> {
                 "its state at about {searched} is too large for its bounds to be numbers"
             );
         }
-        format!("its search for the next event came to about {searched}{}", self.left_open(run))
+        let is_one = run.tie().is_empty() && run.doubtful().is_some();
+        let near = run.resolution().filter(|_| is_one);
+        let near = near.map_or(String::new(), |it| {
+            format!(": nearer to zero than {} it is not known", size(it))
+        });
+        // More bits may run out of work before they meet what fewer of them left open.
+        let open = self.open(run).or_else(|| self.left.open.clone());
+        let open = open.map_or(String::new(), |it| format!(", where rounding leaves open {it}"));
+        format!("its search for the next event came to about {searched}{open}{near}")
     }
 
     /// What rounding left open where a search ended: which guard is first, or whether one crosses.
-    fn left_open(&self, run: &dyn EnclosedRun<T>) -> String {
+    pub(super) fn open(&self, run: &dyn EnclosedRun<T>) -> Option<String> {
         let quoted = |it: &What<T>| self.event_name(it).map(|name| format!("\"{name}\""));
         let tie: Vec<String> = run.tie().iter().filter_map(quoted).collect();
         if let [others @ .., last] = &tie[..] {
             let others = others.join(", ");
-            return format!(
-                ", where rounding leaves open which of the guards of {others} and {last} crosses \
-                 first"
-            );
+            return Some(format!("which of the guards of {others} and {last} crosses first"));
         }
-        let open = run.doubtful().as_ref().and_then(quoted);
-        let near = run.resolution().map_or(String::new(), |it| {
-            format!(": nearer to zero than {} it is not known", size(it))
-        });
-        open.map_or(String::new(), |name| {
-            format!(", where rounding leaves open whether the guard of {name} crosses{near}")
-        })
+        let name = run.doubtful().as_ref().and_then(quoted)?;
+        Some(format!("whether the guard of {name} crosses"))
     }
 
     /// The name of an event, if it is none of a start or an ending.

@@ -4,9 +4,11 @@
 mod digits;
 mod draw;
 mod ending;
+mod left_open;
 mod no_progress;
 mod precision;
 mod progress;
+mod row;
 mod rows;
 mod samples;
 mod sizes;

@@ -2,6 +2,7 @@
 //! digits.
 
 use super::Arguments;
+use super::left_open::LeftOpen;
 use super::progress::RunEnd;
 use super::rows::{Limits, Outcome, Rows};
 use crate::cli::shared::long_work::Bar;
@@ -45,7 +46,7 @@ impl<'a> Precision<'a> {
 
     /// Does some work, in more bits where fewer do not suffice.
     pub(super) fn each(&self, work: &mut impl InBits) -> Result<RunEnd> {
-        let mut done = 0;
+        let mut left = LeftOpen::default();
         let steps = [
             Self::within::<DoubleDouble>,
             Self::within::<Bits212>,
@@ -55,18 +56,18 @@ impl<'a> Precision<'a> {
             Self::within::<Bits3392>,
         ];
         for step in steps {
-            match step(self, done, work)? {
+            match step(self, &left, work)? {
                 Outcome::Ended(end) => return Ok(end),
-                Outcome::MoreBits(rows) => done = rows,
+                Outcome::MoreBits(more) => left = more,
             }
         }
         Ok(RunEnd::default())
     }
 
-    fn within<T: Arithmetic>(&self, done: usize, work: &mut impl InBits) -> Result<Outcome> {
-        let solver = T::solver(self.system, self.is_backward)?;
+    fn within<T: Arithmetic>(&self, left: &LeftOpen, work: &mut impl InBits) -> Result<Outcome> {
+        let solver = &T::solver(self.system, self.is_backward)?;
         let may_go_on = 2 * T::BITS <= self.most;
-        let Self { system, digits, limits, bar, .. } = *self;
-        work.run(&Rows { system, solver: &solver, digits, limits, bar, done, may_go_on })
+        let Self { system, is_backward, digits, limits, bar, .. } = *self;
+        work.run(&Rows { system, solver, is_backward, digits, limits, bar, left, may_go_on })
     }
 }

@@ -1,17 +1,21 @@
 //! The rows of `events`, made one by one: a long run costs no memory.
 
 use super::digits::{has_digits, proved, significant};
+use super::left_open::{LastRow, LeftOpen};
 use super::progress::{Passed, RunEnd};
+use super::row::EventRow;
 use super::sizes::Sizes;
 use crate::cli::shared::long_work::Bar;
 use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};
 use percuss::affine::{Arithmetic, EnclosedRun, Ending, Event, Solver, System, Time, What};
 use percuss::number::{Bound, Number};
-use serde::Serialize;
 
 /// The number of rows between two updates of the progress bar.
 const RARELY: usize = 64;
+
+/// The event of a last row at which what comes next is not decided.
+pub(super) const UNDECIDED: &str = "undecided";
 
 /// A time of fewer digits is said to have few.
 const FEW: usize = 6;
@@ -20,12 +24,13 @@ const FEW: usize = 6;
 pub(super) struct Rows<'a, T: Number> {
     pub(super) system: &'a System,
     pub(super) solver: &'a Solver<T>,
+    pub(super) is_backward: bool,
     pub(super) digits: usize,
     pub(super) limits: Limits,
     /// The progress of the run, where it is shown.
     pub(super) bar: Option<&'a Bar>,
-    /// The number of rows that fewer bits have decided: they are not given out again.
-    pub(super) done: usize,
+    /// What fewer bits have decided, and what they knew of the rest.
+    pub(super) left: &'a LeftOpen,
     /// Whether more bits may go on where these do not decide, or have too few digits.
     pub(super) may_go_on: bool,
 }
@@ -34,8 +39,8 @@ pub(super) struct Rows<'a, T: Number> {
 pub(super) enum Outcome {
     /// The run has ended.
     Ended(RunEnd),
-    /// More bits are needed after so many rows.
-    MoreBits(usize),
+    /// More bits are needed, for what is left.
+    MoreBits(LeftOpen),
 }
 
 /// The limits of a run.
@@ -49,17 +54,6 @@ pub(super) struct Limits {
     pub(super) most: Option<usize>,
 }
 
-/// Numbers are texts, because a reader's f64 would not hold their digits.
-#[derive(Serialize)]
-pub(super) struct EventRow {
-    pub(super) n: usize,
-    pub(super) time: String,
-    pub(super) event: String,
-    pub(super) mode: String,
-    #[serde(serialize_with = "in_order")]
-    pub(super) state: Vec<(String, String)>,
-}
-
 /// Takes a row, and the event that it is of, which is made in 106 bits if it is asked for.
 pub(super) type Taker<'a> =
     &'a mut dyn FnMut(EventRow, &dyn Fn() -> Event<DoubleDouble>) -> Result<()>;
@@ -71,8 +65,8 @@ impl<T: Arithmetic> Rows<'_, T> {
         let (mut end, mut passed) = (RunEnd::default(), Passed::default());
         let mut last = run.start();
         let mut sizes = Sizes::of(&last);
-        if self.needs_more_bits(&*run, &last, &mut sizes) && self.done == 0 {
-            return Ok(Outcome::MoreBits(0));
+        if self.needs_more_bits(&*run, &last, &mut sizes) && self.left.rows == 0 {
+            return Ok(Outcome::MoreBits(self.leave(&*run, 0, None)));
         }
         self.give(0, &last, |_| String::new(), take)?;
         while self.limits.events.is_none_or(|wanted| passed.count < wanted) {
@@ -83,10 +77,17 @@ impl<T: Arithmetic> Rows<'_, T> {
                 break;
             }
             let row = passed.count + 1;
-            if self.needs_more_bits(&*run, &event, &mut sizes) && row >= self.done {
-                return Ok(Outcome::MoreBits(row));
+            let own = self.last_row(row, &event)?;
+            let needs_more_bits = self.needs_more_bits(&*run, &event, &mut sizes);
+            if needs_more_bits && (row >= self.left.rows || own.is_some()) {
+                return Ok(Outcome::MoreBits(self.leave(&*run, row, own)));
             }
             if !self.passes(&event, &mut passed, &mut end) {
+                break;
+            }
+            if let Some(LastRow { row, event }) = own.map(|it| self.latest(it)) {
+                self.is_undecided(&row.time, &mut end);
+                take(row, &|| event.clone())?;
                 break;
             }
             self.give(row, &event, |_| self.name(&event, &passed, &mut end), take)?;
@@ -104,11 +105,40 @@ impl<T: Arithmetic> Rows<'_, T> {
         name: impl FnOnce(&Event<T>) -> String,
         take: Taker<'_>,
     ) -> Result<()> {
-        if n < self.done {
+        if n < self.left.rows {
             return Ok(());
         }
         let row = self.row(n, event, name(event))?;
         take(row, &|| narrowed(event))
+    }
+
+    /// The last row of a run that ends undecided with this event.
+    fn last_row(&self, n: usize, event: &Event<T>) -> Result<Option<LastRow>> {
+        if event.what != What::End(Ending::Undecided) {
+            return Ok(None);
+        }
+        let row = self.row(n, event, UNDECIDED.to_owned())?;
+        Ok(Some(LastRow { row, event: narrowed(event) }))
+    }
+
+    /// The last row of this run, or that of fewer bits where it is later: more bits may know less.
+    fn latest(&self, own: LastRow) -> LastRow {
+        LastRow::latest(own, self.left.last.clone(), self.is_backward)
+    }
+
+    /// What this run leaves to more bits after so many rows, with the last one of a run that is
+    /// undecided.
+    pub(super) fn leave(
+        &self,
+        run: &dyn EnclosedRun<T>,
+        rows: usize,
+        own: Option<LastRow>,
+    ) -> LeftOpen {
+        LeftOpen {
+            rows: rows.max(self.left.rows),
+            last: own.map(|it| self.latest(it)).or_else(|| self.left.last.clone()),
+            open: self.open(run).or_else(|| self.left.open.clone()),
+        }
     }
 
     /// Whether more bits are to go on from an event: they may, and these do not decide it, or have
@@ -234,14 +264,6 @@ fn narrowed<T: Number>(event: &Event<T>) -> Event<DoubleDouble> {
     Event { what, time, state, mode: event.mode, errors: None }
 }
 
-/// Writes the states in the order of the file.
-pub(super) fn in_order<S: serde::Serializer>(
-    state: &[(String, String)],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(state.iter().map(|(name, cell)| (name, cell)))
-}
-
 #[cfg(test)]
 #[allow(clippy::expect_used, reason = "a panic is a failed test")]
 mod tests {
@@ -254,9 +276,10 @@ mod tests {
         let system = System::parse("bouncing-ball", text).expect("accepted");
         let solver = Solver::<DoubleDouble>::new(&system).expect("prepared");
         let limits = Limits { until: 1e9, events: None, most: None };
-        let (done, may_go_on) = (0, false);
-        let (system, solver) = (&system, &solver);
-        let rows = Rows { system, solver, digits: 17, limits, bar: None, done, may_go_on };
+        let (left, may_go_on) = (&LeftOpen::default(), false);
+        let (system, solver, is_backward) = (&system, &solver, false);
+        let rows =
+            Rows { system, solver, is_backward, digits: 17, limits, bar: None, left, may_go_on };
         let event = |time: f64, error: f64| Event {
             what: What::Watch(0, 0),
             time: Time::<DoubleDouble> {

@@ -1,7 +1,8 @@
 //! The rows of `events --samples K`: the state at equal steps of the time, not at events.
 
 use super::progress::{Passed, RunEnd};
-use super::rows::{Limits, Outcome, Rows, in_order};
+use super::row::in_order;
+use super::rows::{Limits, Outcome, Rows};
 use super::sizes::Sizes;
 use anyhow::Result;
 use percuss::affine::{Arithmetic, EnclosedRun, Ending, Event, Rational, Time, What};
@@ -36,14 +37,14 @@ impl<T: Arithmetic> Rows<'_, T> {
             let Some(sample) = sampled else {
                 let is_undecided = run.ending() == Some(&Ending::Undecided);
                 if is_undecided && self.may_go_on && !run.is_exhausted() {
-                    return Ok(Outcome::MoreBits(row.max(self.done)));
+                    return Ok(Outcome::MoreBits(self.leave(&*run, row, None)));
                 }
                 break;
             };
             let needs_more_bits = self.needs_more_bits(&*run, &sample, &mut sizes);
-            if row >= self.done {
+            if row >= self.left.rows {
                 if needs_more_bits {
-                    return Ok(Outcome::MoreBits(row));
+                    return Ok(Outcome::MoreBits(self.leave(&*run, row, None)));
                 }
                 take(self.sample(&sample)?)?;
             }

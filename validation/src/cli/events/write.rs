@@ -2,7 +2,8 @@
 
 use super::precision::{InBits, Precision};
 use super::progress::RunEnd;
-use super::rows::{EventRow, Outcome, Rows};
+use super::row::EventRow;
+use super::rows::{Outcome, Rows};
 use super::samples::SampleRow;
 use crate::cli::shared::output::json_value;
 use anyhow::Result;
