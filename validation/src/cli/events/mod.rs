@@ -61,7 +61,7 @@ pub(super) struct Arguments {
     samples: Option<u32>,
     /// Stops a run that has more events, with a last row `stopped` [default: 1000000, none with
     /// --events]
-    #[arg(long, value_name = "N", value_parser = max_events, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<usize>(1, 1_000_000_000), allow_hyphen_values = true)]
     max_events: Option<usize>,
     /// The most bits that a run may take: it begins with 106 and takes twice as many where these
     /// do not decide or have too few digits [default: 3392]
@@ -123,13 +123,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let shown = draw::shown(&system, arguments.states.as_deref())?;
     let destination = arguments.output.destination();
     let bar = long_work::run_bar(!format.is_picture() && destination.is_terminal());
-    let precision = Precision::of(arguments, &system, limits, bar.as_ref());
+    let precision = Precision::of(arguments, &system, limits, bar.as_ref())?;
     let mut end = RunEnd::default();
     if format.is_picture() {
         let run;
         (run, end) = drawn(&precision)?;
-        let solver = DoubleDouble::solver(&system, arguments.backward)?;
-        draw::write(&solver, &run, &shown, &arguments.output, format)?;
+        draw::write(&precision.solver, &run, &shown, &arguments.output, format)?;
     } else {
         destination.write(|out| {
             end = match format {
@@ -160,14 +159,6 @@ fn limits(arguments: &Arguments, system: &System, time: f64) -> Result<Limits> {
     };
     let usual = arguments.events.is_none().then_some(USUAL_MAX_EVENTS);
     Ok(Limits { until, events: arguments.events, most: arguments.max_events.or(usual) })
-}
-
-/// A number of events, which may have an exponent.
-fn max_events(text: &str) -> Result<usize, String> {
-    const MOST: f64 = 1e9;
-    let number = text.parse::<f64>().ok().filter(|it| it.fract() == 0.0);
-    let number = number.filter(|it| (1.0..=MOST).contains(it));
-    number.map(|it| it as usize).ok_or_else(|| "accepted is an integer, 1 to 1e9".to_owned())
 }
 
 /// The start and all events, for a picture.

@@ -8,7 +8,7 @@ use super::rows::{Limits, Outcome, Rows};
 use crate::cli::shared::long_work::Bar;
 use crate::truth::DoubleDouble;
 use anyhow::Result;
-use percuss::affine::{Arithmetic, System};
+use percuss::affine::{Arithmetic, Solver, System};
 use percuss::affine::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 
 /// The fewest and the most bits of an arithmetic.
@@ -23,6 +23,8 @@ pub(super) struct Precision<'a> {
     pub(super) bar: Option<&'a Bar>,
     /// The most bits that are used.
     pub(super) most: u32,
+    /// The solver in 106 bits, with which each run begins, and which a picture needs too.
+    pub(super) solver: Solver<DoubleDouble>,
 }
 
 /// Work that is done in one arithmetic after the other, as long as more bits are needed.
@@ -38,17 +40,19 @@ impl<'a> Precision<'a> {
         system: &'a System,
         limits: Limits,
         bar: Option<&'a Bar>,
-    ) -> Self {
+    ) -> Result<Self> {
         let digits = if arguments.digits.as_deref() == Some("25") { 25 } else { 17 };
         let most = arguments.max_bits.unwrap_or(*BITS.end() as u32);
-        Self { system, is_backward: arguments.backward, digits, limits, bar, most }
+        let is_backward = arguments.backward;
+        let solver = DoubleDouble::solver(system, is_backward)?;
+        Ok(Self { system, is_backward, digits, limits, bar, most, solver })
     }
 
     /// Does some work, in more bits where fewer do not suffice.
     pub(super) fn each(&self, work: &mut impl InBits) -> Result<RunEnd> {
         let mut left = LeftOpen::default();
         let steps = [
-            Self::within::<DoubleDouble>,
+            Self::in_106_bits,
             Self::within::<Bits212>,
             Self::within::<Bits424>,
             Self::within::<Bits848>,
@@ -64,8 +68,20 @@ impl<'a> Precision<'a> {
         Ok(RunEnd::default())
     }
 
+    fn in_106_bits(&self, left: &LeftOpen, work: &mut impl InBits) -> Result<Outcome> {
+        self.by(&self.solver, left, work)
+    }
+
     fn within<T: Arithmetic>(&self, left: &LeftOpen, work: &mut impl InBits) -> Result<Outcome> {
-        let solver = &T::solver(self.system, self.is_backward)?;
+        self.by(&T::solver(self.system, self.is_backward)?, left, work)
+    }
+
+    fn by<T: Arithmetic>(
+        &self,
+        solver: &Solver<T>,
+        left: &LeftOpen,
+        work: &mut impl InBits,
+    ) -> Result<Outcome> {
         let may_go_on = 2 * T::BITS <= self.most;
         let Self { system, is_backward, digits, limits, bar, .. } = *self;
         work.run(&Rows { system, solver, is_backward, digits, limits, bar, left, may_go_on })
