@@ -16,6 +16,7 @@ mod oscillator;
 mod random;
 mod sizes;
 mod spectra;
+mod still;
 mod tables;
 mod together;
 mod touches;

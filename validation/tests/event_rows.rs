@@ -207,3 +207,37 @@ fn a_state_that_is_called_as_a_column_is_told_apart() {
     assert_eq!(header(&[]), "n,time,event,mode,state.n,state.time,state.event,x");
     assert_eq!(header(&["--samples", "2"]), "time,mode,state.n,state.time,state.event,x");
 }
+
+/// exp(-t) touches exp(-2 t) + 1/4 at the logarithm of two, which no bits decide: the search in the
+/// most bits ends before it meets the guard that fewer bits name.
+#[test]
+fn a_guard_that_fewer_bits_leave_open_is_named() {
+    let touch = "schema = 1\nname = \"touch\"\nstates = [\"a\", \"b\"]\n[[mode]]\nname = \"only\"\n\
+                 equations = [\"a' = -a\", \"b' = -2*b\"]\n[[mode.watch]]\nname = \"touched\"\n\
+                 guard = \"4*a > 4*b + 1\"\n[start]\nmode = \"only\"\na = 1\nb = 1\n";
+    let (code, rows, said) = events(touch, &["--until", "1"]);
+    assert_eq!((code, rows.len(), rows[1][2].as_str()), (Some(1), 2, "undecided"), "{said}");
+    assert!(rows[1][1].starts_with("0.6931471805599"), "{rows:?}");
+    assert!(said.contains("not decided by 3392 bits"), "{said}");
+    assert!(said.contains("leaves open whether the guard of \"touched\" crosses"), "{said}");
+    assert_eq!(said.lines().count(), 2, "{said}");
+}
+
+/// x = 3 + t - t^2 is zero before the start at (1 - sqrt(13))/2, and so is w = 2 x.
+#[test]
+fn a_boundary_reached_back_in_time_has_its_zeros() {
+    let thrown = "schema = 1\nname = \"thrown\"\nstates = [\"x\", \"w\", \"v\"]\n[[mode]]\nname = \"up\"\n\
+                  equations = [\"x' = v\", \"w' = 2*v\", \"v' = -2\"]\n[[mode.until]]\n\
+                  name = \"ground\"\nguard = \"x < 0\"\n[start]\nmode = \"up\"\nx = 3\nw = 6\nv = 1\n";
+    let (code, rows, said) = events(thrown, &["--until", "-5", "--backward"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(
+        rows[1],
+        ["1", "-1.3027756377319946", "leaves-domain", "up", "0", "0", "3.6055512754639893"]
+    );
+    // A start on the boundary leaves at once, and its zeros are those of the row before.
+    let ground = thrown.replace("x = 3\nw = 6\nv = 1", "x = 0\nw = 0\nv = 1");
+    let (code, rows, said) = events(&ground, &["--until", "-5", "--backward"]);
+    assert_eq!((code, rows[1][2].as_str()), (Some(0), "leaves-domain"), "{said}");
+    assert_eq!(rows[1][4..6], ["0", "0"]);
+}

@@ -78,6 +78,25 @@ impl Cause {
     }
 }
 
+impl Cause {
+    /// Whether the cause is the guards of events that it names.
+    pub(super) fn names_a_guard(&self) -> bool {
+        !matches!(self, Self::Guard { event: None, .. } | Self::TooLarge { .. })
+    }
+
+    /// The cause, with the guards that another one names where this search names none.
+    pub(super) fn or_named(self, other: Option<&Self>) -> Self {
+        let Self::Guard { event: None, searched, .. } = self else { return self };
+        match other {
+            Some(Self::Guard { event, .. }) => {
+                Self::Guard { event: event.clone(), resolution: None, searched }
+            }
+            Some(Self::Order { events, .. }) => Self::Order { events: events.clone(), searched },
+            _ => self,
+        }
+    }
+}
+
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let came = |searched: &f64| {

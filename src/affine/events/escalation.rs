@@ -123,6 +123,9 @@ trait Level<'a> {
     /// Whether more bits may decide the step, or give the digits that are wanted: asked once.
     fn needs_more_bits(&mut self, digits: usize) -> bool;
 
+    /// Whether the step is an ending that is not decided.
+    fn is_undecided(&self) -> bool;
+
     /// The step, as an event.
     fn event(&self) -> Option<Event<'a, Proved>>;
 
@@ -179,6 +182,11 @@ impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
         }
     }
 
+    fn is_undecided(&self) -> bool {
+        let undecided = engine::What::End(engine::Ending::Undecided);
+        self.step.as_ref().is_some_and(|it| it.event.what == undecided)
+    }
+
     fn event(&self) -> Option<Event<'a, Proved>> {
         let Step { event, is_sample } = self.step.as_ref()?;
         Some(self.proved(event, if *is_sample { Kind::Sample } else { Kind::of(&event.what) }))
@@ -210,6 +218,19 @@ struct Escalating<'a> {
     given: Count,
     /// The steps that fewer bits have given out, and that are not given out again.
     repeated: Count,
+    /// The number of steps that the run in the present arithmetic has passed.
+    passed: u64,
+    left: LeftOpen<'a>,
+}
+
+/// What fewer bits knew of a run that they left undecided: more bits may know less of its motion,
+/// and run out of work before they meet the guard that fewer of them left open.
+#[derive(Default)]
+struct LeftOpen<'a> {
+    /// The latest of their endings, after so many events.
+    ending: Option<(u64, Event<'a, Proved>)>,
+    /// The last cause that names a guard.
+    cause: Option<Cause>,
 }
 
 /// A number of events and samples. They are counted apart, because rounding may change the order of
@@ -238,9 +259,11 @@ impl<'a> Escalating<'a> {
     fn begin(solver: &'a ProvedSolver, request: &Request) -> Result<Self, SystemError> {
         let run = solver.begin(0, request)?;
         let (given, repeated) = (Count::default(), Count::default());
-        let mut own = Self { solver, request: request.clone(), level: 0, run, given, repeated };
-        let has_samples = request.samples.is_some();
-        while own.may_go_on() && !has_samples && own.run.start_needs_more_bits(request.digits) {
+        let request = request.clone();
+        let left = LeftOpen::default();
+        let mut own = Self { solver, request, level: 0, run, given, repeated, passed: 0, left };
+        let has_samples = own.request.samples.is_some();
+        while own.may_go_on() && !has_samples && own.run.start_needs_more_bits(own.request.digits) {
             own.raise();
         }
         Ok(own)
@@ -250,11 +273,26 @@ impl<'a> Escalating<'a> {
         BITS.get(self.level + 1).is_some_and(|bits| *bits <= self.request.most_bits)
     }
 
+    /// Keeps the ending at which these bits are left undecided, if it is later than that of fewer.
+    fn leave_open(&mut self) {
+        let Some(event) = self.run.event() else { return };
+        let is_later = |(passed, other): &(u64, Event<'_, Proved>)| {
+            let elapsed = other.time().midpoint() - event.time().midpoint();
+            let elapsed = if self.solver.backward { -elapsed } else { elapsed };
+            (*passed, elapsed) > (self.passed, 0.0)
+        };
+        if !self.left.ending.as_ref().is_some_and(is_later) {
+            self.left.ending = Some((self.passed, event));
+        }
+        let cause = self.run.cause().filter(Cause::names_a_guard);
+        self.left.cause = cause.or(self.left.cause.take());
+    }
+
     /// Begins again in twice as many bits.
     fn raise(&mut self) {
         // A system and a start that one arithmetic accepts are accepted by each.
         if let Ok(run) = self.solver.begin(self.level + 1, &self.request) {
-            (self.run, self.repeated) = (run, self.given);
+            (self.run, self.repeated, self.passed) = (run, self.given, 0);
         }
         self.level += 1;
     }
@@ -269,12 +307,21 @@ impl<'a> Running<'a, Proved> for Escalating<'a> {
         while let Some(is_sample) = self.run.advance() {
             // It is asked of steps that are repeated, too, which have the sizes of the states.
             let needs_more = self.may_go_on() && self.run.needs_more_bits(self.request.digits);
-            if self.repeated.take(is_sample) {
-                continue;
+            let is_undecided = self.run.is_undecided();
+            if is_undecided {
+                self.leave_open();
+            } else {
+                self.passed += 1;
+                if self.repeated.take(is_sample) {
+                    continue;
+                }
             }
             if needs_more {
                 self.raise();
                 continue;
+            }
+            if is_undecided {
+                return self.left.ending.take().map(|(_, event)| event);
             }
             *self.given.of(is_sample) += 1;
             return self.run.event();
@@ -283,7 +330,8 @@ impl<'a> Running<'a, Proved> for Escalating<'a> {
     }
 
     fn cause(&self) -> Option<Cause> {
-        self.run.cause()
+        let own = self.run.cause()?;
+        Some(own.or_named(self.left.cause.as_ref()))
     }
 
     fn bits(&self) -> u32 {

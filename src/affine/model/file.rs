@@ -65,7 +65,7 @@ pub(super) struct Tables {
 #[serde(deny_unknown_fields, expecting = "a table, { omega = ..., phi = ... }")]
 pub(super) struct ForcingTable {
     pub omega: Spanned<Scalar>,
-    pub phi: Spanned<Scalar>,
+    pub phi: Option<Spanned<Scalar>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

@@ -26,12 +26,12 @@ impl<T: Number> Run<'_, T> {
         let mode = self.graph.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
         let Some((time, state)) = self.present() else { return self.end(Ending::Undecided) };
-        let zero = self.zero_guards(mode, guards, &state);
+        let zero = self.zero_guards(guards, &state);
         let point = zero.point;
         // A guard with a rational point tells more about the others than the first of them does.
         let first = point.map_or(guards & guards.wrapping_neg(), |(guard, _)| 1 << guard);
         let first = ZeroGuards { guards: first, point };
-        let exactly_tied = self.exactly_tied(mode, guards.trailing_zeros() as usize);
+        let exactly_tied = self.exactly_tied(mode, first);
         let tied = self.graph.tied(self.node, first, false) | exactly_tied;
         if guards & !tied != 0 {
             self.work.undecidable += 1;
@@ -53,12 +53,12 @@ impl<T: Number> Run<'_, T> {
             }
             return;
         }
+        let guards = self.graph.tied(self.node, zero, false) | exactly_tied;
+        let zero = self.zero_guards(guards, &state);
         if self.solver.backward {
             (self.entered, self.state, self.enclosure) = (time, state, errors);
-            return self.end(Ending::LeavesDomain);
+            return self.leave(zero, false);
         }
-        let guards = self.graph.tied(self.node, zero, false) | exactly_tied;
-        let zero = self.zero_guards(mode, guards, &state);
         let until = ending.trailing_zeros() as usize;
         self.enclosure = errors;
         self.fire(Firing { until, zero, at_entry: false }, time, state);

@@ -5,7 +5,9 @@ use super::Run;
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{StartPoint, System};
-use crate::affine::zeros::exact::{Chain, Entries, ExactMode, Fate, Instant, entries_after, solve};
+use crate::affine::zeros::circle::Circle;
+use crate::affine::zeros::exact::{Chain, Entries, Fate, Instant};
+use crate::affine::zeros::exact_mode::{ExactMode, entries_after, solve};
 use crate::affine::zeros::graph::ZeroGuards;
 use crate::numeric::number::Number;
 
@@ -15,6 +17,9 @@ pub(super) struct ExactRun {
     entries: Entries,
     /// For each guard of the mode, its future on the segment as far as it is known.
     fates: Vec<Option<Fate>>,
+    /// For each guard of the mode that is one of the forcing angle and a constant on the segment:
+    /// the constant may be what stands still there.
+    circles: Vec<Option<Circle>>,
 }
 
 impl ExactRun {
@@ -31,14 +36,16 @@ impl ExactRun {
             entries.push(zero_angle.then_some(Rational::ZERO));
         }
         entries.push(Some(Rational::ONE));
-        Self { entries, fates: Vec::new() }
+        Self { entries, fates: Vec::new(), circles: Vec::new() }
     }
 
     /// Enters a mode: the future of its guards.
     pub fn enter(&mut self, mode: &ExactMode) {
-        let Self { entries, fates } = self;
+        let Self { entries, fates, circles } = self;
         fates.clear();
         fates.extend(mode.guards.iter().map(|it| it.fate(entries)));
+        circles.clear();
+        circles.extend(mode.turning.iter().map(|it| it.as_ref()?.circle(entries)));
     }
 
     /// The future of a guard, as far as it is known.
@@ -48,19 +55,14 @@ impl ExactRun {
 }
 
 impl<T: Number> Run<'_, T> {
-    /// Whether a guard of the forcing angle alone never crosses by the model: it stays inside, or
-    /// is watched and keeps its sign.
+    /// Whether a guard of the forcing angle and a constant never crosses by the model: it stays
+    /// inside, or is watched and keeps its sign.
     pub(super) fn never_crosses(&self, mode: usize, guard: usize) -> bool {
-        if self.exact.is_none() {
+        let Some(circle) = self.exact.as_ref().and_then(|it| it.circles[guard].as_ref()) else {
             return false;
-        }
-        let Some(circle) = &self.solver.exact_mode(mode).circles[guard] else { return false };
-        let own = &self.solver.system.modes[mode];
-        circle.keeps_sign
-            && own
-                .until
-                .get(guard)
-                .is_none_or(|it| it.guard.last().is_some_and(|c| *c < Rational::ZERO))
+        };
+        let is_watched = guard >= self.solver.system.modes[mode].until.len();
+        circle.keeps_sign && (is_watched || circle.is_below)
     }
 
     /// The instant of a guard's crossing at which the search has arrived, if it is known exactly.
@@ -71,20 +73,25 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// The guards that are zero at the very instant at which one of them crosses, as bits.
-    pub(super) fn exactly_tied(&self, mode: usize, guard: usize) -> u64 {
+    pub(super) fn exactly_tied(&self, mode: usize, first: ZeroGuards) -> u64 {
         let Some(exact) = &self.exact else { return 0 };
-        let Some(instant) = self.instant(mode, guard) else { return 0 };
-        let is_zero =
-            |chain: &Chain| chain.at(&exact.entries, Some(&instant)).is_some_and(|it| it.is_zero());
+        let instant = self.instant(mode, first.guards.trailing_zeros() as usize);
+        let entries = self.at_crossing(exact, mode, first, instant.as_ref());
+        let is_zero = |chain: &Chain| {
+            let value = chain.value(&entries);
+            value
+                .or_else(|| chain.at(&exact.entries, instant.as_ref()))
+                .is_some_and(|it| it.is_zero())
+        };
         let guards = self.solver.exact_mode(mode).guards.iter().enumerate();
         guards.filter(|(_, it)| is_zero(it)).fold(0, |mask, (n, _)| mask | 1 << n)
     }
 
     /// Guards that are zero at a state, with the rational point of the circle at which one of them
     /// is.
-    pub(super) fn zero_guards(&self, mode: usize, guards: u64, state: &Vector<T>) -> ZeroGuards {
-        let point = self.solver.phase().filter(|_| self.exact.is_some()).and_then(|at| {
-            let circles = self.solver.exact_mode(mode).circles.iter().enumerate();
+    pub(super) fn zero_guards(&self, guards: u64, state: &Vector<T>) -> ZeroGuards {
+        let point = self.solver.phase().zip(self.exact.as_ref()).and_then(|(at, exact)| {
+            let circles = exact.circles.iter().enumerate();
             circles.filter(|(n, _)| guards >> n & 1 == 1).find_map(|(n, circle)| {
                 let [cos, sin] = [state[at].to_f64(), state[at + 1].to_f64()];
                 Some((n, circle.as_ref()?.nearest(cos, sin)?))
@@ -104,13 +111,23 @@ impl<T: Number> Run<'_, T> {
         if at_entry {
             return Some(exact.entries.clone());
         }
-        let own = self.solver.exact_mode(mode);
         let is_zero = |n: &usize| zero.guards >> n & 1 == 1;
-        let instant = (0..own.guards.len()).filter(is_zero).find_map(|n| self.instant(mode, n));
-        let mut entries = own.entries_at(&exact.entries, instant.as_ref());
+        let guards = 0..self.solver.exact_mode(mode).guards.len();
+        let instant = guards.filter(is_zero).find_map(|n| self.instant(mode, n));
+        Some(self.at_crossing(exact, mode, zero, instant.as_ref()))
+    }
+
+    /// The exact entries where these guards are zero, at an instant that may be known.
+    fn at_crossing(
+        &self,
+        exact: &ExactRun,
+        mode: usize,
+        zero: ZeroGuards,
+        instant: Option<&Instant>,
+    ) -> Entries {
+        let mut entries = self.solver.exact_mode(mode).entries_at(&exact.entries, instant);
         if let (Some(at), Some((guard, point))) = (self.solver.phase(), zero.point)
-            && let Some(circle) = &own.circles[guard]
-            && let Some(points) = &circle.points
+            && let Some(points) = exact.circles[guard].as_ref().and_then(|it| it.points.as_ref())
         {
             let [cos, sin] = points[point].clone();
             (entries[at], entries[at + 1]) = (Some(cos), Some(sin));
@@ -118,8 +135,9 @@ impl<T: Number> Run<'_, T> {
         let system = &self.solver.system.modes[mode];
         let guards = system.until.iter().map(|it| &it.guard);
         let guards = guards.chain(system.watch.iter().map(|it| &it.guard)).enumerate();
-        guards.filter(|(n, _)| is_zero(n)).for_each(|(_, row)| solve(row, &mut entries));
-        Some(entries)
+        let guards = guards.filter(|(n, _)| zero.guards >> n & 1 == 1);
+        guards.for_each(|(_, row)| solve(row, &mut entries));
+        entries
     }
 
     /// The exact entries after the reset of an event.

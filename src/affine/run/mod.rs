@@ -209,16 +209,23 @@ impl<'a, T: Number> Run<'a, T> {
         self.ends.passed = Passed::none();
     }
 
-    /// Ends the run before its horizon: at an instant of its own, which is then the entry, or at
-    /// that of the last event.
+    /// Ends the run before its horizon, at the entry or at the last event.
     fn end(&mut self, ending: Ending<T>) {
+        if ending == Ending::LeavesDomain {
+            return self.leave(ZeroGuards { guards: 0, point: None }, true);
+        }
         let what = What::End(ending);
-        let event = if ending == Ending::LeavesDomain {
-            let errors = self.enclosure.as_ref().map(|it| self.errors(it));
-            Event { errors, ..self.event(what, self.entered, &self.state) }
-        } else {
-            Event { what, ..self.queue.back().unwrap_or(&self.last).clone() }
-        };
+        let event = Event { what, ..self.queue.back().unwrap_or(&self.last).clone() };
+        self.finish(event);
+    }
+
+    /// Ends a run that leaves its mode back in time, at the entry or where these guards are zero.
+    fn leave(&mut self, zero: ZeroGuards, at_entry: bool) {
+        let mut event = self.event(What::End(Ending::LeavesDomain), self.entered, &self.state);
+        if let Some(errors) = &self.enclosure {
+            event.errors = Some(self.errors(errors));
+            event.set_zeros(self.graph.zero_entries(self.node, zero, at_entry));
+        }
         self.finish(event);
     }
 

@@ -18,7 +18,7 @@ use crate::affine::guards::row::ModalRow;
 use crate::affine::modal;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, System};
-use crate::affine::zeros::exact::ExactMode;
+use crate::affine::zeros::exact_mode::ExactMode;
 use crate::affine::zeros::graph::ZeroGraph;
 use crate::numeric::number::{Bound, Number};
 use event::Event;

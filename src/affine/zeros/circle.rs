@@ -1,4 +1,4 @@
-//! Guards of the forcing angle alone: a cos theta + b sin theta + c.
+//! Guards of the forcing angle: a cos theta + b sin theta + c.
 //!
 //! Such a guard changes its sign where a^2 + b^2 > c^2, at two points of the circle. Where the root
 //! of a^2 + b^2 - c^2 is rational, so are these points, and every other guard of the angle that
@@ -9,9 +9,11 @@ use crate::affine::model::system::Row;
 use dashu::base::{SquareRoot, UnsignedAbs};
 use dashu::integer::UBig;
 
-/// A guard of the forcing angle alone.
+/// A guard of the forcing angle and a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Circle {
+    /// Whether the constant is negative: a guard that never changes its sign is so inside.
+    pub is_below: bool,
     /// Whether the guard never changes its sign: it may touch zero.
     pub keeps_sign: bool,
     /// The two points (cos, sin) at which the guard is zero, if they are rational.
@@ -23,8 +25,13 @@ impl Circle {
     pub fn of(guard: &Row, states: usize) -> Option<Self> {
         let (own, angle) = guard.split_at(states);
         let [a, b, c] = angle else { return None };
-        let turns = !(a.is_zero() && b.is_zero());
-        if !turns || !own.iter().all(Rational::is_zero) {
+        own.iter().all(Rational::is_zero).then(|| Self::with([a, b], c))?
+    }
+
+    /// The guard of these factors of cos theta and sin theta and this constant; none where both
+    /// factors are zero.
+    pub fn with([a, b]: [&Rational; 2], c: &Rational) -> Option<Self> {
+        if a.is_zero() && b.is_zero() {
             return None;
         }
         let square = a * a + b * b;
@@ -34,7 +41,7 @@ impl Circle {
                 |root: &Rational| [(-a * c - b * root) / &square, (-b * c + a * root) / &square];
             [point(&root), point(&-&root)]
         });
-        Some(Self { keeps_sign: rest <= Rational::ZERO, points })
+        Some(Self { is_below: *c < Rational::ZERO, keeps_sign: rest <= Rational::ZERO, points })
     }
 
     /// The number of the rational point that is nearest to an angle, if the two are well apart.

@@ -6,12 +6,9 @@
 //! it may cross where the cosine is rational. Without this no number of bits would tell a touch
 //! from a crossing, or which of two guards that cross at one instant is the first.
 
-use super::circle::{Circle, root};
+use super::circle::root;
 use crate::affine::model::rational::Rational;
-use crate::affine::model::system::{Mode, Row, Successor, System};
-
-/// The most bits of a rational entry: what is longer is not followed any more.
-const LONGEST: usize = 4096;
+use crate::affine::model::system::Row;
 
 /// The rows w, w M, w M^2, ... of a guard, as far as they are needed.
 #[derive(Clone, Debug)]
@@ -76,6 +73,17 @@ impl Chain {
         self.rows.iter().map(|row| product(row, entries)).collect()
     }
 
+    /// The row's value, if all entries that it needs are known.
+    pub fn value(&self, entries: &Entries) -> Option<Rational> {
+        product(&self.rows[0], entries)
+    }
+
+    /// The row's value on the whole segment, if it is known that it stands still.
+    pub fn still(&self, entries: &Entries) -> Option<Rational> {
+        let values = self.values(entries)?;
+        values[1..].iter().all(Rational::is_zero).then(|| values[0].clone())
+    }
+
     /// The order and the sign of the first derivative that is not zero, the value included: none
     /// if an entry is not known, and none inside if all are zero.
     pub fn begin(&self, entries: &Entries) -> Option<Option<(usize, bool)>> {
@@ -117,10 +125,10 @@ impl Chain {
     /// The row's value at an instant after the entry, where all that it needs is known: of what
     /// stands still no instant is needed.
     pub fn at(&self, entries: &Entries, instant: Option<&Instant>) -> Option<Rational> {
-        let values = self.values(entries)?;
-        if values[1..].iter().all(Rational::is_zero) {
-            return values.into_iter().next();
+        if let Some(value) = self.still(entries) {
+            return Some(value);
         }
+        let values = self.values(entries)?;
         match (&self.kind, instant) {
             (Kind::Polynomial, Some(Instant::Time(time))) => {
                 let orders = values.iter().enumerate().rev();
@@ -137,68 +145,8 @@ impl Chain {
     }
 }
 
-/// A mode's rows in its exact motion.
-#[derive(Clone, Debug)]
-pub struct ExactMode {
-    /// The guards of `until`, then those of `watch`.
-    pub guards: Vec<Chain>,
-    /// For each guard of the forcing angle alone, what is known of it.
-    pub circles: Vec<Option<Circle>>,
-    /// The conditions of each event's successors, in the motion of their modes.
-    pub conditions: Vec<Vec<Option<Chain>>>,
-    /// The entries of z.
-    entries: Vec<Chain>,
-}
-
-impl ExactMode {
-    /// The rows of a system's mode.
-    pub fn of(system: &System, mode: &Mode) -> Self {
-        let states = system.states.len();
-        let until = mode.until.iter().map(|it| &it.guard);
-        let guards = until.chain(mode.watch.iter().map(|it| &it.guard));
-        let condition = |it: &Successor| {
-            it.when.as_ref().map(|when| Chain::of(when, &system.modes[it.mode].matrix))
-        };
-        let unit = |n: usize| -> Row {
-            (0..mode.matrix.len()).map(|k| Rational::from(u8::from(k == n))).collect()
-        };
-        Self {
-            circles: guards.clone().map(|it| Circle::of(it, states)).collect(),
-            guards: guards.map(|it| Chain::of(it, &mode.matrix)).collect(),
-            conditions: mode
-                .until
-                .iter()
-                .map(|it| it.next.iter().map(condition).collect())
-                .collect(),
-            entries: (0..mode.matrix.len()).map(|n| Chain::of(&unit(n), &mode.matrix)).collect(),
-        }
-    }
-
-    /// The entries of z a time after those at the entry of the mode, as far as they are known.
-    pub fn entries_at(&self, entries: &Entries, instant: Option<&Instant>) -> Entries {
-        self.entries.iter().map(|it| it.at(entries, instant)).collect()
-    }
-}
-
-/// The entries after a reset, as far as they are known and not too long.
-pub fn entries_after(reset: &[Row], entries: &Entries) -> Entries {
-    let is_short = |it: &Rational| it.bits().0 + it.bits().1 < LONGEST;
-    reset.iter().map(|row| product(row, entries).filter(is_short)).collect()
-}
-
-/// Makes known the one entry that a row which is zero leaves open, if it is one.
-pub fn solve(row: &Row, entries: &mut Entries) {
-    let is_open = |n: &usize| !row[*n].is_zero() && entries[*n].is_none();
-    let open: Vec<usize> = (0..row.len()).filter(is_open).collect();
-    if let [n] = open[..] {
-        let mut others = row.clone();
-        others[n] = Rational::ZERO;
-        entries[n] = product(&others, entries).map(|sum| -sum / &row[n]);
-    }
-}
-
 /// The product of a row with the entries, if all that it needs are known.
-fn product(row: &Row, entries: &Entries) -> Option<Rational> {
+pub(super) fn product(row: &Row, entries: &Entries) -> Option<Rational> {
     let needed = row.iter().zip(entries).filter(|(factor, _)| !factor.is_zero());
     let mut terms = needed.map(|(factor, entry)| Some(factor * entry.as_ref()?));
     terms.try_fold(Rational::ZERO, |sum, term| Some(sum + term?))

@@ -21,6 +21,18 @@ fn every_systems_file() {
     assert_valid("system.schema.json", &of_toml(example.expect("an example")));
 }
 
+/// The phase of a forcing may be left out: it is 0.
+#[test]
+fn a_forcing_without_its_phase() {
+    let named = percuss_validation::systems::named("plastic-ball-on-table").expect("a system");
+    let with = percuss::affine::System::parse("with", named).expect("accepted");
+    assert!(named.contains(", phi = 0.0 }"));
+    let shorter = named.replacen(", phi = 0.0 }", " }", 1);
+    assert_valid("system.schema.json", &of_toml(&shorter));
+    let without = percuss::affine::System::parse("without", &shorter).expect("accepted");
+    assert_eq!(format!("{with:?}"), format!("{without:?}"));
+}
+
 /// What the program refuses and a schema can see, the schema refuses.
 #[test]
 fn mistakes_in_a_systems_file() {
@@ -35,7 +47,7 @@ fn mistakes_in_a_systems_file() {
         ("states = [\"x\", \"v\"]", "states = []"),
         ("states = [\"x\", \"v\"]", "states = [\"x\", \"sin\"]"),
         ("forcing = { omega = 1.0,", "forcing = { omega = -1.0,"),
-        (", phi = 0.0 }", " }"),
+        ("omega = 1.0, phi = 0.0", "phi = 0.0"),
         ("A = 1.5", "A = \"3/2\""),
         ("A = 1.5", "2A = 1.5"),
         ("A*omega^2*cos - g\"", "A*omega^2*cos - 9.81\""),

@@ -92,7 +92,8 @@ impl<'a> Names<'a> {
     pub(super) fn forcing(&mut self) -> Result<Option<Forcing>, SystemError> {
         let Some(table) = &self.file.tables.forcing else { return Ok(None) };
         let omega = self.constant("omega", &table.omega)?;
-        let phi = self.constant("phi", &table.phi)?;
+        let phi = table.phi.as_ref().map(|it| self.constant("phi", it)).transpose()?;
+        let phi = phi.unwrap_or_default();
         if omega <= Rational::ZERO {
             return Err(self.file.error(&table.omega.span(), "omega is accepted above 0"));
         }

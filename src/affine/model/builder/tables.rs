@@ -34,7 +34,7 @@ pub(super) fn file(builder: SystemBuilder) -> Result<SystemFile, SystemError> {
     let time_scale = builder.time_scale.map(|it| of_system(&mut items, it));
     let forcing = builder.forcing.map(|[omega, phi]| ForcingTable {
         omega: of_system(&mut items, omega),
-        phi: of_system(&mut items, phi),
+        phi: Some(of_system(&mut items, phi)),
     });
     let tables = Tables {
         schema: items.at(&system, 1),

@@ -66,7 +66,7 @@ pub(super) struct Arguments {
     samples: Option<u32>,
     /// Stops a run that has more events, with a last row `stopped` [default: 1000000, none with
     /// --events]
-    #[arg(long, value_name = "N", value_parser = max_events, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<usize>(1, 1_000_000_000), allow_hyphen_values = true)]
     max_events: Option<usize>,
     /// The most bits that a run may take: it begins with 106 and takes twice as many where these
     /// do not decide or have too few digits [default: 3392]
@@ -173,14 +173,6 @@ fn limits(arguments: &Arguments, system: &System, time: f64) -> Result<Limits> {
     };
     let usual = arguments.events.is_none().then_some(USUAL_MAX_EVENTS);
     Ok(Limits { until, events: arguments.events, most: arguments.max_events.or(usual) })
-}
-
-/// A number of events, which may have an exponent.
-fn max_events(text: &str) -> Result<usize, String> {
-    const MOST: f64 = 1e9;
-    let number = text.parse::<f64>().ok().filter(|it| it.fract() == 0.0);
-    let number = number.filter(|it| (1.0..=MOST).contains(it));
-    number.map(|it| it as usize).ok_or_else(|| "accepted is an integer, 1 to 1e9".to_owned())
 }
 
 /// The start and all events, for a picture, in 106 bits.

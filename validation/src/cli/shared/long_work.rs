@@ -1,9 +1,9 @@
 //! Long work: its length, its threads and its progress.
 
 use super::parse::MAX_PERIODS;
-use super::terminal::is_quiet;
+use super::terminal::{is_quiet, note};
 use anyhow::{Context, Result, bail};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
 use std::sync::Mutex;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -30,24 +30,36 @@ pub(in crate::cli) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool> {
 /// Work that is done sooner shows no progress.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Progress on stderr with the time to go: of work that takes long, where stderr is a terminal and
-/// `--quiet` was not given.
+/// The time between two lines about work, where stderr is no terminal.
+const BETWEEN_LINES: Duration = Duration::from_secs(30);
+
+/// Progress on stderr with the time to go: of work that takes long, unless `--quiet` was given. A
+/// terminal has a bar, anything else a line now and then.
 pub(in crate::cli) struct Bar {
     bar: ProgressBar,
-    /// Ends the wait for [`PATIENCE`].
+    /// Ends the wait for [`PATIENCE`], or for the next line.
     waiting: Mutex<Option<Sender<()>>>,
 }
 
 impl Bar {
-    fn new(bar: ProgressBar, style: &str) -> Self {
+    fn new(
+        bar: ProgressBar,
+        style: &str,
+        done: impl Fn(&ProgressBar) -> String + Send + 'static,
+    ) -> Self {
         let bar = match ProgressStyle::with_template(style) {
             Ok(style) => bar.with_style(style),
             Err(_) => bar,
         };
         bar.set_draw_target(ProgressDrawTarget::hidden());
-        let wanted = io::stderr().is_terminal() && !is_quiet();
-        let waiting = Mutex::new(wanted.then(|| shown_later(bar.clone())));
-        Self { bar, waiting }
+        let told = |bar: ProgressBar| {
+            told_every(BETWEEN_LINES, move || note(&line(&done(&bar), bar.elapsed(), bar.eta())))
+        };
+        let waiting = (!is_quiet()).then(|| match io::stderr().is_terminal() {
+            true => shown_later(bar.clone()),
+            false => told(bar.clone()),
+        });
+        Self { bar, waiting: Mutex::new(waiting) }
     }
 
     /// Tells the bar that this much more is done.
@@ -65,7 +77,7 @@ impl Bar {
         self.bar.set_position((share * SHARES) as u64);
     }
 
-    /// Removes the bar from the terminal.
+    /// Removes the bar from the terminal, or says no more lines.
     pub(in crate::cli) fn finish_and_clear(&self) {
         drop(self.waiting.lock().map(|mut waiting| waiting.take()));
         self.bar.finish_and_clear();
@@ -91,10 +103,34 @@ fn shown_later(bar: ProgressBar) -> Sender<()> {
     waiting
 }
 
+/// Speaks each time that so long has passed, unless what is returned is dropped before.
+fn told_every(interval: Duration, speak: impl Fn() + Send + 'static) -> Sender<()> {
+    let (waiting, done) = channel();
+    std::thread::spawn(move || {
+        while done.recv_timeout(interval) == Err(RecvTimeoutError::Timeout) {
+            speak();
+        }
+    });
+    waiting
+}
+
+/// The line about work of which so much is done, after so long, with the time to go where it is
+/// known.
+fn line(done: &str, elapsed: Duration, to_go: Duration) -> String {
+    let so_far = format!("so far {done} in {}", HumanDuration(elapsed));
+    match to_go {
+        Duration::ZERO => so_far,
+        _ => format!("{so_far}, about {} to go", HumanDuration(to_go)),
+    }
+}
+
 /// A progress bar of the given number of units.
-pub(in crate::cli) fn bar(length: u64, unit: &str) -> Bar {
+pub(in crate::cli) fn bar(length: u64, unit: &'static str) -> Bar {
     let style = format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} to go");
-    Bar::new(ProgressBar::new(length), &style)
+    let done = move |bar: &ProgressBar| {
+        format!("{} of {} {unit}", bar.position(), bar.length().unwrap_or_default())
+    };
+    Bar::new(ProgressBar::new(length), &style, done)
 }
 
 /// Steps of a bar for a share.
@@ -102,11 +138,56 @@ const SHARES: f64 = 1000.0;
 
 /// A bar for a share of 0 to 1.
 pub(in crate::cli) fn share_bar() -> Bar {
-    Bar::new(ProgressBar::new(SHARES as u64), "{bar:40} {percent} %, {eta} to go")
+    let done = |bar: &ProgressBar| format!("{} %", bar.position() * 100 / SHARES as u64);
+    Bar::new(ProgressBar::new(SHARES as u64), "{bar:40} {percent} %, {eta} to go", done)
 }
 
 /// A bar for a run of one motion, from its start to its horizon; none where its rows appear on the
 /// terminal themselves.
 pub(in crate::cli) fn run_bar(rows_are_seen: bool) -> Option<Bar> {
     (!rows_are_seen).then(share_bar)
+}
+
+#[cfg(test)]
+#[allow(clippy::expect_used, reason = "a panic is a failed test")]
+mod tests {
+    use super::*;
+    use std::time::Instant;
+
+    #[test]
+    fn a_line_says_how_much_is_done_and_what_is_to_go() {
+        let seconds = Duration::from_secs;
+        let known = line("40 of 120 rows", seconds(30), seconds(60));
+        assert_eq!(known, "so far 40 of 120 rows in 30 seconds, about 60 seconds to go");
+        let unknown = line("0 %", seconds(7200), Duration::ZERO);
+        assert_eq!(unknown, "so far 0 % in 2 hours");
+    }
+
+    /// Lines come one after the other, none before its time, and none once the work is done.
+    #[test]
+    fn lines_come_until_the_work_is_done() {
+        const INTERVAL: Duration = Duration::from_millis(20);
+        let (lines, said) = channel();
+        let begin = Instant::now();
+        let waiting = told_every(INTERVAL, move || {
+            let _ = lines.send(begin.elapsed());
+        });
+        for n in 1..=3 {
+            let at = said.recv_timeout(Duration::from_secs(60)).expect("a line");
+            assert!(at >= INTERVAL * n, "{n}: {at:?}");
+        }
+        drop(waiting);
+        // The thread ends, and with it the sender of its lines.
+        while said.recv_timeout(Duration::from_secs(60)) != Err(RecvTimeoutError::Disconnected) {}
+    }
+
+    #[test]
+    fn work_that_is_done_sooner_says_nothing() {
+        let (lines, said) = channel();
+        drop(told_every(Duration::from_secs(3600), move || {
+            let _ = lines.send(());
+        }));
+        let end = said.recv_timeout(Duration::from_secs(60));
+        assert_eq!(end, Err(RecvTimeoutError::Disconnected));
+    }
 }
