@@ -10,6 +10,7 @@ mod enclosed;
 mod endings;
 mod files;
 mod hostile;
+mod kept;
 mod known;
 mod limits;
 mod oscillator;

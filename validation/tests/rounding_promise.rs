@@ -9,6 +9,8 @@ use percuss_validation::truth::{Truth, TruthRow};
 
 /// Runs that are drawn.
 const RUNS: usize = 2000;
+/// Runs that begin far away.
+const FAR_STARTS: u32 = 4000;
 /// Forcing periods of a run.
 const PERIODS: u64 = 40;
 /// The promise, in roundings per event beside the largest state so far. These draws reach 2.3, and
@@ -147,16 +149,33 @@ fn drawn_runs_keep_the_promise_beside_the_largest_state_so_far() {
             None => undecided += 1,
         }
     }
-    let worst = |of: fn(&Errors) -> f64| all.iter().map(of).fold(0.0, f64::max);
-    let [largest, value] = [worst(|it| it.beside_largest), worst(|it| it.beside_value)];
-    let exceed = all.iter().filter(|it| it.beside_value > PROMISED).count();
+    let largest = all.iter().map(|it| it.beside_largest).fold(0.0, f64::max);
     let events: usize = all.iter().map(|it| it.events).sum();
     println!(
         "{events} events of {RUNS} runs ({undecided} left out): {largest:.2} roundings beside the \
-         largest state, {value:.2} beside the value, which {exceed} runs have above {PROMISED}"
+         largest state"
     );
     assert!(events > 20 * RUNS && undecided < RUNS / 20, "{events} {undecided}");
     assert!(all.iter().all(|it| it.beside_largest <= PROMISED), "{largest}");
-    // Beside |value| alone it would be no promise: a flight far away ends at small values.
-    assert!(exceed > 0 && value > PROMISED, "{value}");
+}
+
+/// Beside |value| alone it would be no promise: of these fixed starts far away many have an event
+/// at small values that has more roundings than that, those of the state from which it was reached.
+/// Slow forcing alone does not show it: of 3000 runs with omega from 0.005 to 0.1 none passed 5.
+#[test]
+fn beside_small_values_after_far_starts_there_is_no_promise() {
+    let far = |n: u32| {
+        let mut given = Given::default();
+        let it = &mut given.parameters;
+        (it.a, it.b, it.xi, it.omega, it.g, it.phi) = (0.93, 0.535, 0.17, 0.286, 0.064, 5.9);
+        let y = 40.0 + 0.25 * f64::from(n);
+        given.start = Start { p: -1.9, y, q: Some(0.175), ..Start::default() };
+        given
+    };
+    let all: Vec<_> = (0..FAR_STARTS).filter_map(|n| errors(&far(n))).collect();
+    let exceed = all.iter().filter(|it| it.beside_value > PROMISED).count();
+    println!("{exceed} of {} runs from far away have above {PROMISED} beside the value", all.len());
+    assert!(all.len() > FAR_STARTS as usize * 9 / 10, "{}", all.len());
+    assert!(all.iter().all(|it| it.beside_largest <= PROMISED));
+    assert!(exceed >= 20, "{exceed}");
 }

@@ -2,7 +2,7 @@
 
 use super::Run;
 use super::enclosure::Enclosure;
-use super::exact::ExactRun;
+use super::origins::ExactRun;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::real::{BigReal, bits_for};
 use crate::affine::arithmetic::vector::{Vector, rounded};
@@ -51,7 +51,7 @@ impl<T: Number> Solver<T> {
         }
         sizes.iter_mut().zip(phase).for_each(|(size, turned)| *size += turned);
         sizes[self.system.dimension() - 1] = T::Bound::ZERO;
-        run.exact = Some(ExactRun::at_start(&self.system, start));
+        run.exact = Some(ExactRun::at_start(&self.system, start, run.entered));
         run.begin(Some(Enclosure::of(&sizes)));
         Ok(run)
     }

@@ -31,13 +31,14 @@ impl<T: Number> Run<'_, T> {
         // A guard with a rational point tells more about the others than the first of them does.
         let first = point.map_or(guards & guards.wrapping_neg(), |(guard, _)| 1 << guard);
         let first = ZeroGuards { guards: first, point };
-        let exactly_tied = self.exactly_tied(mode, first);
+        let errors = self.errors_at(mode, guards, &time, &state);
+        let error = errors.as_ref().map_or(T::Bound::ZERO, Enclosure::time);
+        let exactly_tied = self.exactly_tied(mode, first, error);
         let tied = self.graph.tied(self.node, first, false) | exactly_tied;
         if guards & !tied != 0 {
             self.work.undecidable += 1;
             self.tie = Some((mode, guards));
         }
-        let errors = self.errors_at(mode, guards, &time, &state);
         for n in bits(guards & !low_bits(until)) {
             self.watched(mode, n, zero, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;

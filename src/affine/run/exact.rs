@@ -2,87 +2,63 @@
 //! rationals, and what that decides of guards and successors which no number of bits would.
 
 use super::Run;
+use super::enclosure::Enclosure;
+use super::origins::{ExactRun, Origin};
 use crate::affine::arithmetic::vector::Vector;
-use crate::affine::model::rational::Rational;
-use crate::affine::model::system::{StartPoint, System};
-use crate::affine::zeros::circle::Circle;
-use crate::affine::zeros::exact::{Chain, Entries, Fate, Instant};
-use crate::affine::zeros::exact_mode::{ExactMode, entries_after, solve};
+use crate::affine::zeros::exact::{Chain, Entries, Instant};
+use crate::affine::zeros::exact_mode::{entries_after, solve};
 use crate::affine::zeros::graph::ZeroGuards;
-use crate::numeric::number::Number;
-
-/// The exact side of a run.
-pub(super) struct ExactRun {
-    /// The entries of z at the entry of the segment that are known.
-    entries: Entries,
-    /// For each guard of the mode, its future on the segment as far as it is known.
-    fates: Vec<Option<Fate>>,
-    /// For each guard of the mode that is one of the forcing angle and a constant on the segment:
-    /// the constant may be what stands still there.
-    circles: Vec<Option<Circle>>,
-}
-
-impl ExactRun {
-    /// The entries that a start gives exactly.
-    pub fn at_start(system: &System, start: &StartPoint) -> Self {
-        let zero_angle = system.is_at_zero_angle(start);
-        let known = |[cos, sin, one]: &[Rational; 3]| {
-            let is_plain = cos.is_zero() && sin.is_zero();
-            (zero_angle || is_plain).then(|| cos + one)
-        };
-        let mut entries: Entries = start.state.iter().map(known).collect();
-        if system.forcing.is_some() {
-            entries.push(zero_angle.then_some(Rational::ONE));
-            entries.push(zero_angle.then_some(Rational::ZERO));
-        }
-        entries.push(Some(Rational::ONE));
-        Self { entries, fates: Vec::new(), circles: Vec::new() }
-    }
-
-    /// Enters a mode: the future of its guards.
-    pub fn enter(&mut self, mode: &ExactMode) {
-        let Self { entries, fates, circles } = self;
-        fates.clear();
-        fates.extend(mode.guards.iter().map(|it| it.fate(entries)));
-        circles.clear();
-        circles.extend(mode.turning.iter().map(|it| it.as_ref()?.circle(entries)));
-    }
-
-    /// The future of a guard, as far as it is known.
-    pub fn fate(&self, guard: usize) -> Option<&Fate> {
-        self.fates.get(guard)?.as_ref()
-    }
-}
+use crate::numeric::number::{Bound, Number};
 
 impl<T: Number> Run<'_, T> {
     /// Whether a guard of the forcing angle and a constant never crosses by the model: it stays
     /// inside, or is watched and keeps its sign.
     pub(super) fn never_crosses(&self, mode: usize, guard: usize) -> bool {
-        let Some(circle) = self.exact.as_ref().and_then(|it| it.circles[guard].as_ref()) else {
+        let Some(circle) = self.exact.as_ref().and_then(|it| it.circle(guard)) else {
             return false;
         };
         let is_watched = guard >= self.solver.system.modes[mode].until.len();
         circle.keeps_sign && (is_watched || circle.is_below)
     }
 
-    /// The instant of a guard's crossing at which the search has arrived, if it is known exactly.
-    fn instant(&self, mode: usize, guard: usize) -> Option<Instant> {
-        let point = &self.ends.left;
-        let time = (point.time + point.to_crossing).to_f64();
-        self.solver.exact_mode(mode).guards[guard].zero_near(&self.exact.as_ref()?.entries, time)
+    /// A bound of the error of the time, where errors are followed.
+    fn time_error(&self) -> T::Bound {
+        self.enclosure.as_ref().map_or(T::Bound::ZERO, Enclosure::time)
     }
 
-    /// The guards that are zero at the very instant at which one of them crosses, as bits.
-    pub(super) fn exactly_tied(&self, mode: usize, first: ZeroGuards) -> u64 {
-        let Some(exact) = &self.exact else { return 0 };
-        let instant = self.instant(mode, first.guards.trailing_zeros() as usize);
-        let entries = self.at_crossing(exact, mode, first, instant.as_ref());
-        let is_zero = |chain: &Chain| {
-            let value = chain.value(&entries);
-            value
-                .or_else(|| chain.at(&exact.entries, instant.as_ref()))
-                .is_some_and(|it| it.is_zero())
+    /// For each origin, the instant at which one of these guards is zero where the search has
+    /// arrived, if it is known exactly; the crossing's time has at most this error.
+    fn instants(
+        &self,
+        exact: &ExactRun<T>,
+        mode: usize,
+        guards: u64,
+        error: T::Bound,
+    ) -> Vec<Option<Instant>> {
+        let own = &self.solver.exact_mode(mode).guards;
+        let guards = || (0..own.len()).filter(|n| guards >> n & 1 == 1);
+        let point = &self.ends.left;
+        let instant = |origin: &Origin<T>| {
+            let since = self.solver.directed(self.entered.since(&origin.time).value());
+            let time = (since + point.time + point.to_crossing).to_f64();
+            let error = (origin.error + error).to_f64();
+            guards().find_map(|n| own[n].zero_near(&origin.entries, [time, error]))
         };
+        exact.origins().map(instant).collect()
+    }
+
+    /// The guards that are zero at the very instant at which one of them crosses, as bits; the
+    /// crossing's time has at most this error.
+    pub(super) fn exactly_tied(&self, mode: usize, first: ZeroGuards, error: T::Bound) -> u64 {
+        let Some(exact) = &self.exact else { return 0 };
+        let instants = self.instants(exact, mode, first.guards, error);
+        let entries = self.at_crossing(exact, mode, first, &instants);
+        let at = |chain: &Chain| {
+            let mut origins = exact.origins().zip(&instants);
+            origins.find_map(|(it, instant)| chain.at(&it.entries, instant.as_ref()))
+        };
+        let is_zero =
+            |it: &Chain| it.value(&entries).or_else(|| at(it)).is_some_and(|it| it.is_zero());
         let guards = self.solver.exact_mode(mode).guards.iter().enumerate();
         guards.filter(|(_, it)| is_zero(it)).fold(0, |mask, (n, _)| mask | 1 << n)
     }
@@ -91,11 +67,9 @@ impl<T: Number> Run<'_, T> {
     /// is.
     pub(super) fn zero_guards(&self, guards: u64, state: &Vector<T>) -> ZeroGuards {
         let point = self.solver.phase().zip(self.exact.as_ref()).and_then(|(at, exact)| {
-            let circles = exact.circles.iter().enumerate();
-            circles.filter(|(n, _)| guards >> n & 1 == 1).find_map(|(n, circle)| {
-                let [cos, sin] = [state[at].to_f64(), state[at + 1].to_f64()];
-                Some((n, circle.as_ref()?.nearest(cos, sin)?))
-            })
+            let [cos, sin] = [state[at].to_f64(), state[at + 1].to_f64()];
+            let point = |n: usize| Some((n, exact.circle(n)?.nearest(cos, sin)?));
+            (0..u64::BITS as usize).filter(|n| guards >> n & 1 == 1).find_map(point)
         });
         ZeroGuards { guards, point }
     }
@@ -109,25 +83,30 @@ impl<T: Number> Run<'_, T> {
     ) -> Option<Entries> {
         let exact = self.exact.as_ref()?;
         if at_entry {
-            return Some(exact.entries.clone());
+            return Some(exact.entry.entries.clone());
         }
-        let is_zero = |n: &usize| zero.guards >> n & 1 == 1;
-        let guards = 0..self.solver.exact_mode(mode).guards.len();
-        let instant = guards.filter(is_zero).find_map(|n| self.instant(mode, n));
-        Some(self.at_crossing(exact, mode, zero, instant.as_ref()))
+        let instants = self.instants(exact, mode, zero.guards, self.time_error());
+        Some(self.at_crossing(exact, mode, zero, &instants))
     }
 
-    /// The exact entries where these guards are zero, at an instant that may be known.
+    /// The exact entries where these guards are zero, at an instant that may be known from some
+    /// origins.
     fn at_crossing(
         &self,
-        exact: &ExactRun,
+        exact: &ExactRun<T>,
         mode: usize,
         zero: ZeroGuards,
-        instant: Option<&Instant>,
+        instants: &[Option<Instant>],
     ) -> Entries {
-        let mut entries = self.solver.exact_mode(mode).entries_at(&exact.entries, instant);
+        let own = self.solver.exact_mode(mode);
+        let mut entries: Entries = vec![None; self.solver.system.dimension()];
+        for (origin, instant) in exact.origins().zip(instants) {
+            let there = own.entries_at(&origin.entries, instant.as_ref());
+            let open = entries.iter_mut().zip(there).filter(|(entry, _)| entry.is_none());
+            open.for_each(|(entry, own)| *entry = own);
+        }
         if let (Some(at), Some((guard, point))) = (self.solver.phase(), zero.point)
-            && let Some(points) = exact.circles[guard].as_ref().and_then(|it| it.points.as_ref())
+            && let Some(points) = exact.circle(guard).and_then(|it| it.points.as_ref())
         {
             let [cos, sin] = points[point].clone();
             (entries[at], entries[at + 1]) = (Some(cos), Some(sin));
@@ -145,10 +124,13 @@ impl<T: Number> Run<'_, T> {
         entries_after(&self.solver.system.modes[mode].until[until].reset, before)
     }
 
-    /// Makes these the exact entries of the next segment.
-    pub(super) fn set_exact(&mut self, entries: Option<Entries>) {
+    /// Passes an event of a mode, with the exact entries after it, to the segment that now begins.
+    pub(super) fn pass_exactly(&mut self, mode: usize, until: usize, entries: Option<Entries>) {
+        let (to, error) = (self.graph.node(self.node).mode, self.time_error());
+        let modes = &self.solver.system.modes;
         if let (Some(exact), Some(entries)) = (&mut self.exact, entries) {
-            exact.entries = entries;
+            let origin = Origin { time: self.entered, error, entries };
+            exact.pass([&modes[mode], &modes[to]], &modes[mode].until[until], origin);
         }
     }
 }

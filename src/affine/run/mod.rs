@@ -15,6 +15,7 @@ mod enclosure;
 mod exact;
 mod given_up;
 mod horizon;
+mod origins;
 mod reduction;
 mod transition;
 mod undecided;
@@ -31,7 +32,7 @@ use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::zeros::graph::{Firing, ZeroGuards};
 use crate::numeric::number::{Bound, Number};
 use enclosure::Enclosure;
-use exact::ExactRun;
+use origins::ExactRun;
 use std::collections::VecDeque;
 
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
@@ -66,7 +67,7 @@ pub struct Run<'a, T: Number> {
     /// The errors at the entry of the segment, where they are followed.
     enclosure: Option<Enclosure<T::Bound>>,
     /// The entries of z that are known exactly, in a run that follows its errors.
-    exact: Option<ExactRun>,
+    exact: Option<ExactRun<T>>,
     /// The start, with the errors that it has before the rounding of its modal co-ordinates.
     start: Event<T>,
     /// The last event that the iterator returned, or the start.
@@ -173,7 +174,7 @@ impl<'a, T: Number> Run<'a, T> {
             let begin = fate.and_then(|it| it.begin);
             let doubtful = begin.is_none() && value.abs() <= slack;
             let is_positive = begin.map_or(value > 0.0, |(_, is_positive)| is_positive);
-            let live = !fate.is_some_and(|it| it.keeps_sign);
+            let live = !self.exact.as_ref().is_some_and(|it| it.keeps_sign(n));
             if doubtful {
                 self.work.doubt(n);
             }

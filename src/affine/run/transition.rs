@@ -36,13 +36,13 @@ impl<T: Number> Run<'_, T> {
         if self.is_open() {
             return;
         }
-        self.set_exact(exact);
         let arrival = self.graph.arrival(self.node, firing);
         let (impact, zero_entries) = (arrival.impact, arrival.zero_entries);
         let from = self.node;
         let next = self.graph.enter(from, firing, successor);
         self.node = next;
         (self.entered, self.state) = (time, state);
+        self.pass_exactly(mode, firing.until, exact);
         let mut event = self.event(What::Until(mode, firing.until), time, &self.state);
         if let Some(errors) = self.enclosure.take() {
             let reset = &solver.modes[mode].resets[firing.until];

@@ -15,6 +15,8 @@ use crate::affine::model::system::Row;
 pub struct Chain {
     rows: Vec<Row>,
     kind: Kind,
+    /// The entries of z that the rows need.
+    needed: Vec<usize>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -53,23 +55,33 @@ impl Chain {
     pub fn of(row: &Row, matrix: &[Row]) -> Self {
         let is_zero = |row: &Row| row.iter().all(Rational::is_zero);
         let mut rows = vec![row.clone()];
-        loop {
+        let kind = loop {
             let next = row_times(&rows[rows.len() - 1], matrix);
             if is_zero(&next) {
-                return Self { rows, kind: Kind::Polynomial };
+                break Kind::Polynomial;
             }
             if let Some(square) = oscillation(&rows, &next) {
-                return Self { rows, kind: Kind::Oscillation(square) };
+                break Kind::Oscillation(square);
             }
             if rows.len() == matrix.len() {
-                return Self { rows, kind: Kind::Other };
+                break Kind::Other;
             }
             rows.push(next);
-        }
+        };
+        let is_needed = |n: &usize| rows.iter().any(|row| !row[*n].is_zero());
+        let needed = (0..row.len()).filter(is_needed).collect();
+        Self { rows, kind, needed }
+    }
+
+    fn is_known(&self, entries: &Entries) -> bool {
+        self.needed.iter().all(|n| entries[*n].is_some())
     }
 
     /// The values of the row and its derivatives, if all entries that they need are known.
     fn values(&self, entries: &Entries) -> Option<Vec<Rational>> {
+        if !self.is_known(entries) {
+            return None;
+        }
         self.rows.iter().map(|row| product(row, entries)).collect()
     }
 
@@ -80,8 +92,9 @@ impl Chain {
 
     /// The row's value on the whole segment, if it is known that it stands still.
     pub fn still(&self, entries: &Entries) -> Option<Rational> {
-        let values = self.values(entries)?;
-        values[1..].iter().all(Rational::is_zero).then(|| values[0].clone())
+        let is_zero = |row: &Row| product(row, entries).is_some_and(|it| it.is_zero());
+        let is_still = self.is_known(entries) && self.rows[1..].iter().all(is_zero);
+        if is_still { self.value(entries) } else { None }
     }
 
     /// The order and the sign of the first derivative that is not zero, the value included: none
@@ -108,16 +121,17 @@ impl Chain {
         Some(Fate { begin, keeps_sign })
     }
 
-    /// The instant of the guard's zero that is about a time after the entry, if it is known
-    /// exactly.
-    pub fn zero_near(&self, entries: &Entries, time: f64) -> Option<Instant> {
+    /// The instant of the guard's zero that is about a time after the entry, which has at most
+    /// this error, if it is known exactly.
+    pub fn zero_near(&self, entries: &Entries, [time, error]: [f64; 2]) -> Option<Instant> {
         let values = self.values(entries)?;
         match &self.kind {
             Kind::Polynomial => {
                 let away = |it: &Rational| (it.to_f64() - time).abs() / time.abs();
-                nearest(parabola_roots(&values), away).map(Instant::Time)
+                let error = error / time.abs() + 2.0 * f64::EPSILON;
+                nearest(parabola_roots(&values), away, error).map(Instant::Time)
             }
-            Kind::Oscillation(square) => Oscillation::of(&values, square)?.zero_near(time),
+            Kind::Oscillation(square) => Oscillation::of(&values, square)?.zero_near([time, error]),
             Kind::Other => None,
         }
     }
@@ -128,7 +142,7 @@ impl Chain {
         if let Some(value) = self.still(entries) {
             return Some(value);
         }
-        let values = self.values(entries)?;
+        let values = instant.and_then(|_| self.values(entries))?;
         match (&self.kind, instant) {
             (Kind::Polynomial, Some(Instant::Time(time))) => {
                 let orders = values.iter().enumerate().rev();
@@ -148,6 +162,9 @@ impl Chain {
 /// The product of a row with the entries, if all that it needs are known.
 pub(super) fn product(row: &Row, entries: &Entries) -> Option<Rational> {
     let needed = row.iter().zip(entries).filter(|(factor, _)| !factor.is_zero());
+    if needed.clone().any(|(_, entry)| entry.is_none()) {
+        return None;
+    }
     let mut terms = needed.map(|(factor, entry)| Some(factor * entry.as_ref()?));
     terms.try_fold(Rational::ZERO, |sum, term| Some(sum + term?))
 }
@@ -204,9 +221,9 @@ fn parabola_roots(values: &[Rational]) -> Vec<Rational> {
     }
 }
 
-/// The exact zero of which a rounded one is known, by how far each is away: the next one is much
-/// farther.
-fn nearest<Z: PartialEq>(mut zeros: Vec<Z>, away: impl Fn(&Z) -> f64) -> Option<Z> {
+/// The exact zero of which a rounded one is known, by how far each is away, which has at most this
+/// error: the next one is much farther.
+fn nearest<Z: PartialEq>(mut zeros: Vec<Z>, away: impl Fn(&Z) -> f64, error: f64) -> Option<Z> {
     /// The rounding of f64, with room.
     const NEAR: f64 = 1e-9;
     /// So many times as far the next zero is at least.
@@ -214,7 +231,7 @@ fn nearest<Z: PartialEq>(mut zeros: Vec<Z>, away: impl Fn(&Z) -> f64) -> Option<
     zeros.dedup();
     zeros.sort_by(|a, b| away(a).total_cmp(&away(b)));
     let distance = away(zeros.first()?);
-    let is_alone = zeros.get(1).is_none_or(|it| away(it) > APART * distance);
+    let is_alone = zeros.get(1).is_none_or(|it| away(it) > APART * (distance + error));
     (distance < NEAR && is_alone).then(|| zeros.swap_remove(0))
 }
 
@@ -247,7 +264,7 @@ impl<'a> Oscillation<'a> {
     }
 
     /// The zero that is about a time, if cosine and sine over the frequency are rational there.
-    fn zero_near(&self, time: f64) -> Option<Instant> {
+    fn zero_near(&self, [time, error]: [f64; 2]) -> Option<Instant> {
         let Self { square, constant, cos, sin, amplitude } = self;
         if amplitude.is_zero() {
             return None;
@@ -255,6 +272,8 @@ impl<'a> Oscillation<'a> {
         let root = root(&((amplitude - constant * constant) / *square))?;
         let frequency = square.to_f64().sqrt();
         let (sin_now, cos_now) = libm::sincos(frequency * time);
+        // Of the angle; sine and cosine follow it.
+        let error = 2.0 * frequency * (error + 2.0 * f64::EPSILON * time.abs()) + f64::EPSILON;
         let zero = |root: &Rational| {
             let own = [-cos * constant - *sin * root, -*sin * constant / *square + cos * root];
             own.map(|it| it / amplitude)
@@ -263,7 +282,7 @@ impl<'a> Oscillation<'a> {
             let sin = frequency * sin.to_f64() - sin_now;
             (cos.to_f64() - cos_now).abs() + sin.abs()
         };
-        let [cos, sin] = nearest(vec![zero(&root), zero(&-&root)], away)?;
+        let [cos, sin] = nearest(vec![zero(&root), zero(&-&root)], away, error)?;
         Some(Instant::Turn { square: (*square).clone(), cos, sin })
     }
 }
@@ -294,12 +313,15 @@ mod tests {
         assert!(fate(level(1, 3)).keeps_sign);
         assert!(!fate(level(3, 16)).keeps_sign && !fate(level(1, 8)).keeps_sign);
         assert_eq!(fate(level(0, 1)).begin, Some((1, true)));
-        let zero = |level, time| Chain::of(&level, &matrix).zero_near(&start, time);
+        let zero = |level, time| Chain::of(&level, &matrix).zero_near(&start, [time, 0.0]);
         let eighth = |n: i32| Some(Instant::Time(Rational::from(n) / Rational::from(8)));
         assert_eq!(zero(level(3, 16), 0.125), eighth(1));
         assert_eq!(zero(level(3, 16), 0.375), eighth(3));
         assert_eq!(zero(level(3, 16), 0.25), None);
         assert_eq!(zero(level(1, 8), 0.25 - 0.125_f64.sqrt() / 2.0), None);
+        // A time of too large an error tells no zero from another.
+        let eighth_of = |error| Chain::of(&level(3, 16), &matrix).zero_near(&start, [0.125, error]);
+        assert_eq!([eighth_of(1e-6), eighth_of(1e-3)], [eighth(1), None]);
     }
 
     /// x'' = -4 x from x = 3, v = 8: the amplitude is 5.
@@ -321,7 +343,7 @@ mod tests {
         let matrix = rows(&[&[0, 1, 0], &[-4, 0, 0], &[0, 0, 0]]);
         let start = known(&[5, 0, 1]);
         let chain = |row: [i32; 3]| Chain::of(&row.map(Rational::from).to_vec(), &matrix);
-        let instant = chain([1, 0, -3]).zero_near(&start, 0.5 * 0.6_f64.acos()).unwrap();
+        let instant = chain([1, 0, -3]).zero_near(&start, [0.5 * 0.6_f64.acos(), 0.0]).unwrap();
         let fifth = |n: i32| Rational::from(n) / Rational::from(5);
         let (square, cos) = (Rational::from(4), fifth(3));
         assert_eq!(instant, Instant::Turn { square, cos, sin: fifth(2) });
