@@ -32,6 +32,7 @@ const PACKAGES: [Package; 7] = [
             "lanes",
             "dynamics",
             "affine",
+            "system",
         ],
         least_uses: 500,
     },
@@ -110,7 +111,7 @@ const PACKAGES: [Package; 7] = [
 
 /// The rooms of `src/affine/`, each allowed to use those before it. What the folder exports comes
 /// from all of them.
-const AFFINE_ROOMS: [&str; 10] = [
+const AFFINE_ROOMS: [&str; 12] = [
     "model",
     "zeros",
     "arithmetic",
@@ -120,6 +121,8 @@ const AFFINE_ROOMS: [&str; 10] = [
     "first_crossing",
     "solver",
     "run",
+    "events",
+    "gallery",
     EXPORTS,
 ];
 

@@ -1,44 +1,12 @@
-//! Any piecewise-affine hybrid system, solved in closed form between its events.
+//! The engine for piecewise-affine systems: [`System`] is read from TOML or made by
+//! [`System::builder`], [`Solver`] prepares it for runs in one arithmetic, and [`Run`] is an
+//! iterator over its events, with bounds of their errors in one of [`Solver::run_enclosed`].
 //!
-//! A [`System`] has modes with affine equations, guards that end a mode, resets, and guards that
-//! are watched. It is read from TOML or made by [`System::builder`]. A [`Solver`] prepares it for
-//! runs in one arithmetic: `f64`, [`DoubleDouble`], or a wider one. A [`Run`] is an iterator over
-//! events; one of [`Solver::run_enclosed`] bounds the errors of each.
-//!
-//! ```
-//! use percuss::affine::{DoubleDouble, Solver, System, What};
-//! use percuss::number::Number;
-//!
-//! let system = System::from_toml(r#"
-//!     schema = 1
-//!     name = "bouncing-ball"
-//!     states = ["x", "v"]
-//!     [[mode]]
-//!     name = "flight"
-//!     equations = ["x' = v", "v' = -10"]
-//!     [[mode.until]]
-//!     name = "impact"
-//!     guard = "x < 0"
-//!     reset = ["v = -v/2"]
-//!     [start]
-//!     mode = "flight"
-//!     x = 5
-//!     v = 0
-//! "#)?;
-//! let solver = Solver::<DoubleDouble>::new(&system)?;
-//! let mut times = Vec::new();
-//! for event in solver.run_enclosed(system.start()?, DoubleDouble::exact(2.5))? {
-//!     if let (What::Until(..), Some(errors)) = (event.what, &event.errors) {
-//!         assert!(errors.time < 1e-28);
-//!         times.push(event.time.value().to_f64());
-//!     }
-//! }
-//! assert_eq!(times, [1.0, 2.0, 2.5]);
-//! # Ok::<(), percuss::affine::SystemError>(())
-//! ```
+//! Users of the crate meet it through [`crate::Solver`], whose events have names; the harness and
+//! the tests use it as it is.
 
 // The rooms, each of which uses only those before it: model, zeros, arithmetic, modal, closed_form,
-// guards, first_crossing, solver, run, events.
+// guards, first_crossing, solver, run, events; gallery is beside them.
 mod arithmetic;
 mod closed_form;
 pub(crate) mod events;

@@ -14,7 +14,7 @@ use xprec::arith::mul_dd;
 /// A number of 106 bits, about 32 decimal digits: an unevaluated sum of two `f64`.
 ///
 /// ```
-/// use percuss::affine::DoubleDouble;
+/// use percuss::DoubleDouble;
 /// use percuss::number::Number;
 ///
 /// let third = DoubleDouble::exact(1.0) / DoubleDouble::exact(3.0);

@@ -1,5 +1,6 @@
 //! Piecewise-affine systems: their files, known results, and runs against other methods.
 
+mod answers;
 mod attack;
 mod brute;
 mod built;

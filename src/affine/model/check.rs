@@ -19,7 +19,7 @@ impl System {
     /// The first mistake, with its item and what is accepted.
     ///
     /// ```
-    /// # let mut system = percuss::affine::System::parse("ball", r#"
+    /// # let mut system = percuss::System::parse("ball", r#"
     /// #     schema = 1
     /// #     name = "ball"
     /// #     states = ["x", "v"]
@@ -39,7 +39,7 @@ impl System {
     ///     "mode \"flight\", until \"impact\", successor 1: there is no mode 7: accepted are \
     ///      indices below 1"
     /// );
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn check(&self) -> Result<(), SystemError> {
         self.check_names()?;

@@ -8,7 +8,7 @@ use std::fmt;
 /// accepted.
 ///
 /// ```
-/// use percuss::affine::{System, SystemError};
+/// use percuss::{System, SystemError};
 ///
 /// let mut system = System::parse("ball.system.toml", r#"
 ///     schema = 1

@@ -17,13 +17,13 @@ const LARGEST_EXPONENT: u32 = 10_000;
 /// to it holds. A text is taken as written.
 ///
 /// ```
-/// use percuss::affine::Rational;
+/// use percuss::Rational;
 ///
 /// let third = Rational::ONE / Rational::from(3);
 /// assert_eq!(third.to_string(), "1/3");
 /// assert_eq!("0.1".parse::<Rational>()?, Rational::from(1) / Rational::from(10));
 /// assert_ne!(Rational::try_from(0.1)?, "0.1".parse()?);
-/// # Ok::<(), percuss::affine::RationalError>(())
+/// # Ok::<(), percuss::system::RationalError>(())
 /// ```
 #[derive(Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
@@ -39,7 +39,7 @@ impl Rational {
     /// Whether the number is 0.
     ///
     /// ```
-    /// # use percuss::affine::Rational;
+    /// # use percuss::Rational;
     /// assert!(Rational::ZERO.is_zero() && !Rational::ONE.is_zero());
     /// ```
     #[must_use]
@@ -51,7 +51,7 @@ impl Rational {
     /// Whether the number is 1.
     ///
     /// ```
-    /// # use percuss::affine::Rational;
+    /// # use percuss::Rational;
     /// assert!((Rational::from(3) / Rational::from(3)).is_one());
     /// ```
     #[must_use]
@@ -64,10 +64,10 @@ impl Rational {
     /// number's text has all digits of every number.
     ///
     /// ```
-    /// # use percuss::affine::Rational;
+    /// # use percuss::Rational;
     /// let number: Rational = "-4/6".parse()?;
     /// assert_eq!((number.numerator(), number.denominator()), (Some(-2), Some(3)));
-    /// # Ok::<(), percuss::affine::RationalError>(())
+    /// # Ok::<(), percuss::system::RationalError>(())
     /// ```
     #[must_use]
     pub fn numerator(&self) -> Option<i128> {
@@ -77,10 +77,10 @@ impl Rational {
     /// The denominator of the number in lowest terms, which is positive; none beyond `i128`.
     ///
     /// ```
-    /// # use percuss::affine::Rational;
+    /// # use percuss::Rational;
     /// assert_eq!(Rational::from(7).denominator(), Some(1));
     /// assert_eq!("1e-50".parse::<Rational>()?.denominator(), None);
-    /// # Ok::<(), percuss::affine::RationalError>(())
+    /// # Ok::<(), percuss::system::RationalError>(())
     /// ```
     #[must_use]
     pub fn denominator(&self) -> Option<i128> {
@@ -91,7 +91,7 @@ impl Rational {
     /// is beyond all finite ones.
     ///
     /// ```
-    /// # use percuss::affine::Rational;
+    /// # use percuss::Rational;
     /// assert_eq!((Rational::from(2) / Rational::from(3)).to_f64(), 2.0 / 3.0);
     /// ```
     #[must_use]
@@ -103,7 +103,7 @@ impl Rational {
     /// The size of the number.
     ///
     /// ```
-    /// # use percuss::affine::Rational;
+    /// # use percuss::Rational;
     /// assert_eq!(Rational::from(-3).abs(), Rational::from(3));
     /// ```
     #[must_use]
@@ -114,9 +114,9 @@ impl Rational {
     /// The nearest integer; of two that are as near, the one that is larger in size.
     ///
     /// ```
-    /// # use percuss::affine::Rational;
+    /// # use percuss::Rational;
     /// assert_eq!("-2.5".parse::<Rational>()?.round(), Rational::from(-3));
-    /// # Ok::<(), percuss::affine::RationalError>(())
+    /// # Ok::<(), percuss::system::RationalError>(())
     /// ```
     #[must_use]
     pub fn round(&self) -> Self {
@@ -126,9 +126,9 @@ impl Rational {
     /// A power of the number; the power 0 of any number is 1.
     ///
     /// ```
-    /// # use percuss::affine::Rational;
+    /// # use percuss::Rational;
     /// assert_eq!("-2/3".parse::<Rational>()?.pow(3), "-8/27".parse()?);
-    /// # Ok::<(), percuss::affine::RationalError>(())
+    /// # Ok::<(), percuss::system::RationalError>(())
     /// ```
     #[must_use]
     pub fn pow(&self, exponent: u32) -> Self {
@@ -140,7 +140,7 @@ impl Rational {
     /// The quotient `self / divisor`; none for a divisor of 0, by which `/` panics.
     ///
     /// ```
-    /// # use percuss::affine::Rational;
+    /// # use percuss::Rational;
     /// assert_eq!(Rational::ONE.checked_div(&Rational::ZERO), None);
     /// ```
     #[must_use]
@@ -206,7 +206,8 @@ impl FromStr for Rational {
     /// Reads an integer, a decimal or a fraction of integers, exactly.
     ///
     /// ```
-    /// # use percuss::affine::{Rational, RationalError};
+    /// # use percuss::Rational;
+    /// use percuss::system::RationalError;
     /// let [a, b, c] = ["-0.125", "1.5e-3", "2/3"].map(str::parse::<Rational>);
     /// assert_eq!((a?.to_string(), b?.to_string()), ("-1/8".to_owned(), "3/2000".to_owned()));
     /// assert_eq!(c?.to_f64(), 2.0 / 3.0);

@@ -207,7 +207,7 @@ impl System {
     /// What is not accepted, with its line.
     ///
     /// ```
-    /// use percuss::affine::System;
+    /// use percuss::System;
     ///
     /// let text = r#"
     /// schema = 1
@@ -223,7 +223,7 @@ impl System {
     ///     error.to_string(),
     ///     "line 7: w is not known: accepted are x, v"
     /// );
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn from_toml(text: &str) -> Result<Self, SystemError> {
         SystemFile::of(SourceText { file: None, text: text.to_owned() })?.system()
@@ -235,7 +235,7 @@ impl System {
     /// A file that cannot be read, and what is not accepted in it, with file and line.
     ///
     /// ```
-    /// use percuss::affine::System;
+    /// use percuss::System;
     ///
     /// let error = System::from_file("missing.system.toml").unwrap_err();
     /// assert!(error.to_string().starts_with("missing.system.toml: the file cannot be read: "));

@@ -19,7 +19,8 @@ pub use mode::{ModeBuilder, UntilBuilder};
 ///   numbers, or expressions of parameters.
 ///
 /// ```
-/// use percuss::affine::{Expression, Rational};
+/// use percuss::Rational;
+/// use percuss::system::Expression;
 ///
 /// let third = Rational::ONE / Rational::from(3);
 /// let of_each_kind: [Expression; 4] =
@@ -103,7 +104,8 @@ impl System {
     /// Begins a system of this name, which is lower-case words joined by hyphens.
     ///
     /// ```
-    /// use percuss::affine::{Direction, ModeBuilder, Solver, System, UntilBuilder};
+    /// use percuss::System;
+    /// use percuss::system::{Direction, ModeBuilder, UntilBuilder};
     ///
     /// let system = System::builder("bouncing-ball")
     ///     .states(["x", "v"])
@@ -117,17 +119,18 @@ impl System {
     ///     )
     ///     .start("flight", [("x", 1.0), ("v", 0.0)])
     ///     .build()?;
-    /// let solver = Solver::<f64>::new(&system)?;
-    /// let first = solver.run(system.start()?, 1.0)?.next();
+    /// let solver = system.solver::<f64>()?;
+    /// let first = solver.run().until(1.0)?.next();
     /// let fall = (2.0_f64 / 9.81).sqrt();
-    /// assert!(first.is_some_and(|impact| (impact.time.value() - fall).abs() < 1e-15));
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// assert!(first.is_some_and(|impact| (impact.time() - fall).abs() < 1e-15));
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     ///
     /// An error names the item:
     ///
     /// ```
-    /// use percuss::affine::{ModeBuilder, System, UntilBuilder};
+    /// use percuss::System;
+    /// use percuss::system::{ModeBuilder, UntilBuilder};
     ///
     /// let error = System::builder("bouncing-ball")
     ///     .states(["x", "v"])
@@ -167,11 +170,12 @@ impl SystemBuilder {
     /// The names of the states, in the order of the system's rows.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let rest = ModeBuilder::new("rest").equation("x' = 0");
     /// let system = System::builder("rest").states(["x"]).mode(rest).build()?;
     /// assert_eq!(system.states, ["x"]);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn states(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
         self.states = names.into_iter().map(Into::into).collect();
@@ -181,14 +185,15 @@ impl SystemBuilder {
     /// A forcing of the phase theta = omega t + phi, whose cosine and sine expressions may use.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let system = System::builder("driven")
     ///     .states(["x"])
     ///     .forcing(1.25, 0)
     ///     .mode(ModeBuilder::new("on").equation("x' = cos - x"))
     ///     .build()?;
     /// assert_eq!(system.forcing.map(|it| it.omega.to_string()), Some("5/4".to_owned()));
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn forcing(mut self, omega: impl Into<Expression>, phi: impl Into<Expression>) -> Self {
         self.forcing = Some([omega.into(), phi.into()]);
@@ -198,14 +203,15 @@ impl SystemBuilder {
     /// A parameter: a finite number, which expressions use by its name.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let system = System::builder("decay")
     ///     .states(["x"])
     ///     .parameter("rate", 0.5)
     ///     .mode(ModeBuilder::new("on").equation("x' = -rate*x"))
     ///     .build()?;
     /// assert_eq!(system.parameters["rate"], 0.5);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn parameter(mut self, name: impl Into<String>, value: impl Into<Expression>) -> Self {
         self.parameters.push((name.into(), value.into()));
@@ -215,14 +221,15 @@ impl SystemBuilder {
     /// A definition, which a file has in `[let]`: a name for an expression.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let system = System::builder("spring")
     ///     .states(["x", "v"])
     ///     .definition("force", "-4*x - v/10")
     ///     .mode(ModeBuilder::new("on").equation("x' = v").equation("v' = force"))
     ///     .build()?;
     /// assert_eq!(system.modes[0].matrix[1][0].to_f64(), -4.0);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn definition(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
         self.definitions.push((name.into(), text.into()));
@@ -232,7 +239,8 @@ impl SystemBuilder {
     /// Adds a mode.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System, UntilBuilder};
+    /// # use percuss::System;
+    /// use percuss::system::{ModeBuilder, UntilBuilder};
     /// let on = UntilBuilder::new("warm", "x > 21").next("off");
     /// let off = UntilBuilder::new("cold", "x < 19").next("on");
     /// let system = System::builder("thermostat")
@@ -241,7 +249,7 @@ impl SystemBuilder {
     ///     .mode(ModeBuilder::new("off").equation("x' = 10 - x").until(off))
     ///     .build()?;
     /// assert_eq!(system.mode("off"), Some(1));
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn mode(mut self, mode: ModeBuilder) -> Self {
         self.modes.push(mode);
@@ -252,14 +260,15 @@ impl SystemBuilder {
     /// and sin at the start.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let system = System::builder("decay")
     ///     .states(["x"])
     ///     .mode(ModeBuilder::new("on").equation("x' = -x"))
     ///     .start("on", [("x", 2)])
     ///     .build()?;
     /// assert_eq!(system.start()?.state[0][2].to_f64(), 2.0);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn start(
         mut self,
@@ -274,7 +283,8 @@ impl SystemBuilder {
     /// The time at the start, 0 by default.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let system = System::builder("decay")
     ///     .states(["x"])
     ///     .mode(ModeBuilder::new("on").equation("x' = -x"))
@@ -282,7 +292,7 @@ impl SystemBuilder {
     ///     .start_time(0.5)
     ///     .build()?;
     /// assert_eq!(system.start()?.time.to_f64(), 0.5);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn start_time(mut self, time: impl Into<Expression>) -> Self {
         self.start_time = Some(time.into());
@@ -292,11 +302,12 @@ impl SystemBuilder {
     /// A positive size of each state, by which it is divided before any norm: 1 by default.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let on = ModeBuilder::new("on").equation("x' = -x");
     /// let system = System::builder("decay").states(["x"]).scales([100]).mode(on).build()?;
     /// assert_eq!(system.scales, [100.0]);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn scales(mut self, scales: impl IntoIterator<Item = impl Into<Expression>>) -> Self {
         self.scales = Some(scales.into_iter().map(Into::into).collect());
@@ -307,11 +318,12 @@ impl SystemBuilder {
     /// the system is forced, else 1.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let on = ModeBuilder::new("on").equation("x' = -1000*x");
     /// let system = System::builder("decay").states(["x"]).time_scale(1e-3).mode(on).build()?;
     /// assert_eq!(system.time_scale, 1e-3);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn time_scale(mut self, scale: impl Into<Expression>) -> Self {
         self.time_scale = Some(scale.into());
@@ -322,12 +334,13 @@ impl SystemBuilder {
     /// in [`TROUBLE`](crate::affine::TROUBLE).
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let on = ModeBuilder::new("on").equation("x' = -x");
     /// let system = System::builder("decay").states(["x"]).mode(on);
     /// let system = system.about("The simplest motion.", "folklore", ["stiffness"]).build()?;
     /// assert_eq!((system.why.as_str(), system.trouble.len()), ("The simplest motion.", 1));
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn about(
         mut self,
@@ -346,7 +359,7 @@ impl SystemBuilder {
     /// Whatever the reader of files would refuse, with the item that it is about.
     ///
     /// ```
-    /// # use percuss::affine::System;
+    /// # use percuss::System;
     /// let error = System::builder("nothing").states(["x"]).build().unwrap_err();
     /// assert_eq!(
     ///     error.to_string(),

@@ -18,7 +18,8 @@ impl ModeBuilder {
     /// A mode of this name, which is lower-case words joined by hyphens.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let mode = ModeBuilder::new("Free fall").equation("x' = 1");
     /// let error = System::builder("fall").states(["x"]).mode(mode).build().unwrap_err();
     /// let said = error.to_string();
@@ -32,7 +33,8 @@ impl ModeBuilder {
     /// Adds the equation of a state, such as `x' = v`. Each state has one.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let mode = ModeBuilder::new("fall").equation("x' = v");
     /// let error = System::builder("fall").states(["x", "v"]).mode(mode).build().unwrap_err();
     /// assert_eq!(error.to_string(), "mode \"fall\": an equation `v' = ...` is missing");
@@ -45,11 +47,12 @@ impl ModeBuilder {
     /// Adds the equation of a state by its right side alone, which may be a row of numbers.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
     /// let mode = ModeBuilder::new("fall").rate("x", [0, 1, 0]).rate("v", [0.0, 0.0, -9.81]);
     /// let system = System::builder("fall").states(["x", "v"]).mode(mode).build()?;
     /// assert_eq!(system.modes[0].matrix[1][2].to_f64(), -9.81);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn rate(mut self, state: impl Into<String>, right: impl Into<Expression>) -> Self {
         self.equations.push(Assignment::To { state: state.into(), value: right.into().0 });
@@ -59,12 +62,13 @@ impl ModeBuilder {
     /// Adds an event that ends the mode. Of two that fire at one instant the first is the event.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System, UntilBuilder};
+    /// # use percuss::System;
+    /// use percuss::system::{ModeBuilder, UntilBuilder};
     /// let mode = ModeBuilder::new("rise").equation("x' = 1");
     /// let mode = mode.until(UntilBuilder::new("full", "x > 3").reset("x = 0"));
     /// let system = System::builder("bucket").states(["x"]).mode(mode).build()?;
     /// assert_eq!(system.modes[0].until[0].name, "full");
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn until(mut self, event: UntilBuilder) -> Self {
         self.until.push(event);
@@ -75,13 +79,14 @@ impl ModeBuilder {
     /// guard, becomes true (rising), becomes false (falling), or both.
     ///
     /// ```
-    /// # use percuss::affine::{Direction, ModeBuilder, System};
+    /// # use percuss::System;
+    /// use percuss::system::{Direction, ModeBuilder};
     /// let mode = ModeBuilder::new("fall").equation("x' = -1");
     /// let mode = mode.watch("half", "x < 1/2", Direction::Rising);
     /// let mode = mode.watch("ground", [-1, 0], Direction::Both);
     /// let system = System::builder("fall").states(["x"]).mode(mode).build()?;
     /// assert_eq!(system.modes[0].watch.len(), 2);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn watch(
         mut self,
@@ -108,7 +113,8 @@ impl UntilBuilder {
     /// An event of this name that fires where a condition becomes true, or a row positive.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System, UntilBuilder};
+    /// # use percuss::System;
+    /// use percuss::system::{ModeBuilder, UntilBuilder};
     /// let mode = ModeBuilder::new("fall").equation("x' = -1");
     /// let mode = mode.until(UntilBuilder::new("ground", [-1, 0, 0]));
     /// let error = System::builder("fall").states(["x"]).mode(mode).build().unwrap_err();
@@ -127,12 +133,13 @@ impl UntilBuilder {
     /// taken before it, and states that are not assigned stay.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System, UntilBuilder};
+    /// # use percuss::System;
+    /// use percuss::system::{ModeBuilder, UntilBuilder};
     /// let swap = UntilBuilder::new("swap", "x > 1").reset("x = y").reset("y = x");
     /// let mode = ModeBuilder::new("on").equation("x' = 1").equation("y' = 0").until(swap);
     /// let system = System::builder("swap").states(["x", "y"]).mode(mode).build()?;
     /// assert!(system.modes[0].until[0].reset[0][1].is_one());
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn reset(mut self, text: impl Into<String>) -> Self {
         self.reset.push(Assignment::Text(text.into()));
@@ -142,12 +149,13 @@ impl UntilBuilder {
     /// Adds an assignment by its right side alone, which may be a row of numbers.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System, UntilBuilder};
+    /// # use percuss::System;
+    /// use percuss::system::{ModeBuilder, UntilBuilder};
     /// let halve = UntilBuilder::new("halve", "x > 1").assign("x", [0.5, 0.0]);
     /// let mode = ModeBuilder::new("on").equation("x' = 1").until(halve);
     /// let system = System::builder("halve").states(["x"]).mode(mode).build()?;
     /// assert_eq!(system.modes[0].until[0].reset[0][0].to_f64(), 0.5);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn assign(mut self, state: impl Into<String>, right: impl Into<Expression>) -> Self {
         self.reset.push(Assignment::To { state: state.into(), value: right.into().0 });
@@ -158,7 +166,8 @@ impl UntilBuilder {
     /// which no other can be added. An event without a successor goes on in its own mode.
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System, UntilBuilder};
+    /// # use percuss::System;
+    /// use percuss::system::{ModeBuilder, UntilBuilder};
     /// let mode = ModeBuilder::new("on").equation("x' = 1");
     /// let mode = mode.until(UntilBuilder::new("full", "x > 1").next("off"));
     /// let error = System::builder("tank").states(["x"]).mode(mode).build().unwrap_err();
@@ -177,13 +186,14 @@ impl UntilBuilder {
     /// condition holds does. The last successor has none: [`next`](Self::next).
     ///
     /// ```
-    /// # use percuss::affine::{ModeBuilder, System, UntilBuilder};
+    /// # use percuss::System;
+    /// use percuss::system::{ModeBuilder, UntilBuilder};
     /// let hit = UntilBuilder::new("hit", "x < 0").next_when("v > 1", "up").next("rest");
     /// let up = ModeBuilder::new("up").equation("x' = v").equation("v' = -1").until(hit);
     /// let rest = ModeBuilder::new("rest").equation("x' = 0").equation("v' = 0");
     /// let system = System::builder("hop").states(["x", "v"]).mode(up).mode(rest).build()?;
     /// assert_eq!(system.modes[0].until[0].next.len(), 2);
-    /// # Ok::<(), percuss::affine::SystemError>(())
+    /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn next_when(mut self, condition: impl Into<Expression>, mode: impl Into<String>) -> Self {
         self.next.push((Some(Condition(condition.into().0)), mode.into()));
