@@ -133,8 +133,8 @@ impl Interval {
         power
     }
 
-    /// Whether a width of the units is at least a power of two that is more than a power of ten: the
-    /// ends never round alike then.
+    /// Whether a width of the units is at least a power of two that is more than a power of ten:
+    /// the ends never round alike then.
     fn is_wider(&self, width: &IBig, last: i32) -> bool {
         let power = bits(width) - 1 + self.exponent;
         *width != IBig::ZERO

@@ -3,8 +3,8 @@
 //!
 //! [`answer`] has the kinds of numbers; [`plain`] runs in one arithmetic, and [`escalation`] in one
 //! after the other until the digits are proved. [`steps`] puts samples between the events of a run.
-//! [`event`] and [`proved`] are what is given out, and [`interval`] prints it. Read this file first,
-//! then `event` and `escalation`.
+//! [`event`] and [`proved`] are what is given out, and [`interval`] prints it. Read this file
+//! first, then `event` and `escalation`.
 
 mod answer;
 mod cause;

@@ -4,8 +4,8 @@
 //! is after an impact. [`space`] is the space of all rows that are zero so, and [`graph`] follows
 //! it from event to event. Whether a row belongs to it is decided by [`residue`], in exact
 //! arithmetic modulo two primes. Guards of the forcing angle and a constant are zero at points that
-//! may be rational ([`circle`]), and motion may be exactly rational ([`exact`], and for a mode's rows
-//! [`exact_mode`]). Read `space` first, then `graph`.
+//! may be rational ([`circle`]), and motion may be exactly rational ([`exact`], and [`exact_mode`]
+//! for a mode's rows). Read `space` first, then `graph`.
 
 pub mod circle;
 pub mod exact;

@@ -28,7 +28,7 @@ pub fn stdout(arguments: &[&str]) -> String {
     text(&output.stdout)
 }
 
-/// What a program has printed, but for the lines on its progress, which hang on the machine's speed.
+/// What a program has printed, but for lines on its progress, which hang on the machine's speed.
 pub fn text(bytes: &[u8]) -> String {
     let text = String::from_utf8(bytes.to_vec()).expect("UTF-8");
     text.split_inclusive('\n').filter(|line| !line.starts_with("percuss: so far ")).collect()

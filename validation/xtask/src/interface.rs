@@ -12,8 +12,8 @@ const LIBRARY: &str = "percuss";
 /// Hold the library's public interface against the last release
 ///
 /// Whether it may break is read in CHANGELOG.md: where a line of what is not released begins with
-/// **Breaking:**, or the version is already one that may break, breaks are listed and accepted, else
-/// they are an error. Without a tag there is nothing to hold it against, and the command succeeds.
+/// **Breaking:**, or the version is already one that may break, breaks are listed and accepted,
+/// else they are an error. Without a tag there is nothing to hold it against, and the command succeeds.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Tag or commit of the release [default: the last tag v* before HEAD]
@@ -52,8 +52,8 @@ fn version_of(tag: &str) -> Option<Version> {
     Version::parse(tag.strip_prefix('v')?).ok()
 }
 
-/// Whether the workspace has a version already that may break what the baseline's tag promised: while
-/// a version is made, what it breaks stands below its own heading.
+/// Whether the workspace has a version already that may break what the baseline's tag promised:
+/// while a version is made, what it breaks stands below its own heading.
 fn is_breaking(baseline: &str, now: &Version) -> bool {
     version_of(baseline).is_some_and(|released| versions::may_break(&released, now))
 }

@@ -16,8 +16,8 @@ const SCOREBOARD: &str = "docs/SCOREBOARD.md";
 /// Make a version: checks, changelog, version numbers, speed, scoreboard, packages, tag
 ///
 /// Everything is done by default, in this order: the interface (cargo install cargo-semver-checks),
-/// the files, the checks of .ci/run (half an hour on two cores), a trial of `cargo publish` for every
-/// package (minutes), a commit, the speed (minutes; needs valgrind and a QUIET MACHINE), the
+/// the files, the checks of .ci/run (half an hour on two cores), a trial of `cargo publish` for
+/// every package (minutes), a commit, the speed (minutes; needs valgrind and a QUIET MACHINE), the
 /// scoreboard (half an hour and the integrators of other languages; times in it need a QUIET
 /// MACHINE), a second commit, the tag. Nothing is pushed or published.
 #[derive(clap::Args)]

@@ -141,8 +141,8 @@ fn lock(text: &str, packages: &BTreeSet<String>, new: &Version) -> Result<String
 }
 
 /// A page whose lines `percuss = "0.1"`, which users copy, ask for `new` where it is not what they
-/// ask for, and whose examples print `"percuss": "0.1.0"`, because tests run them. Results stay those
-/// of the version that printed them.
+/// ask for, and whose examples print `"percuss": "0.1.0"`, because tests run them. Results stay
+/// those of the version that printed them.
 fn page(text: &str, old: &Version, new: &Version) -> String {
     let outdated = |word: &str| {
         let asks = word.parse::<VersionReq>().ok();
