@@ -1,11 +1,10 @@
 //! Solver of piecewise-affine hybrid systems, in closed form between their events: impacts,
-//! friction, relays and switches, with events that are proved to be the first, and digits that are
-//! proved on request.
+//! friction, relays and switches, with proved events, and with proved digits on request.
 //!
 //! A system has modes with affine equations; a guard ends a mode, may reset the state, and says
 //! which mode follows. In a mode the motion is a sum of exponentials, sines and powers of time, so
 //! that nothing is integrated step by step: the crate finds where the next guard crosses, and
-//! proves that no earlier crossing was passed.
+//! proves that no earlier crossing was passed, within the rounding of its numbers.
 //!
 //! # A first run
 //!
@@ -75,14 +74,16 @@
 //!
 //! # Many starts
 //!
-//! A [`Solver`] is prepared once and shared by threads; [`Solver::run_from`] takes a start of
-//! [`System::start_at`].
+//! A [`Solver`] is prepared once and shared by threads, as its example shows.
+//! [`Solver::run_from`] takes a start of [`System::start_at`].
 //!
 //! # Endings
 //!
 //! The last event of a run says how it [ends](Ending): at its horizon, where impacts accumulate,
-//! or where the solver cannot decide what comes next, with the [cause](Events::cause). It never
-//! guesses.
+//! or where it cannot go on, with the [cause](Events::cause). A run in [`Proved`] numbers never
+//! guesses: it goes on in more bits, and ends as [`Ending::Undecided`] where these do not suffice.
+//! One in `f64` takes one side where two events are closer than its rounding, and counts that in
+//! [`Events::undecidable`].
 //!
 //! # The oscillator that is built in
 //!

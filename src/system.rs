@@ -19,5 +19,5 @@
 
 pub use crate::affine::{
     Direction, Expression, Forcing, LARGEST_DIMENSION, Mode, ModeBuilder, RationalError, Row,
-    StartPoint, Successor, SystemBuilder, SystemFile, Until, UntilBuilder, Watch,
+    StartPoint, Successor, SystemBuilder, SystemFile, TROUBLE, Until, UntilBuilder, Watch,
 };

@@ -1,6 +1,6 @@
 //! The engine for piecewise-affine systems: [`System`] is read from TOML or made by
 //! [`System::builder`], [`Solver`] prepares it for runs in one arithmetic, and [`Run`] is an
-//! iterator over its events, with bounds of their errors in one of [`Solver::run_enclosed`].
+//! iterator over its events, with bounds of their errors in one of `Solver::run_enclosed`.
 //!
 //! Users of the crate meet it through [`crate::Solver`], whose events have names; the harness and
 //! the tests use it as it is.

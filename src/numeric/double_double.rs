@@ -15,12 +15,12 @@ use xprec::arith::mul_dd;
 ///
 /// ```
 /// use percuss::DoubleDouble;
-/// use percuss::number::Number;
 ///
-/// let third = DoubleDouble::exact(1.0) / DoubleDouble::exact(3.0);
-/// let product = third * DoubleDouble::exact(3.0);
-/// assert_eq!(third.words().0, 1.0 / 3.0);
-/// assert!((product - DoubleDouble::exact(1.0)).to_f64().abs() <= 8.0 * DoubleDouble::UNIT);
+/// let [one, three] = [1.0, 3.0].map(|it| DoubleDouble::new(it, 0.0));
+/// let third = one / three;
+/// assert_eq!(third.to_f64(), 1.0 / 3.0);
+/// assert_eq!(format!("{third:.30}"), "0.333333333333333333333333333333");
+/// assert!((third * three - one).to_f64().abs() <= 8.0 * DoubleDouble::UNIT);
 /// ```
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 pub struct DoubleDouble(Df64);
@@ -44,6 +44,12 @@ impl DoubleDouble {
     #[must_use]
     pub fn words(self) -> (f64, f64) {
         (self.0.hi(), self.0.lo())
+    }
+
+    /// The number rounded to f64.
+    #[must_use]
+    pub fn to_f64(self) -> f64 {
+        self.0.hi()
     }
 
     /// A small whole number of times.

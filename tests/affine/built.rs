@@ -270,7 +270,14 @@ fn an_error_of_the_start_names_it() {
         "start: x: a start is an expression of parameters, cos and sin"
     );
     assert_eq!(begin(&[("x", f64::NAN.into())]), "start: x: a finite number is accepted");
-    assert_eq!(begin(&[("x", 1.into()), ("mode", "on".into())]), "start: mode is given twice");
+    assert_eq!(
+        begin(&[("x", 1.into()), ("mode", "on".into())]),
+        "start: mode is no state: the mode of the start is given before the states"
+    );
+    assert_eq!(
+        begin(&[("x", 1.into()), ("t", 5.into())]),
+        "start: t is no state: the time of the start is given by `start_time`"
+    );
     let other = System::builder("one").states(["x"]).mode(on()).start("off", [("x", 1)]);
     assert_eq!(refusal(other), "start: there is no mode \"off\": accepted is one of on");
     let time = System::builder("one").states(["x"]).mode(on()).start_time(1);

@@ -5,7 +5,6 @@
 use super::{enclosed, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, System};
-use percuss::number::Number;
 use std::f64::consts::{LN_2, PI};
 
 /// A block of two states and a clock beside the decay, in two modes that take turns: the block's

@@ -4,7 +4,6 @@
 use super::{enclosed, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, System};
-use percuss::number::Number;
 use std::f64::consts::PI;
 
 /// A mode that turns at one radian a unit of time from 1/2 on, beside states that stand still.

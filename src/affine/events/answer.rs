@@ -58,6 +58,9 @@ pub trait Running<'a, V> {
     /// The next event, sample or ending.
     fn next(&mut self) -> Option<Event<'a, V>>;
 
+    /// The number of choices so far that rounding leaves open.
+    fn undecidable(&self) -> u64;
+
     /// The cause of an ending that was not decided.
     fn cause(&self) -> Option<Cause>;
 

@@ -329,6 +329,11 @@ impl<'a> Running<'a, Proved> for Escalating<'a> {
         None
     }
 
+    fn undecidable(&self) -> u64 {
+        // A run that follows its errors ends where rounding leaves a choice open.
+        0
+    }
+
     fn cause(&self) -> Option<Cause> {
         let own = self.run.cause()?;
         Some(own.or_named(self.left.cause.as_ref()))

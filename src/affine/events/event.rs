@@ -8,8 +8,8 @@ use std::str::FromStr;
 
 /// An event of a run: the start, an event of the system, a sample at a given time, or the ending.
 ///
-/// Time and state are f64 in a run of a `Solver<f64>`, and [`Proved`](crate::Proved) numbers in one
-/// of a `Solver<Proved>`.
+/// Time and state are numbers of the solver's kind: f64 in a run of a `Solver<f64>`,
+/// [`Proved`](crate::Proved) in one of a `Solver<Proved>`.
 ///
 /// ```
 /// use percuss::{System, gallery};
@@ -24,7 +24,7 @@ use std::str::FromStr;
 /// assert_eq!((end.name(), *end.time()), ("end", 2.0));
 /// # Ok::<(), percuss::SystemError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Event<'a, V> {
     pub(super) system: &'a System,
     pub(super) kind: Kind,
@@ -155,6 +155,14 @@ impl Kind {
     }
 }
 
+impl<V: fmt::Debug> fmt::Debug for Event<'_, V> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut shown = f.debug_struct("Event");
+        shown.field("name", &self.name()).field("mode", &self.mode()).field("time", &self.time);
+        shown.field("state", &self.state).finish()
+    }
+}
+
 impl<'a, V> Event<'a, V> {
     /// The kind of event.
     #[must_use]
@@ -163,7 +171,8 @@ impl<'a, V> Event<'a, V> {
     }
 
     /// The name: that of the system's file, `start`, `sample`, or that of the
-    /// [ending](Ending::as_str).
+    /// [ending](Ending::as_str). An event of a system may be called `start` or `sample`, too:
+    /// [`kind`](Self::kind) tells them apart.
     #[must_use]
     pub fn name(&self) -> &'a str {
         self.kind.name(self.system)

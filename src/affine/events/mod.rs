@@ -33,6 +33,9 @@ use std::iter::FusedIterator;
 /// The significant digits that are wanted of proved numbers, unless a run is told otherwise.
 const USUAL_DIGITS: usize = 17;
 
+/// The largest number of digits that may be wanted: bounds of errors are printed from f64.
+const MOST_DIGITS: usize = 300;
+
 /// A system prepared for runs that answer in numbers of one kind.
 ///
 /// It is prepared once and serves any number of runs, on several threads at the same time.
@@ -172,8 +175,8 @@ pub struct Run<'a, A: Answer> {
 }
 
 impl Run<'_, Proved> {
-    /// Goes on in more bits where the proved numbers have fewer significant digits than so many;
-    /// without it, than 17.
+    /// Goes on in more bits where the proved numbers have fewer significant digits than so many:
+    /// at most 300, to which larger numbers are cut, and 17 without it.
     ///
     /// ```
     /// use percuss::{Proved, System, gallery};
@@ -185,10 +188,11 @@ impl Run<'_, Proved> {
     /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn digits(self, digits: usize) -> Self {
-        Self { digits, ..self }
+        Self { digits: digits.min(MOST_DIGITS), ..self }
     }
 
-    /// Takes at most so many bits: 106 to 3392; without it, 3392.
+    /// Takes at most so many bits: 106, which every run takes, to 3392, which it may take without
+    /// this.
     pub fn max_bits(self, bits: u32) -> Self {
         Self { most_bits: bits, ..self }
     }
@@ -220,7 +224,8 @@ impl<'a, A: Answer> Run<'a, A> {
         self.begin(Horizon::At(time), None, None)
     }
 
-    /// The first so many events: fewer, and then the ending, where the run ends before.
+    /// The first `count` events. A run that ends earlier, or comes to 10^9 of the system's
+    /// [`time_scale`](System::time_scale), has its ending last, which is one of the `count`.
     ///
     /// ```
     /// use percuss::{System, gallery};
@@ -246,9 +251,9 @@ impl<'a, A: Answer> Run<'a, A> {
     ///
     /// let oscillator = System::from_toml(gallery::IMPACT_OSCILLATOR)?;
     /// let solver = oscillator.solver::<f64>()?;
-    /// let impacts = |periods: u32| Ok(solver.run().periods(periods)?.count() - 1);
-    /// // On a periodic orbit each period has as many impacts.
-    /// assert_eq!(impacts(200)?, impacts(100)? + (impacts(200)? - impacts(100)?));
+    /// let impacts = |periods: u32| Ok(solver.run().periods(periods)?.count());
+    /// // Later periods have as many events as earlier ones, once the motion is periodic.
+    /// assert_eq!(impacts(400)? - impacts(300)?, impacts(300)? - impacts(200)?);
     /// # Ok::<(), percuss::SystemError>(())
     /// ```
     ///
@@ -281,7 +286,8 @@ impl<'a, A: Answer> Run<'a, A> {
     /// # Errors
     /// No parts, a system without a start, and a start that [`System::check`] refuses.
     pub fn samples(self, parts: u32) -> Result<Samples<'a, A>, SystemError> {
-        Ok(Samples(self.begin(Horizon::Far, None, Some(parts))?))
+        let events = self.begin(Horizon::Far, None, Some(parts))?;
+        Ok(Samples { events, ending: None })
     }
 
     /// The events up to a time, with samples between them as [`samples`](Self::samples) has them:
@@ -365,6 +371,44 @@ impl<'a, A: Answer> Events<'a, A> {
         self.run.cause()
     }
 
+    /// The number of ties, touches and entries so far that the rounding of this arithmetic does not
+    /// decide: the run takes one side of each. A run in [`Proved`] numbers has none: it goes on in
+    /// more bits instead, and ends where these do not suffice.
+    ///
+    /// ```
+    /// use percuss::{Proved, System, gallery};
+    ///
+    /// // 0.1 and 0.3 are no tenths: in truth the second guard is the first to cross, by 1e-17.
+    /// let system = System::from_toml(r#"
+    ///     schema = 1
+    ///     name = "near-tie"
+    ///     states = ["x", "y"]
+    ///     [parameters]
+    ///     a = 0.1
+    ///     b = 0.3
+    ///     [[mode]]
+    ///     name = "on"
+    ///     equations = ["x' = 1", "y' = 3"]
+    ///     watch = [{ name = "one", guard = "x > a" }, { name = "two", guard = "y > b" }]
+    ///     [start]
+    ///     mode = "on"
+    ///     x = 0
+    ///     y = 0
+    /// "#)?;
+    /// let solver = system.solver::<f64>()?;
+    /// let mut events = solver.run().until(1.0)?;
+    /// assert_eq!(events.by_ref().count(), 3);
+    /// assert!(events.undecidable() > 0);
+    /// let solver = system.solver::<Proved>()?;
+    /// let first = solver.run().until(1.0)?.next().expect("an event");
+    /// assert_eq!(first.name(), "two");
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    #[must_use]
+    pub fn undecidable(&self) -> u64 {
+        self.run.undecidable()
+    }
+
     /// The bits of the arithmetic that the run has come to.
     ///
     /// ```
@@ -398,13 +442,50 @@ impl<'a, A: Answer> Iterator for Events<'a, A> {
 impl<A: Answer> FusedIterator for Events<'_, A> {}
 
 /// The samples of a run, as an iterator.
-pub struct Samples<'a, A: Answer>(Events<'a, A>);
+///
+/// ```
+/// use percuss::{Ending, System, gallery};
+///
+/// let ball = System::from_toml(gallery::BOUNCING_BALL)?;
+/// let solver = ball.solver::<f64>()?;
+/// let mut samples = solver.run().samples(10)?;
+/// // The impacts accumulate at 4.24: there the samples end.
+/// assert_eq!(samples.by_ref().count(), 43);
+/// assert_eq!(samples.ending(), Some(Ending::Accumulation));
+/// # Ok::<(), percuss::SystemError>(())
+/// ```
+pub struct Samples<'a, A: Answer> {
+    events: Events<'a, A>,
+    ending: Option<Ending>,
+}
+
+impl<'a, A: Answer> Samples<'a, A> {
+    /// The ending of the run, once the samples have come to it.
+    #[must_use]
+    pub fn ending(&self) -> Option<Ending> {
+        self.ending
+    }
+
+    /// The events between which the samples lie, from the last sample on: they have the
+    /// [cause](Events::cause) of the ending.
+    #[must_use]
+    pub fn events(&self) -> &Events<'a, A> {
+        &self.events
+    }
+}
 
 impl<'a, A: Answer> Iterator for Samples<'a, A> {
     type Item = Event<'a, A::Value>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        self.0.find(|it| it.kind() == Kind::Sample)
+        self.events.find(|it| match it.kind() {
+            Kind::Sample => true,
+            Kind::End(ending) => {
+                self.ending = Some(ending);
+                false
+            }
+            _ => false,
+        })
     }
 }
 

@@ -56,6 +56,10 @@ impl<'a, T: Number> Running<'a, T> for Plain<'a, T> {
         Some(self.event(&event, is_sample))
     }
 
+    fn undecidable(&self) -> u64 {
+        self.steps.run.work().undecidable
+    }
+
     fn cause(&self) -> Option<Cause> {
         Cause::of(&self.steps.run, self.solver.system())
     }

@@ -1,8 +1,10 @@
 //! A number with a bound of its error, as a value.
 
 use super::interval::{Interval, LEAST_POWER};
+use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::number::{Bound, Number};
 use crate::numeric::two_word::TwoWord;
+use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 use dashu::integer::IBig;
 use dashu::integer::ops::BitTest;
 use std::fmt;
@@ -81,9 +83,9 @@ impl Proved {
         }
     }
 
-    /// A bound of the distance between [`midpoint`](Self::midpoint) and the true value, which
-    /// holds the rounding of the midpoint to f64 only if it is at least that large; infinite where
-    /// nothing is known.
+    /// A bound of the distance between the middle of the numbers that are possible and the true
+    /// value; infinite where nothing is known. [`midpoint`](Self::midpoint) is that middle rounded
+    /// to f64, which may be a unit of its last place beside it.
     #[must_use]
     pub fn error(&self) -> f64 {
         match &self.0 {
@@ -99,7 +101,7 @@ impl Proved {
         matches!(&self.0, Content::Within(it) if it.is_zero())
     }
 
-    /// Whether the number may be this one.
+    /// Whether the number may be this one; of a number of which nothing is known, every one.
     #[must_use]
     pub fn may_be(&self, number: f64) -> bool {
         let Content::Within(own) = &self.0 else { return true };
@@ -184,6 +186,21 @@ impl fmt::Debug for Proved {
         write!(f, "{} ({:e} +- {:e})", self.to_digits(USUAL_DIGITS), self.midpoint(), self.error())
     }
 }
+
+/// Prints the numbers of an arithmetic by the digits that it has, 17 at most without a precision.
+macro_rules! printed {
+    ($($number:ty),*) => {
+        $(
+            impl fmt::Display for $number {
+                fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                    Proved::of(*self, self.bound().abs() * <$number>::unit()).fmt(f)
+                }
+            }
+        )*
+    };
+}
+
+printed!(DoubleDouble, Bits212, Bits424, Bits848, Bits1696, Bits3392);
 
 /// The f64 whose sum a number is, the largest first; the last is not finite where the number is
 /// not, or has more of them than are looked at.

@@ -49,7 +49,7 @@ pub const TROUBLE: [&str; 19] = [
 ///
 /// A system is read by [`System::from_toml`], [`System::from_file`] and [`System::parse`], or built
 /// by [`System::builder`]. All fields may be read and changed; [`System::check`] says whether what
-/// they hold is a system, and every [`Solver`](crate::affine::Solver) asks it.
+/// they hold is a system, and every [`Solver`](crate::Solver) asks it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct System {

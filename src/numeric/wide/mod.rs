@@ -134,6 +134,14 @@ impl<const WORDS: usize, const BITS: usize> Default for Wide<WORDS, BITS> {
     }
 }
 
+impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
+    /// The number rounded to f64; infinite or zero where f64 has no such exponent.
+    #[must_use]
+    pub fn to_f64(self) -> f64 {
+        Number::to_f64(self)
+    }
+}
+
 impl<const WORDS: usize, const BITS: usize> std::fmt::Debug for Wide<WORDS, BITS> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{:?}", self.bound())

@@ -331,7 +331,7 @@ impl SystemBuilder {
     }
 
     /// What the system is for, where it is from, and the kinds of trouble that it makes, of those
-    /// in [`TROUBLE`](crate::affine::TROUBLE).
+    /// in [`TROUBLE`](crate::system::TROUBLE).
     ///
     /// ```
     /// # use percuss::System;

@@ -59,7 +59,8 @@ impl ModeBuilder {
         self
     }
 
-    /// Adds an event that ends the mode. Of two that fire at one instant the first is the event.
+    /// Adds an event that ends the mode. Of two that fire at one instant the one that was
+    /// added first is the event.
     ///
     /// ```
     /// # use percuss::System;

@@ -63,7 +63,15 @@ fn start(
         let what = "a time of the start is not accepted without a start";
         return time.map_or(Ok(None), |_| Err(SystemError::at(&place, what)));
     };
-    // A state of these names is refused where states are named.
+    // A state of these names is refused where states are named, too.
+    for (name, _) in &states {
+        let what = match name.as_str() {
+            "t" => "t is no state: the time of the start is given by `start_time`",
+            "mode" => "mode is no state: the mode of the start is given before the states",
+            _ => continue,
+        };
+        return Err(SystemError::at(&place, what));
+    }
     let mode = ("mode".to_owned(), Expression(Scalar::Text(mode)));
     let time = time.map(|it| ("t".to_owned(), it));
     let entries = placed(&place, [mode].into_iter().chain(time).chain(states))?;
