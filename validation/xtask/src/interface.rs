@@ -13,7 +13,8 @@ const LIBRARY: &str = "percuss";
 ///
 /// Whether it may break is read in CHANGELOG.md: where a line of what is not released begins with
 /// **Breaking:**, or the version is already one that may break, breaks are listed and accepted,
-/// else they are an error. Without a tag there is nothing to hold it against, and the command succeeds.
+/// else they are an error. Without a tag there is nothing to hold it against, and the command
+/// succeeds.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Tag or commit of the release [default: the last tag v* before HEAD]
