@@ -4,11 +4,10 @@
 use super::answer::{Answer, Running, sealed};
 use super::cause::Cause;
 use super::event::{Event, Kind};
-use super::plain::prepared;
 use super::proved::Proved;
 use super::request::Request;
 use super::sizes::Sizes;
-use super::steps::{Sampling, Step, Steps, first_horizon};
+use super::steps::{Step, Steps};
 use crate::affine::model::error::SystemError;
 use crate::affine::model::system::System;
 use crate::affine::solver::Solver;
@@ -19,7 +18,7 @@ use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 use std::sync::OnceLock;
 
 /// The bits of the arithmetics, one after the other.
-const BITS: [u32; 6] = [106, 212, 424, 848, 1696, 3392];
+pub const BITS: [u32; 6] = [106, 212, 424, 848, 1696, 3392];
 
 /// The most bits of an arithmetic.
 pub(super) const MOST_BITS: u32 = BITS[5];
@@ -61,15 +60,12 @@ impl ProvedSolver {
         let solver = match solver.get() {
             Some(solver) => solver,
             None => {
-                let made = prepared(&self.system, self.backward)?;
+                let made = Solver::prepare(&self.system, self.backward)?;
                 solver.get_or_init(|| made)
             }
         };
-        let (system, backward) = (solver.system(), solver.is_backward());
-        let until = first_horizon(request, system, backward);
-        let run = solver.run_enclosed(&request.start, until)?;
-        let sizes = Sizes::of(&run.start());
-        let steps = Steps::of(run, Sampling::of(request, system, backward));
+        let steps = Steps::begin(solver, request, true)?;
+        let sizes = Sizes::of(&steps.run.start());
         Ok(Box::new(InArithmetic { system: &self.system, steps, step: None, sizes }))
     }
 }
@@ -81,7 +77,7 @@ impl Answer for Proved {
     type Prepared = ProvedSolver;
 
     fn prepare(system: &System, backward: bool) -> Result<ProvedSolver, SystemError> {
-        let first = OnceLock::from(prepared(system, backward)?);
+        let first = OnceLock::from(Solver::prepare(system, backward)?);
         Ok(ProvedSolver {
             system: system.clone(),
             backward,
@@ -176,7 +172,7 @@ impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
         let Some(Step { event, is_sample }) = &self.step else { return false };
         match event.what {
             engine::What::End(engine::Ending::Undecided) => !self.steps.run.is_exhausted(),
-            // Of a run with samples these alone are read.
+            // The events of a run with samples are not printed.
             _ if self.steps.has_samples() && !is_sample => false,
             _ => self.sizes.have_too_few_digits(event, digits),
         }
@@ -188,8 +184,8 @@ impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
     }
 
     fn event(&self) -> Option<Event<'a, Proved>> {
-        let Step { event, is_sample } = self.step.as_ref()?;
-        Some(self.proved(event, if *is_sample { Kind::Sample } else { Kind::of(&event.what) }))
+        let step = self.step.as_ref()?;
+        Some(self.proved(&step.event, step.kind()))
     }
 
     fn cause(&self) -> Option<Cause> {
@@ -218,12 +214,10 @@ struct Escalating<'a> {
     given: Count,
     /// The steps that fewer bits have given out, and that are not given out again.
     repeated: Count,
-    /// The number of steps that the run in the present arithmetic has passed.
-    passed: u64,
     left: LeftOpen<'a>,
 }
 
-/// What fewer bits knew of a run that they left undecided: more bits may know less of its motion,
+/// The knowledge of a run that fewer bits left undecided: more bits may know less of its motion,
 /// and run out of work before they meet the guard that fewer of them left open.
 #[derive(Default)]
 struct LeftOpen<'a> {
@@ -246,6 +240,10 @@ impl Count {
         if is_sample { &mut self.samples } else { &mut self.events }
     }
 
+    fn sum(&self) -> u64 {
+        self.events + self.samples
+    }
+
     /// Takes a step off, and says whether it was among those that are counted.
     fn take(&mut self, is_sample: bool) -> bool {
         let count = self.of(is_sample);
@@ -261,7 +259,7 @@ impl<'a> Escalating<'a> {
         let (given, repeated) = (Count::default(), Count::default());
         let request = request.clone();
         let left = LeftOpen::default();
-        let mut own = Self { solver, request, level: 0, run, given, repeated, passed: 0, left };
+        let mut own = Self { solver, request, level: 0, run, given, repeated, left };
         let has_samples = own.request.samples.is_some();
         while own.may_go_on() && !has_samples && own.run.start_needs_more_bits(own.request.digits) {
             own.raise();
@@ -276,13 +274,15 @@ impl<'a> Escalating<'a> {
     /// Keeps the ending at which these bits are left undecided, if it is later than that of fewer.
     fn leave_open(&mut self) {
         let Some(event) = self.run.event() else { return };
-        let is_later = |(passed, other): &(u64, Event<'_, Proved>)| {
+        // Steps that are still to be repeated were not passed in these bits.
+        let passed = self.given.sum() - self.repeated.sum();
+        let is_later = |(others, other): &(u64, Event<'_, Proved>)| {
             let elapsed = other.time().midpoint() - event.time().midpoint();
             let elapsed = if self.solver.backward { -elapsed } else { elapsed };
-            (*passed, elapsed) > (self.passed, 0.0)
+            (*others, elapsed) > (passed, 0.0)
         };
         if !self.left.ending.as_ref().is_some_and(is_later) {
-            self.left.ending = Some((self.passed, event));
+            self.left.ending = Some((passed, event));
         }
         let cause = self.run.cause().filter(Cause::names_a_guard);
         self.left.cause = cause.or(self.left.cause.take());
@@ -292,7 +292,7 @@ impl<'a> Escalating<'a> {
     fn raise(&mut self) {
         // A system and a start that one arithmetic accepts are accepted by each.
         if let Ok(run) = self.solver.begin(self.level + 1, &self.request) {
-            (self.run, self.repeated, self.passed) = (run, self.given, 0);
+            (self.run, self.repeated) = (run, self.given);
         }
         self.level += 1;
     }
@@ -310,11 +310,8 @@ impl<'a> Running<'a, Proved> for Escalating<'a> {
             let is_undecided = self.run.is_undecided();
             if is_undecided {
                 self.leave_open();
-            } else {
-                self.passed += 1;
-                if self.repeated.take(is_sample) {
-                    continue;
-                }
+            } else if self.repeated.take(is_sample) {
+                continue;
             }
             if needs_more {
                 self.raise();

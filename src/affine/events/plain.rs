@@ -4,7 +4,7 @@ use super::answer::{Answer, Running, sealed};
 use super::cause::Cause;
 use super::event::{Event, Kind};
 use super::request::Request;
-use super::steps::{Sampling, Step, Steps, first_horizon};
+use super::steps::Steps;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::system::System;
 use crate::affine::solver::Solver;
@@ -20,40 +20,30 @@ struct Plain<'a, T: Number> {
 
 impl<'a, T: Number> Plain<'a, T> {
     fn begin(solver: &'a Solver<T>, request: &Request) -> Result<Self, SystemError> {
-        let (system, backward) = (solver.system(), solver.is_backward());
-        let until = first_horizon(request, system, backward);
-        let run = solver.run(&request.start, until)?;
-        Ok(Self { solver, steps: Steps::of(run, Sampling::of(request, system, backward)) })
+        Ok(Self { solver, steps: Steps::begin(solver, request, false)? })
     }
 
-    fn event(&self, event: &engine::Event<T>, is_sample: bool) -> Event<'a, T> {
-        let kind = if is_sample { Kind::Sample } else { Kind::of(&event.what) };
-        let accumulation = match event.what {
+    fn event(&self, kind: Kind, event: engine::Event<T>) -> Event<'a, T> {
+        let engine::Event { what, time, state, mode, .. } = event;
+        let time = time.value();
+        let accumulation = match what {
             engine::What::End(engine::Ending::Accumulation(from, to)) => {
-                Some(Box::new([from, to].map(|it| event.time.value() + it)))
+                Some(Box::new([from, to].map(|it| time + it)))
             }
             _ => None,
         };
-        let engine::Event { time, mode, ref state, .. } = *event;
-        Event {
-            system: self.solver.system(),
-            kind,
-            mode,
-            time: time.value(),
-            state: state.clone(),
-            accumulation,
-        }
+        Event { system: self.solver.system(), kind, mode, time, state, accumulation }
     }
 }
 
 impl<'a, T: Number> Running<'a, T> for Plain<'a, T> {
     fn start(&self) -> Event<'a, T> {
-        self.event(&self.steps.run.start(), false)
+        self.event(Kind::Start, self.steps.run.start())
     }
 
     fn next(&mut self) -> Option<Event<'a, T>> {
-        let Step { event, is_sample } = self.steps.next()?;
-        Some(self.event(&event, is_sample))
+        let step = self.steps.next()?;
+        Some(self.event(step.kind(), step.event))
     }
 
     fn undecidable(&self) -> u64 {
@@ -79,7 +69,7 @@ macro_rules! answers {
                 type Prepared = Solver<Self>;
 
                 fn prepare(system: &System, backward: bool) -> Result<Solver<Self>, SystemError> {
-                    prepared(system, backward)
+                    Solver::prepare(system, backward)
                 }
 
                 fn system(prepared: &Solver<Self>) -> &System {
@@ -103,11 +93,3 @@ macro_rules! answers {
 
 // The run of each is compiled here once, and not in every crate that asks for it.
 answers!(f64, DoubleDouble, Bits212, Bits424, Bits848, Bits1696, Bits3392);
-
-/// A solver of a system, forward or backward.
-pub(super) fn prepared<T: Number>(
-    system: &System,
-    backward: bool,
-) -> Result<Solver<T>, SystemError> {
-    if backward { Solver::backward(system) } else { Solver::new(system) }
-}

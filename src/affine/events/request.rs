@@ -1,4 +1,4 @@
-//! What is asked of a run.
+//! The request of a run: its start, its end and its samples.
 
 use crate::affine::model::system::StartPoint;
 

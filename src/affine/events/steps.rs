@@ -1,22 +1,24 @@
 //! The steps of a run in one arithmetic: its events, and between them the samples at given times
 //! where these are asked for.
 
+use super::event::Kind;
 use super::request::{Horizon, Request};
 use crate::affine::arithmetic::clock::Time;
+use crate::affine::model::error::SystemError;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::System;
 use crate::affine::run::Run;
+use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Ending, Event, What};
 use crate::numeric::number::Number;
 
 /// The horizon of a run that ends with a number of events, in the system's units of time.
-const LONGEST: f64 = 1e9;
+pub const LONGEST: f64 = 1e9;
 
 /// A run with the samples that are asked for.
 pub(super) struct Steps<'a, T: Number> {
     pub run: Run<'a, T>,
-    /// The last event, or the start.
-    last: Event<T>,
+    /// Whether an event has come.
     has_begun: bool,
     sampling: Option<Sampling<T>>,
     is_over: bool,
@@ -28,11 +30,29 @@ pub(super) struct Step<T: Number> {
     pub is_sample: bool,
 }
 
+impl<T: Number> Step<T> {
+    pub fn kind(&self) -> Kind {
+        if self.is_sample { Kind::Sample } else { Kind::of(&self.event.what) }
+    }
+}
+
 impl<'a, T: Number> Steps<'a, T> {
-    /// The steps of a run that was begun up to [`first_horizon`].
-    pub fn of(run: Run<'a, T>, sampling: Option<Sampling<T>>) -> Self {
-        let last = run.start();
-        Self { run, last, has_begun: false, sampling, is_over: false }
+    /// The steps of a run that follows its errors, or of one that does not.
+    pub fn begin(
+        solver: &'a Solver<T>,
+        request: &Request,
+        is_enclosed: bool,
+    ) -> Result<Self, SystemError> {
+        let (system, start) = (solver.system(), &request.start);
+        let end = end(request, system, solver.is_backward());
+        // Samples begin at the start.
+        let horizon = if request.samples.is_some() { number(&start.time) } else { end };
+        let run = match is_enclosed {
+            true => solver.run_enclosed(start, horizon)?,
+            false => solver.run(start, horizon)?,
+        };
+        let sampling = Sampling::of(request, system, end, solver.is_backward());
+        Ok(Self { run, has_begun: false, sampling, is_over: false })
     }
 
     /// Whether the run has samples.
@@ -48,24 +68,14 @@ impl<'a, T: Number> Steps<'a, T> {
         let is_horizon = event.what == What::End(Ending::Horizon);
         if let Some(sampling) = self.sampling.as_mut().filter(|_| is_horizon) {
             // The start itself has no rounding of modal co-ordinates.
-            let is_start = !self.has_begun && event.time.value() == self.last.time.value();
-            let event = if is_start { self.last.clone() } else { event };
+            let start = self.run.start();
+            let is_start = !self.has_begun && event.time.value() == start.time.value();
+            let event = if is_start { start } else { event };
             self.is_over = !sampling.next().is_some_and(|next| self.run.go_on(next));
             return Some(Step { event, is_sample: true });
         }
-        if !matches!(event.what, What::End(_)) {
-            self.has_begun = true;
-            self.last.clone_from(&event);
-        }
+        self.has_begun = true;
         Some(Step { event, is_sample: false })
-    }
-}
-
-/// The time up to which a run is begun: its own horizon, or the first sample.
-pub(super) fn first_horizon<T: Number>(request: &Request, system: &System, backward: bool) -> T {
-    match request.samples {
-        Some(_) => number(&request.start.time),
-        None => end(request, system, backward),
     }
 }
 
@@ -93,7 +103,7 @@ fn number<T: Number>(exact: &Rational) -> T {
 }
 
 /// The times of samples, so many in a unit of time.
-pub(super) struct Sampling<T> {
+struct Sampling<T> {
     start: T,
     unit: T,
     parts: T,
@@ -105,11 +115,10 @@ pub(super) struct Sampling<T> {
 
 impl<T: Number> Sampling<T> {
     /// The samples that are asked for, if there are any.
-    pub fn of(request: &Request, system: &System, is_backward: bool) -> Option<Self> {
+    fn of(request: &Request, system: &System, end: T, is_backward: bool) -> Option<Self> {
         let parts = T::exact(f64::from(request.samples?));
         let start = number(&request.start.time);
         let unit = if is_backward { -unit::<T>(system) } else { unit(system) };
-        let end = end(request, system, is_backward);
         Some(Self { start, unit, parts, end, is_backward, number: 1 })
     }
 

@@ -5,8 +5,7 @@ use super::form;
 use super::naming::{check_event, check_kebab, check_symbol};
 use super::rational::Rational;
 use super::system::{
-    LARGEST_COUNT, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, TROUBLE, Until,
-    Watch,
+    LARGEST_COUNT, LARGEST_DIMENSION, Mode, Row, Successor, System, TROUBLE, Until, Watch, is_unit,
 };
 use std::collections::BTreeSet;
 
@@ -51,23 +50,6 @@ impl System {
             own.mode(mode)?;
         }
         self.start.as_ref().map_or(Ok(()), |it| self.check_start(it))
-    }
-
-    /// The start of the system.
-    ///
-    /// # Errors
-    /// A system that has none.
-    pub fn start(&self) -> Result<&StartPoint, SystemError> {
-        self.start.as_ref().ok_or_else(|| SystemError::NoStart { system: self.name.clone() })
-    }
-
-    /// Refuses a start in no mode, or with more or fewer states than the system has.
-    pub(in crate::affine) fn check_start(&self, start: &StartPoint) -> Result<(), SystemError> {
-        let (index, modes) = (start.mode, self.modes.len());
-        if index >= modes {
-            return Err(SystemError::UnknownMode { item: "start".to_owned(), index, modes });
-        }
-        length("start, state", start.state.len(), self.states.len())
     }
 
     fn check_names(&self) -> Result<(), SystemError> {
@@ -175,11 +157,7 @@ impl ModeCheck<'_> {
         let states = self.system.states.len();
         let names = if self.system.forcing.is_some() { &["cos", "sin", "1"][..] } else { &["1"] };
         for (n, entry) in names.iter().enumerate() {
-            let row = &until.reset[states + n];
-            let stays = |(k, it): (usize, &Rational)| {
-                if k == states + n { it.is_one() } else { it.is_zero() }
-            };
-            if !row.iter().enumerate().all(stays) {
+            if !is_unit(&until.reset[states + n], states + n) {
                 return Err(SystemError::Reset { item: self.item.clone(), entry });
             }
         }

@@ -11,6 +11,7 @@
 mod build;
 pub mod builder;
 mod check;
+pub mod ending;
 pub mod error;
 mod expression;
 pub mod file;
@@ -19,4 +20,5 @@ mod naming;
 pub mod rational;
 mod scalar;
 mod source;
+mod start;
 pub mod system;

@@ -1,8 +1,6 @@
 //! The names that states, modes and events may have.
 
-/// The names of a run's endings, which no event may have.
-const ENDINGS: [&str; 6] =
-    ["end", "accumulation", "leaves-domain", "no-progress", "beyond-guard", "undecided"];
+use super::ending::Ending;
 
 /// Names that expressions cannot give to anything else.
 const RESERVED: [&str; 4] = ["cos", "sin", "omega", "phi"];
@@ -43,8 +41,14 @@ pub(super) fn check_kebab(name: &str) -> Result<(), String> {
 
 /// Refuses what is no name of an event.
 pub(super) fn check_event(name: &str) -> Result<(), String> {
-    if ENDINGS.contains(&name) {
+    if name.parse::<Ending>().is_ok() {
         return Err(format!("{name:?} is the name of an ending"));
     }
     check_kebab(name)
+}
+
+/// The error of a name that is that of no mode.
+pub(super) fn unknown_mode<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let accepted = known.collect::<Vec<_>>().join(", ");
+    format!("there is no mode {name:?}: accepted is one of {accepted}")
 }

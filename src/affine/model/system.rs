@@ -16,6 +16,13 @@ use std::str::FromStr;
 /// A row of exact coefficients, one for each entry of z.
 pub type Row = Vec<Rational>;
 
+/// Whether a row is that of the identity for an entry of z: a reset with it leaves the entry as it
+/// is.
+#[must_use]
+pub fn is_unit(row: &Row, n: usize) -> bool {
+    row.iter().enumerate().all(|(k, it)| if k == n { it.is_one() } else { it.is_zero() })
+}
+
 /// The largest number of entries of z.
 pub const LARGEST_DIMENSION: usize = 12;
 

@@ -8,7 +8,6 @@
 //! file first, then `crossed` and `transition`.
 
 mod accumulation;
-pub mod arithmetic;
 mod begin;
 mod crossed;
 mod enclosure;

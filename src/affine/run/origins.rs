@@ -7,7 +7,7 @@
 
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::model::rational::Rational;
-use crate::affine::model::system::{Mode, Row, StartPoint, System, Until};
+use crate::affine::model::system::{Mode, Row, StartPoint, System, Until, is_unit};
 use crate::affine::zeros::circle::Circle;
 use crate::affine::zeros::exact::{Chain, Entries, Fate};
 use crate::affine::zeros::exact_mode::{ExactMode, TurningGuard};
@@ -97,7 +97,7 @@ impl<T: Number> ExactRun<T> {
     /// Passes an event from one mode to another, after which these entries are known.
     pub fn pass(&mut self, [from, to]: [&Mode; 2], until: &Until, next: Origin<T>) {
         self.earlier.insert(0, std::mem::replace(&mut self.entry, next));
-        let goes_on = |n: usize| from.matrix[n] == to.matrix[n] && is_kept(n, &until.reset[n]);
+        let goes_on = |n: usize| from.matrix[n] == to.matrix[n] && is_unit(&until.reset[n], n);
         for earlier in &mut self.earlier {
             forget(&mut earlier.entries, |n, _| !goes_on(n));
             // What moves by an entry that is not known is not known later either.
@@ -123,9 +123,4 @@ fn forget(entries: &mut Entries, is_lost: impl Fn(usize, &Entries) -> bool) -> b
 /// Whether a row needs an entry that is not known.
 fn needs_more(row: &Row, known: &Entries) -> bool {
     row.iter().zip(known).any(|(factor, entry)| !factor.is_zero() && entry.is_none())
-}
-
-/// Whether a row of a reset leaves its entry as it is.
-fn is_kept(n: usize, row: &Row) -> bool {
-    row.iter().enumerate().all(|(k, it)| if k == n { it.is_one() } else { it.is_zero() })
 }

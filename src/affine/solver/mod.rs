@@ -17,7 +17,7 @@ use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::guards::row::ModalRow;
 use crate::affine::modal;
 use crate::affine::model::error::SystemError;
-use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, System};
+use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, System, is_unit};
 use crate::affine::zeros::exact_mode::ExactMode;
 use crate::affine::zeros::graph::ZeroGraph;
 use crate::numeric::number::{Bound, Number};
@@ -62,8 +62,7 @@ impl<T: Number> Solver<T> {
     /// # Errors
     /// A system that [`System::check`] refuses, or whose structural zeros cannot be decided.
     pub fn new(system: &System) -> Result<Self, SystemError> {
-        system.check()?;
-        Self::prepared(system.clone(), false)
+        Self::prepare(system, false)
     }
 
     /// A solver that runs back in time: its times decrease, only watched guards are events, and it
@@ -72,11 +71,16 @@ impl<T: Number> Solver<T> {
     /// # Errors
     /// A system that [`System::check`] refuses, or whose structural zeros cannot be decided.
     pub fn backward(system: &System) -> Result<Self, SystemError> {
-        system.check()?;
-        Self::prepared(system.reversed(), true)
+        Self::prepare(system, true)
     }
 
-    fn prepared(system: System, backward: bool) -> Result<Self, SystemError> {
+    /// A solver that runs forward, as [`Solver::new`] makes it, or [backward](Solver::backward).
+    ///
+    /// # Errors
+    /// A system that [`System::check`] refuses, or whose structural zeros cannot be decided.
+    pub fn prepare(system: &System, backward: bool) -> Result<Self, SystemError> {
+        system.check()?;
+        let system = if backward { system.reversed() } else { system.clone() };
         let mut blocks = Vec::new();
         for mode in &system.modes {
             let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale, bits_for::<T>());
@@ -211,13 +215,10 @@ pub(super) fn numbers<T: Number>(row: &Row) -> Vector<T> {
 
 /// The rows of a reset that are not those of the identity, without their zeros.
 fn changes<T: Number>(reset: &[Row]) -> Vec<Change<T>> {
-    let kept = |n: usize, row: &Row| {
-        row.iter().enumerate().all(|(k, it)| if k == n { it.is_one() } else { it.is_zero() })
-    };
     let factors = |row: &Row| {
         let there = row.iter().enumerate().filter(|(_, it)| !it.is_zero());
         there.map(|(k, it)| (k, rounded(&BigReal::of(it, bits_for::<T>())))).collect()
     };
-    let changed = reset.iter().enumerate().filter(|(n, row)| !kept(*n, row));
+    let changed = reset.iter().enumerate().filter(|(n, row)| !is_unit(row, *n));
     changed.map(|(n, row)| (n, factors(row))).collect()
 }

@@ -5,6 +5,7 @@ mod names;
 
 use crate::affine::model::error::SystemError;
 use crate::affine::model::file::{GivenParameter, StartTable, SystemFile};
+use crate::affine::model::naming::unknown_mode;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::scalar::Scalar;
 use crate::affine::model::system::{LARGEST_COUNT, LARGEST_DIMENSION, StartPoint, System, TROUBLE};
@@ -101,13 +102,10 @@ fn start_point(
     let refuse = |what: &str| SystemError::at(&table.place, what);
     let known: Vec<_> = places.keys().map(String::as_str).collect();
     let mode = match table.entries.get("mode") {
-        Some(GivenParameter { value: Scalar::Text(name), place }) => {
-            places.get(name).copied().ok_or_else(|| {
-                let what =
-                    format!("there is no mode {name:?}: accepted is one of {}", known.join(", "));
-                SystemError::at(place, &what)
-            })?
-        }
+        Some(GivenParameter { value: Scalar::Text(name), place }) => places
+            .get(name)
+            .copied()
+            .ok_or_else(|| SystemError::at(place, &unknown_mode(name, known.iter().copied())))?,
         Some(GivenParameter { place, .. }) => {
             let what = format!("mode is no number: accepted is one of {}", known.join(", "));
             return Err(SystemError::at(place, &what));

@@ -5,7 +5,7 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::expression::expression;
 use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
 use crate::affine::model::form::Form;
-use crate::affine::model::naming::check_event;
+use crate::affine::model::naming::{check_event, unknown_mode};
 use crate::affine::model::rational::Rational;
 use crate::affine::model::scalar::{Assignment, Condition};
 use crate::affine::model::system::{Direction, LARGEST_COUNT, Mode, Row, Successor, Until, Watch};
@@ -163,12 +163,8 @@ impl ModeReader<'_> {
                 return refuse("every successor but the last has a `when`, and the last has none");
             }
             let Some(mode) = self.places.get(entry.mode.get_ref()) else {
-                let known: Vec<_> = self.places.keys().map(String::as_str).collect();
-                let what = format!(
-                    "there is no mode {:?}: accepted is one of {}",
-                    entry.mode.get_ref(),
-                    known.join(", ")
-                );
+                let known = self.places.keys().map(String::as_str);
+                let what = unknown_mode(entry.mode.get_ref(), known);
                 return Err(self.file.error(&entry.mode.span(), &what));
             };
             let when = entry.when.as_ref().map(|it| self.guard(names, it)).transpose()?;

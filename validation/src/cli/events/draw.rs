@@ -7,7 +7,7 @@ use crate::cli::shared::names;
 use crate::picture::{self, MOST_STATES, SystemMotion};
 use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};
-use percuss::affine::{self, Arithmetic, System, Time, What};
+use percuss::affine::{self, Solver, System, Time, What};
 use percuss::{Event, Kind, Proved};
 
 /// The indices of the states that `--states` names, or of the first ones.
@@ -61,7 +61,7 @@ pub(super) fn write(
     output: &OutputFlags<Format>,
     format: Format,
 ) -> Result<()> {
-    let solver = DoubleDouble::solver(system, backward)?;
+    let solver = Solver::<DoubleDouble>::prepare(system, backward)?;
     let motion = SystemMotion::of(&solver, run, shown);
     let all = system.states.len();
     if shown.len() == MOST_STATES && all > MOST_STATES {

@@ -20,17 +20,14 @@ use crate::systems::{SYSTEMS, named};
 use crate::truth::DoubleDouble;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::{self, SystemFile};
+use percuss::affine::{self, BITS, LONGEST, SystemFile};
 use percuss::{Proved, Solver, System};
 use progress::RunEnd;
 use rows::{Limits, Rows};
 use std::path::{Path, PathBuf};
 
-/// The fewest and the most bits of an arithmetic.
-const BITS: std::ops::RangeInclusive<u32> = 106..=3392;
-
-/// The horizon of --events, in the system's units of time.
-const LONGEST: f64 = 1e9;
+/// The most bits that a run may take.
+const MOST_BITS: u32 = BITS[BITS.len() - 1];
 
 /// The number of events after which a run is stopped, where neither --events nor --max-events is
 /// given.
@@ -70,7 +67,7 @@ pub(super) struct Arguments {
     max_events: Option<usize>,
     /// The most bits that a run may take: it begins with 106 and takes twice as many where these
     /// do not decide or have too few digits [default: 3392]
-    #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(u64::from(*BITS.start()), u64::from(*BITS.end())), allow_hyphen_values = true)]
+    #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(u64::from(BITS[0]), u64::from(MOST_BITS)), allow_hyphen_values = true)]
     max_bits: Option<u32>,
     /// A file whose [start] replaces the system's, and whose [parameters] replace some; a case of
     /// the system serves too
@@ -135,7 +132,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         solver: &solver,
         digits: if arguments.digits.as_deref() == Some("25") { 25 } else { 17 },
         limits,
-        most_bits: arguments.max_bits.unwrap_or(*BITS.end()),
+        most_bits: arguments.max_bits.unwrap_or(MOST_BITS),
         bar: bar.as_ref(),
     };
     let mut end = RunEnd::default();

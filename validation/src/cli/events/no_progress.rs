@@ -2,7 +2,7 @@
 //! what to write in the system's file.
 
 use super::progress::{AT_ONCE, Turned};
-use percuss::affine::{Rational, Row, System, Until};
+use percuss::affine::{Rational, Row, System, Until, is_unit};
 use std::collections::VecDeque;
 
 /// The largest number of events that are named.
@@ -92,18 +92,13 @@ impl Turn<'_> {
 
     /// Whether two events without resets have one guard, which they cross in opposite directions.
     fn faces(&self, other: &Self) -> bool {
-        let rests = |it: &Self| it.until.reset.iter().enumerate().all(|(n, row)| is_unit(n, row));
+        let rests = |it: &Self| it.until.reset.iter().enumerate().all(|(n, row)| is_unit(row, n));
         let [own, others] = [&self.until.guard, &other.until.guard];
         let Some(at) = own.iter().position(|it| !it.is_zero()) else { return false };
         let factor = &others[at] / &own[at];
         let is_multiple = own.iter().zip(others).all(|(a, b)| *b == a * &factor);
         rests(self) && rests(other) && is_multiple && factor < Rational::ZERO
     }
-}
-
-/// Whether a row of a reset leaves its entry as it is.
-fn is_unit(n: usize, row: &Row) -> bool {
-    row.iter().enumerate().all(|(k, it)| if k == n { it.is_one() } else { it.is_zero() })
 }
 
 /// A row times a matrix.
