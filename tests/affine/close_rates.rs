@@ -1,7 +1,7 @@
 //! Eigenvalues that are close to each other, with couplings that are large beside their distance.
 
 use super::{enclosed, events, names, system};
-use percuss::affine::DoubleDouble;
+use percuss::affine::{Bits212, DoubleDouble};
 use percuss::affine::System;
 
 fn watched(states: &str, forcing: &str, equations: &str, guard: &str, start: &str) -> System {
@@ -98,4 +98,20 @@ fn what_is_zero_does_not_grow() {
         let (x, off) = (end.state[0].words().0.abs(), end.errors.as_ref().unwrap().state[0]);
         assert!(x <= off, "{rate}: {x:e} is off by more than {off:e}");
     }
+}
+
+/// v decays to 1e-63 while x, which does not act on it, stays near 1: v keeps its sign for ever.
+#[test]
+fn what_does_not_depend_on_large_neighbours() {
+    let (a, d, until) = (1.0 / 4e5, 1.0 / 4e3, 470_000.0);
+    let equations = "\"x' = v - x/400000\", \"v' = -101/400000*v\"";
+    let falling = watched("\"x\", \"v\"", "", equations, "v > 0", "x = 1\nv = -0.0000025");
+    let all = enclosed::<Bits212>(&falling, until);
+    assert_eq!(names(&falling, &all), ["end"]);
+    let end = &all[0];
+    let v = -a * f64::exp(-(a + d) * until);
+    let x = f64::exp(-a * until) * (1.0 + a / d * (f64::exp(-d * until) - 1.0));
+    let own = [0, 1].map(|n| end.state[n].to_f64());
+    assert!((own[1] / v - 1.0).abs() < 1e-12, "{:e} is not {v:e}", own[1]);
+    assert!((own[0] / x - 1.0).abs() < 1e-12, "{:e} is not {x:e}", own[0]);
 }

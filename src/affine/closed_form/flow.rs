@@ -15,6 +15,8 @@ use std::ops::Range;
 pub struct ModeFlow<T: Number> {
     pub dimension: usize,
     pub blocks: Vec<FlowBlock<T>>,
+    /// The co-ordinates whose norms are kept: those of each block, then parts of blocks.
+    pub subspaces: Vec<Subspace>,
     /// The longest time for which bounds are asked: a growing block grows by at most e in it.
     pub longest: f64,
     /// The largest speed of the blocks ([`modal::Block::speed`]).
@@ -31,6 +33,16 @@ pub struct ModeFlow<T: Number> {
     from_modal: Vec<Vector<T>>,
     /// Bounds of the errors of the entries of X and of W, by columns.
     off: [Vec<Vector<T::Bound>>; 2],
+}
+
+/// Modal co-ordinates that move by themselves: all of a block, or its last ones where these do not
+/// depend on those before them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subspace {
+    /// The block's index.
+    pub block: usize,
+    /// The indices of the co-ordinates.
+    pub range: Range<usize>,
 }
 
 /// A block of modal co-ordinates, which move independently of other blocks.
@@ -52,6 +64,7 @@ impl<T: Number> ModeFlow<T> {
         let mut flow = Self {
             dimension,
             blocks: Vec::new(),
+            subspaces: subspaces(blocks),
             longest: f64::INFINITY,
             speed: 0.0,
             to_modal: Vec::new(),
@@ -226,7 +239,7 @@ impl<T: Number> ModeFlow<T> {
         self.state(&later.y)
     }
 
-    /// The norms of each block's co-ordinates.
+    /// The norms of the co-ordinates of each of `subspaces`.
     #[inline]
     pub fn norms(&self, y: &Vector<T>) -> Vector<T::Bound> {
         let mut norms = [T::Bound::ZERO; LARGEST_DIMENSION];
@@ -234,34 +247,34 @@ impl<T: Number> ModeFlow<T> {
         norms
     }
 
-    /// Overwrites the norms of each block's co-ordinates; entries beyond the blocks stay.
+    /// Overwrites the norms of the co-ordinates of each of `subspaces`; entries beyond them stay.
     #[inline]
     pub fn set_norms(&self, norms: &mut Vector<T::Bound>, y: &Vector<T>) {
-        for (place, block) in norms.iter_mut().zip(&self.blocks) {
-            *place = norm(&y[block.range()]);
+        for (place, subspace) in norms.iter_mut().zip(&self.subspaces) {
+            *place = norm(&y[subspace.range.clone()]);
         }
     }
 
-    /// The norms of each block's sizes or errors.
+    /// The norms of sizes or errors in each of `subspaces`.
     pub fn norms_of_bounds(&self, sizes: &Vector<T::Bound>) -> Vector<T::Bound> {
         let mut norms = [T::Bound::ZERO; LARGEST_DIMENSION];
-        for (place, block) in norms.iter_mut().zip(&self.blocks) {
-            *place = euclidean(sizes[block.range()].iter().copied());
+        for (place, subspace) in norms.iter_mut().zip(&self.subspaces) {
+            *place = euclidean(sizes[subspace.range.clone()].iter().copied());
         }
         norms
     }
 
-    /// Norms of errors of each block's co-ordinates, a time later at most, but for what
+    /// Norms of errors in each of `subspaces`, a time later at most, but for what
     /// [`ModalRow::bound`](crate::affine::guards::row::ModalRow::bound) adds.
     pub fn decayed(&self, norms: &Vector<T::Bound>, time: f64) -> Vector<T::Bound> {
         let mut later = *norms;
-        for (norm, block) in later.iter_mut().zip(&self.blocks) {
-            *norm *= block.motion.decay(time);
+        for (norm, subspace) in later.iter_mut().zip(&self.subspaces) {
+            *norm *= self.blocks[subspace.block].motion.decay(time);
         }
         later
     }
 
-    /// Bounds of the errors that underflow makes in each block's modal co-ordinates: none in zeros.
+    /// Bounds of the errors that underflow makes in each of `subspaces`: none in zeros.
     pub fn underflow(&self, y: &Vector<T>) -> Vector<T::Bound> {
         let lost = |norm: T::Bound| match norm > 0.0 {
             true => T::Bound::UNDERFLOW * 4.0 * (T::Bound::of(1.0) + norm),
@@ -298,6 +311,29 @@ impl<T: Number> FlowBlock<T> {
         let (size, growth) = (block.matrix.len(), BlockGrowth::of(block));
         Self { at, size, speed: block.speed(), motion, growth }
     }
+}
+
+/// The subspaces of blocks: each block, then the last co-ordinates of blocks that are triangular
+/// there, but for polynomials, whose high derivatives are zero. Their number is at most that of all
+/// co-ordinates.
+fn subspaces(blocks: &[modal::Block]) -> Vec<Subspace> {
+    let mut end = 0;
+    let mut whole = Vec::new();
+    for (block, it) in blocks.iter().enumerate() {
+        let range = end..end + it.matrix.len();
+        end = range.end;
+        whole.push(Subspace { block, range });
+    }
+    let parts = |Subspace { block, range }: &Subspace| {
+        let (block, Range { start, end }) = (*block, range.clone());
+        let own = &blocks[block];
+        let is_kept = BlockGrowth::of(own) != BlockGrowth::Polynomial;
+        let first = (1..range.len()).filter(|first| is_kept && own.moves_alone_from(*first));
+        first.map(move |first| Subspace { block, range: start + first..end }).collect::<Vec<_>>()
+    };
+    let parts: Vec<_> = whole.iter().flat_map(parts).collect();
+    whole.extend(parts);
+    whole
 }
 
 /// The product of a matrix, given by its columns, with a vector; entries beyond its rows are zero.

@@ -125,7 +125,8 @@ impl<T: Number> GuardedSegment<'_, T> {
     ) -> T::Bound {
         let size = |part: &RowPart<T::Bound>| {
             // Zeros contribute nothing, even where their factors overflow.
-            let sizes = at.modal.sizes[self.flow.blocks[part.block].range()].iter().copied();
+            let sizes =
+                at.modal.sizes[self.flow.subspaces[part.subspace].range.clone()].iter().copied();
             let sizes: T::Bound = sizes.sum();
             if sizes == 0.0 {
                 return T::Bound::ZERO;
@@ -154,7 +155,7 @@ fn enclose<T: Number>(
         let own = part_of(row, part, track, &left.modal.y);
         value += match part.growth {
             BlockGrowth::Decaying => own.max(T::Bound::ZERO) - own,
-            BlockGrowth::Bounded => part.norms[0] * left.norms[part.block] - own,
+            BlockGrowth::Bounded => part.norms[0] * left.norms[part.subspace] - own,
             BlockGrowth::Polynomial | BlockGrowth::Growing(_) => break,
         };
         let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { T::Bound::ZERO };
@@ -236,7 +237,7 @@ fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize
         let own = match part.growth {
             BlockGrowth::Decaying if from > 0.0 => [from * OUTWARD, to * OUTWARD],
             BlockGrowth::Decaying => [to / OUTWARD; 2],
-            _ => [part.norms[0] * ends.left.norms[part.block] * OUTWARD; 2],
+            _ => [part.norms[0] * ends.left.norms[part.subspace] * OUTWARD; 2],
         };
         raise = [raise[0] + own[0], raise[1] + own[1]];
     }

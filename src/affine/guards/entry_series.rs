@@ -17,7 +17,7 @@ pub(super) struct EntrySeries<T: Number> {
 pub(super) struct SegmentEntry<T: Number> {
     /// The entry's co-ordinates, without the rounding of those that are no polynomials.
     pub modal: ModalState<T>,
-    /// The norms of each block's sizes.
+    /// The norms of the sizes in each of the flow's subspaces.
     pub norms: Vector<T::Bound>,
     /// The time up to which the series are asked for.
     pub until: f64,

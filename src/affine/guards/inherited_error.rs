@@ -15,7 +15,7 @@ pub struct InheritedError<B> {
     /// Bounds of value and derivatives at entry, of the blocks that are polynomials of the time: so
     /// an error of a rate is none of the value before time has passed.
     pub orders: [B; ORDERS],
-    /// Bounds of the norms of the other blocks' co-ordinates at entry.
+    /// Bounds of the norms of the other errors at entry, in each of the flow's subspaces.
     pub norms: Vector<B>,
 }
 

@@ -41,7 +41,7 @@ pub struct GuardedSegment<'a, T: Number> {
     blocks: u16,
     /// Whether the fastest block of a guard which can cross is one decay.
     pub has_decay: bool,
-    /// The norms of the entry's blocks.
+    /// The norms of the entry, in each of the flow's subspaces.
     norms: Vector<T::Bound>,
 }
 
@@ -62,7 +62,7 @@ pub struct GuardedPoint<T: Number> {
     pub to_crossing: T,
     /// The modal co-ordinates; those of blocks without a part in any guard are the entry's.
     pub modal: ModalState<T>,
-    /// The norms of each block's co-ordinates, after [`GuardedSegment::measure_norms`].
+    /// The norms in each of the flow's subspaces, after [`GuardedSegment::measure_norms`].
     pub norms: Vector<T::Bound>,
     is_measured: bool,
     /// The value and three derivatives of each guard.
@@ -155,7 +155,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
     pub fn begin(&self, point: &mut GuardedPoint<T>) {
         point.start(self);
         // One by one: wide registers would wait for norms just written.
-        let norms = point.norms.iter_mut().zip(&self.norms).take(self.flow.blocks.len());
+        let norms = point.norms.iter_mut().zip(&self.norms).take(self.flow.subspaces.len());
         norms.for_each(|(norm, own)| *norm = *own);
         point.is_measured = true;
         point.make_room(self.rows.len());
@@ -240,7 +240,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         if self.is_by_series(n, time) { self.zeros[n] } else { 0 }
     }
 
-    /// Works out the norms of a point's blocks.
+    /// Works out a point's norms in each of the flow's subspaces.
     #[inline]
     pub fn measure_norms(&self, point: &mut GuardedPoint<T>) {
         if !point.is_measured {

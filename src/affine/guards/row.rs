@@ -4,7 +4,7 @@
 use crate::affine::arithmetic::real::{BigReal, bits_for};
 use crate::affine::arithmetic::vector::{Vector, add_product, vector};
 use crate::affine::closed_form::bound::{self, BlockGrowth, ORDERS};
-use crate::affine::closed_form::flow::FlowBlock;
+use crate::affine::closed_form::flow::{FlowBlock, ModeFlow, Subspace};
 use crate::affine::closed_form::modal_state::ModalState;
 use crate::affine::modal;
 use crate::affine::model::system::Row;
@@ -44,8 +44,8 @@ pub struct RowColumn<T: Number> {
 /// A block's part in a row.
 #[derive(Clone, Debug)]
 pub struct RowPart<B> {
-    /// The block's index.
-    pub block: usize,
+    /// The index of the smallest of the flow's subspaces in which the part lies.
+    pub subspace: usize,
     /// The first column of the block and the one after its last, among those of the row.
     pub columns: (usize, usize),
     /// How the block's part may grow.
@@ -56,9 +56,9 @@ pub struct RowPart<B> {
 }
 
 impl<T: Number> ModalRow<T> {
-    /// A row of z in the modal co-ordinates of a closed form's blocks, of which `blocks` are the
-    /// exact forms.
-    pub fn of(row: &Row, flow: &[FlowBlock<T>], blocks: &[modal::Block]) -> Self {
+    /// A row of z in the modal co-ordinates of a closed form, of whose blocks `blocks` are the exact
+    /// forms.
+    pub fn of(row: &Row, flow: &ModeFlow<T>, blocks: &[modal::Block]) -> Self {
         let row: Vec<BigReal> = row.iter().map(|it| BigReal::of(it, bits_for::<T>())).collect();
         let parts: Vec<_> = blocks.iter().map(|block| bound::derivatives(&row, block)).collect();
         let order = |k: usize| {
@@ -81,17 +81,19 @@ impl<T: Number> ModalRow<T> {
         for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
             let norms = bound::norms::<T::Bound>(block, part);
             if norms.iter().any(|it| *it > 0.0) {
-                modal.add_part(n, &flow[n], norms, |j| off(&row, block, j));
+                let subspace = smallest_subspace(flow, n, part);
+                modal.add_part((n, subspace), &flow.blocks[n], norms, |j| off(&row, block, j));
             }
         }
         modal.decay_rate = modal.parts.first().and_then(RowPart::decay_rate);
         modal
     }
 
-    /// Adds the part of a block; `off` bounds the errors of the factors of its co-ordinates.
+    /// Adds the part of a block, which lies in a subspace; `off` bounds the errors of the factors
+    /// of its co-ordinates.
     fn add_part(
         &mut self,
-        n: usize,
+        (n, subspace): (usize, usize),
         block: &FlowBlock<T>,
         norms: [T::Bound; ORDERS],
         off: impl Fn(usize) -> T::Bound,
@@ -106,7 +108,7 @@ impl<T: Number> ModalRow<T> {
             }
         }
         let columns = (first, self.columns.len());
-        self.parts.push(RowPart { block: n, columns, growth: block.growth, norms });
+        self.parts.push(RowPart { subspace, columns, growth: block.growth, norms });
         self.blocks |= 1 << n;
     }
 
@@ -191,8 +193,7 @@ impl<T: Number> ModalRow<T> {
         [orders, sizes]
     }
 
-    /// A bound of the derivative of an order over `length`, from the norms of the blocks'
-    /// co-ordinates.
+    /// A bound of the derivative of an order over `length`, from the norms of the flow's subspaces.
     #[inline]
     pub fn bound(&self, order: usize, sizes: &Vector<T::Bound>, length: f64) -> T::Bound {
         let mut sum = T::Bound::ZERO;
@@ -237,17 +238,27 @@ impl<B: Bound> RowPart<B> {
         is_decay.then(|| (self.norms[1] / self.norms[0]).to_f64())
     }
 
-    /// A bound of the part in a derivative over `length`, from the norms of the blocks'
-    /// co-ordinates.
+    /// A bound of the part in a derivative over `length`, from the norms of the flow's subspaces.
     #[inline]
     pub fn bound(&self, order: usize, length: f64, sizes: &Vector<B>) -> B {
-        let size = sizes[self.block];
+        let size = sizes[self.subspace];
         let norm =
             if size == 0.0 { B::ZERO } else { self.growth.bound(&self.norms, order, length) };
         // Zeros contribute nothing, even where their factors overflow. A bound that is not zero is
         // kept from underflow, because derivatives bounded by zero are taken for a polynomial's.
         if norm == 0.0 { B::ZERO } else { (norm * size).max(B::UNDERFLOW) }
     }
+}
+
+/// The index of the smallest subspace in which a row's part of a block lies in all derivatives. Of
+/// an entry that is large beside what the row can ever see of it, the bounds then know nothing.
+fn smallest_subspace<T: Number>(flow: &ModeFlow<T>, n: usize, part: &[Vec<BigReal>]) -> usize {
+    let start = flow.blocks[n].at;
+    let holds = |subspace: &Subspace| {
+        let before = subspace.range.start - start;
+        subspace.block == n && part.iter().all(|it| it[..before].iter().all(BigReal::is_zero))
+    };
+    flow.subspaces.iter().rposition(holds).unwrap_or(n)
 }
 
 /// A bound of the error of a row's factor of a block's co-ordinate.

@@ -89,6 +89,11 @@ impl Block {
         };
         self.matrix.iter().zip(&parts).map(rate).fold(norm(&self.matrix), f64::max)
     }
+
+    /// Whether the co-ordinates from this one on do not depend on those before it.
+    pub fn moves_alone_from(&self, first: usize) -> bool {
+        self.matrix[first..].iter().all(|row| row[..first].iter().all(BigReal::is_zero))
+    }
 }
 
 /// The blocks of a matrix, in numbers of so many bits. Entries of z that do not depend on each

@@ -107,7 +107,7 @@ impl<B: Bound> Enclosure<B> {
             let (norms, mut orders) = (flow.norms_of_bounds(&own), [B::ZERO; ORDERS]);
             for part in &row.parts {
                 if part.growth != BlockGrowth::Polynomial {
-                    sums.norms[part.block] += norms[part.block] * OUTWARD;
+                    sums.norms[part.subspace] += norms[part.subspace] * OUTWARD;
                     continue;
                 }
                 for it in &row.columns[part.columns.0..part.columns.1] {

@@ -89,7 +89,7 @@ impl<T: Number> Solver<T> {
         let graph = ZeroGraph::of(&system);
         let graph = graph.ok_or_else(|| SystemError::Undecidable { item: system.name.clone() })?;
         let flows: Vec<ModeFlow<T>> = blocks.iter().map(|it| ModeFlow::of(it)).collect();
-        let row = |row: &Row, mode: usize| ModalRow::of(row, &flows[mode].blocks, &blocks[mode]);
+        let row = |row: &Row, mode: usize| ModalRow::of(row, &flows[mode], &blocks[mode]);
         let mode = |(n, mode): (usize, &Mode)| {
             let until = mode.until.iter().map(|it| &it.guard);
             let guards: Vec<_> = until.chain(mode.watch.iter().map(|it| &it.guard)).collect();
