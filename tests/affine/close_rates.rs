@@ -1,8 +1,8 @@
 //! Eigenvalues that are close to each other, with couplings that are large beside their distance.
 
 use super::{enclosed, events, names, system};
-use percuss::affine::{Bits212, DoubleDouble};
 use percuss::affine::System;
+use percuss::affine::{Bits212, DoubleDouble};
 
 fn watched(states: &str, forcing: &str, equations: &str, guard: &str, start: &str) -> System {
     system(&format!(

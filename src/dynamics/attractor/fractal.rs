@@ -150,7 +150,9 @@ pub fn entropy(basins: &Basins, side: u32) -> Entropy {
         }
         let cells = (wide * wide) as f64;
         let parts = counts.values().map(|count| f64::from(*count) / cells);
-        boxes.push((counts.len(), parts.map(|share| -share * libm::log(share)).sum::<f64>()));
+        // From 0 on: a sum of nothing but -0 is -0.
+        let entropy = parts.fold(0.0, |sum, share| sum - share * libm::log(share));
+        boxes.push((counts.len(), entropy));
     }
     let all = boxes.iter().map(|it| it.1).sum::<f64>() / boxes.len() as f64;
     let mixed: Vec<f64> = boxes.iter().filter(|it| it.0 > 1).map(|it| it.1).collect();
