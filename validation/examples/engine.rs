@@ -4,8 +4,8 @@
 //! `cargo run --release -p percuss-validation --example engine -- validate -e '^(exact|heun)$'`
 
 use percuss_validation::engine::{
-    Accuracy, Colours, Declaration, Engine, Equations, Event, Failure, Limits, Location, Numbers,
-    Outcome, Role, Stepping, Task, Work,
+    Accuracy, Class, Colours, Declaration, Engine, Equations, Event, Failure, Limits, Location,
+    Numbers, Outcome, Role, Stepping, Task, Work,
 };
 use percuss_validation::system::{Affine, Values};
 use std::process::ExitCode;
@@ -20,6 +20,7 @@ impl Engine for Heun {
             library: "an example",
             version: "1.0.0".to_owned(),
             method: "Heun, fixed steps",
+            class: Some(Class::Explicit),
             order: Some(2),
             events: Location::Harness,
             dense_output: false,
@@ -63,10 +64,10 @@ impl Engine for Heun {
             t = if length < task.span - t { t + length } else { task.span };
             heun.work.steps += 1;
             if let Some((guard, _)) = found {
-                let before = mode;
-                (mode, state) = equations.after_event(before, guard, t, &state);
-                entered = equations.enter(Some((before, guard)), mode, t, &state);
-                outcome.events.push(Event { event: guard, mode, elapsed: t, state });
+                let (left, before) = (mode, Some(state));
+                (mode, state) = equations.after_event(left, guard, t, &state);
+                entered = equations.enter(Some((left, guard)), mode, t, &state);
+                outcome.events.push(Event { event: guard, mode, elapsed: t, state, before });
             }
         }
         (outcome.end, outcome.ended_at, outcome.work) = (state, t, heun.work);

@@ -35,7 +35,8 @@ const fn spoiled(name: &'static str, change: fn(&mut OscillatorOutcome)) -> Spoi
 
 /// Two events that are not there, from this time on.
 fn add_spurious(outcome: &mut OscillatorOutcome, at: usize, elapsed: f64) {
-    let event = |phase, elapsed| Event { event: 0, mode: phase, elapsed, state: [0.0; 4] };
+    let event =
+        |phase, elapsed| Event { event: 0, mode: phase, elapsed, state: [0.0; 4], before: None };
     let pair = [event(Phase::Contact, elapsed), event(Phase::NoContact, elapsed + 1e-9)];
     outcome.events.splice(at..at, pair);
 }

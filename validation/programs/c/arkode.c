@@ -62,9 +62,9 @@ static void make(percuss_course *course) {
     SUNContext_Free(&context);
 }
 
-#define SET_UP(name, method, order)                                                               \
-    "{\"name\":\"" name "\",\"method\":\"" method "\",\"order\":" order ","                        \
-    "\"events\":\"library\",\"dense_output\":true,\"stepping\":\"adaptive\"}"
+#define SET_UP(name, method, class, order)                                                        \
+    "{\"name\":\"" name "\",\"method\":\"" method "\",\"class\":\"" class "\","                    \
+    "\"order\":" order ",\"events\":\"library\",\"dense_output\":true,\"stepping\":\"adaptive\"}"
 #define DIRK "SDIRK 5(3)4, the default"
 #define ERK "Zonneveld 5(3)4, the default"
 
@@ -72,9 +72,10 @@ int main(void) {
     char version[32] = "unknown";
     SUNDIALSGetVersion(version, sizeof version);
     return percuss_serve("sundials-arkode", version, "C11, gcc " __VERSION__,
-                         "[" SET_UP("dirk", DIRK, "4") "," SET_UP("erk", ERK, "4") ","
-                             SET_UP("erk8", "Fehlberg 13(7)8", "8") ","
-                             SET_UP("dirk-default", DIRK, "4") ","
-                             SET_UP("erk-default", ERK, "4") "]",
+                         "[" SET_UP("dirk", DIRK, "implicit", "4") ","
+                             SET_UP("erk", ERK, "explicit", "4") ","
+                             SET_UP("erk8", "Fehlberg 13(7)8", "explicit", "8") ","
+                             SET_UP("dirk-default", DIRK, "implicit", "4") ","
+                             SET_UP("erk-default", ERK, "explicit", "4") "]",
                          make);
 }

@@ -69,8 +69,8 @@ static void make(percuss_course *course) {
 }
 
 #define SET_UP(name, method)                                                                      \
-    "{\"name\":\"" name "\",\"method\":\"" method "\",\"events\":\"library\","                     \
-    "\"dense_output\":true,\"stepping\":\"adaptive\"}"
+    "{\"name\":\"" name "\",\"method\":\"" method "\",\"class\":\"multistep\","                   \
+    "\"events\":\"library\",\"dense_output\":true,\"stepping\":\"adaptive\"}"
 #define BDF "BDF of orders 1 to 5 in Nordsieck form"
 #define ADAMS "Adams-Moulton of orders 1 to 12"
 

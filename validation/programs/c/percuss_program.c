@@ -153,7 +153,7 @@ bool percuss_due(const percuss_course *course, double until, double *time) {
 }
 
 void percuss_count(percuss_course *course, double t, int event, const double *z) {
-    percuss_report(course, t, event, course->mode, z);
+    percuss_report(course, t, event, course->mode, z, z);
 }
 
 /* Whether a mode follows: by the sign of its condition, or after an event that was passed by the
@@ -181,7 +181,7 @@ void percuss_pass(percuss_course *course, double t, int event, const double *z, 
     for (int n = 0; n < passed->successor_count && follows < 0; n++)
         if (holds(course, &passed->successors[n], t, after, plainly ? NULL : passed))
             follows = passed->successors[n].mode;
-    percuss_report(course, t, event, follows, after);
+    percuss_report(course, t, event, follows, z, after);
     struct percuss_private *own = course->own;
     own->crowd = t - course->t <= ONE_INSTANT * t ? own->crowd + 1 : 1;
     course->t = t;

@@ -115,7 +115,8 @@ void percuss_sample(percuss_course *course, const double *z) {
     course->sampled++;
 }
 
-void percuss_report(percuss_course *course, double t, int event, int mode, const double *z) {
+void percuss_report(percuss_course *course, double t, int event, int mode, const double *before,
+                    const double *after) {
     if (course->own->reported++ >= course->own->most_events)
         percuss_give_up(course, "too many events");
     if (course->failure[0]) return;
@@ -123,7 +124,8 @@ void percuss_report(percuss_course *course, double t, int event, int mode, const
     cJSON_AddNumberToObject(object, "time", t);
     cJSON_AddNumberToObject(object, "event", event);
     cJSON_AddNumberToObject(object, "mode", mode);
-    cJSON_AddItemToObject(object, "state", state(course, z));
+    cJSON_AddItemToObject(object, "before", state(course, before));
+    cJSON_AddItemToObject(object, "state", state(course, after));
     cJSON_AddItemToArray(course->own->events, object);
 }
 

@@ -21,7 +21,8 @@ double percuss_now(void);
 /* Ends a run that goes beyond its limits. */
 void percuss_give_up(percuss_course *course, const char *why);
 
-/* Reports an event. */
-void percuss_report(percuss_course *course, double t, int event, int mode, const double *z);
+/* Reports an event, with the states before and after its reset. */
+void percuss_report(percuss_course *course, double t, int event, int mode, const double *before,
+                    const double *after);
 
 #endif

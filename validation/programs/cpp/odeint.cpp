@@ -227,8 +227,9 @@ static void make(percuss_course *course) {
 }
 
 static std::string set_up(const std::string &name, const std::string &method,
-                          const std::string &order) {
-    return "{\"name\":\"" + name + "\",\"method\":\"" + method + "\",\"order\":" + order +
+                          const std::string &of_class, const std::string &order) {
+    return "{\"name\":\"" + name + "\",\"method\":\"" + method + "\",\"class\":\"" + of_class +
+           "\",\"order\":" + order +
            ",\"events\":\"program\",\"dense_output\":true,\"stepping\":\"adaptive\"}";
 }
 
@@ -237,9 +238,10 @@ int main() {
     std::replace(version.begin(), version.end(), '_', '.');
     for (const std::string suffix : {"", "-default"}) {
         setups += setups.empty() ? "[" : ",";
-        setups += set_up("dopri5" + suffix, "Runge-Kutta 5(4) of Dormand and Prince", "5") + ",";
-        setups += set_up("bulirsch-stoer" + suffix, "Bulirsch-Stoer", "null") + ",";
-        setups += set_up("rosenbrock4" + suffix, "Rosenbrock 4(3)", "4");
+        const std::string dopri5 = "Runge-Kutta 5(4) of Dormand and Prince";
+        setups += set_up("dopri5" + suffix, dopri5, "explicit", "5") + ",";
+        setups += set_up("bulirsch-stoer" + suffix, "Bulirsch-Stoer", "explicit", "null") + ",";
+        setups += set_up("rosenbrock4" + suffix, "Rosenbrock 4(3)", "implicit", "4");
     }
     return percuss_serve("boost.odeint", version.c_str(), "C++17, gcc " __VERSION__,
                          (setups + "]").c_str(), make);

@@ -87,7 +87,7 @@ final class CommonsMath {
             PercussSystem.Event event = course.now().events.get(place);
             if (event.sign() != 0 && (event.sign() > 0) != increasing) return Action.CONTINUE;
             if (!event.ends()) {
-                course.report(t, place, course.mode, z);
+                course.count(t, place, z);
                 return Action.CONTINUE;
             }
             found.place = place;
@@ -149,15 +149,15 @@ final class CommonsMath {
 
     public static void main(String[] words) throws IOException {
         String[][] methods = {
-            {"dp54", "Dormand-Prince 5(4)", "5"},
-            {"dp853", "Dormand-Prince 8(5,3)", "8"},
-            {"gbs", "Gragg-Bulirsch-Stoer", null},
+            {"dp54", "Dormand-Prince 5(4)", "explicit", "5"},
+            {"dp853", "Dormand-Prince 8(5,3)", "explicit", "8"},
+            {"gbs", "Gragg-Bulirsch-Stoer", "explicit", null},
         };
         List<Map<String, Object>> setups = new ArrayList<>();
         for (String[] it : methods)
             for (String suffix : new String[] {"", "-default"}) {
-                Integer order = it[2] == null ? null : Integer.valueOf(it[2]);
-                setups.add(PercussProgram.setup(it[0] + suffix, it[1], order));
+                Integer order = it[3] == null ? null : Integer.valueOf(it[3]);
+                setups.add(PercussProgram.setup(it[0] + suffix, it[1], it[2], order));
             }
         PercussProgram.serve("commons-math", version(), setups, CommonsMath::make);
     }

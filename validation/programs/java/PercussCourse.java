@@ -43,8 +43,8 @@ final class PercussCourse {
         int events;
     }
 
-    /** An event as an answer reports it. */
-    record Reported(double time, int event, int mode, double[] state) {}
+    /** An event as an answer reports it, with the states before and after its reset. */
+    record Reported(double time, int event, int mode, double[] before, double[] state) {}
 
     /** How a run went beyond its limits. */
     static final class GaveUp extends RuntimeException {
@@ -165,10 +165,14 @@ final class PercussCourse {
         while (due() <= t) sample(z);
     }
 
-    /** Reports an event. */
-    void report(double t, int event, int mode, double[] z) {
+    /** Reports an event that is only counted. */
+    void count(double t, int event, double[] z) {
+        report(t, event, mode, z, z);
+    }
+
+    private void report(double t, int event, int mode, double[] before, double[] after) {
         if (events.size() >= run.limits.events) throw new GaveUp("too many events");
-        events.add(new Reported(t, event, mode, z.clone()));
+        events.add(new Reported(t, event, mode, before.clone(), after.clone()));
     }
 
     /** Goes through an event that ends its mode. */
@@ -182,7 +186,7 @@ final class PercussCourse {
         PercussSystem.Event event = now().events.get(place);
         double[] after = system.after(event, time, state);
         int follows = system.follows(event, time, after, plainly);
-        report(time, place, follows, after);
+        report(time, place, follows, state, after);
         crowd = time - t <= ONE_INSTANT * time ? crowd + 1 : 1;
         t = time;
         mode = follows;

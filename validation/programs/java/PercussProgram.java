@@ -24,10 +24,12 @@ final class PercussProgram {
     }
 
     /** A set-up as the capabilities name it. */
-    static Map<String, Object> setup(String name, String method, Integer order) {
+    static Map<String, Object> setup(
+            String name, String method, String methodClass, Integer order) {
         Map<String, Object> setup = new TreeMap<>();
         setup.put("name", name);
         setup.put("method", method);
+        setup.put("class", methodClass);
         setup.put("order", order);
         setup.put("events", "library");
         setup.put("dense_output", true);

@@ -24,9 +24,9 @@ const MOST_AT_ONCE = 64
 const ONE_INSTANT = 8 * eps()
 const HIDDEN = 0.1
 const METHODS = Dict(
-    "tsit5" => (Tsit5, "Tsitouras 5(4)", 5),
-    "vern9" => (Vern9, "Verner 9(8)", 9),
-    "rodas5p" => (Rodas5P, "Rosenbrock 5(4)", 5),
+    "tsit5" => (Tsit5, "Tsitouras 5(4)", "explicit", 5),
+    "vern9" => (Vern9, "Verner 9(8)", "explicit", 9),
+    "rodas5p" => (Rodas5P, "Rosenbrock 5(4)", "implicit", 5),
 )
 
 row(list) = Float64[it for it in list]
@@ -98,10 +98,13 @@ function rates!(out, z, course, t)
     out .= mode.a * z .+ mode.c .+ mode.b * [cos(angle), sin(angle)]
 end
 
-function report(course, t, place, mode, z)
+# Reports an event and the state after it. `before` is the state before its reset; of an event that
+# is only counted it is the state itself.
+function report(course, t, place, mode, z, before = z)
     length(course.events) < course.run["limits"]["events"] || throw(GaveUp("too many events"))
     push!(course.events,
-          Dict("time" => t, "event" => place - 1, "mode" => mode - 1, "state" => copy(z)))
+          Dict("time" => t, "event" => place - 1, "mode" => mode - 1, "before" => copy(before),
+               "state" => copy(z)))
 end
 
 # Goes through an event that ends its mode.
@@ -111,12 +114,12 @@ function pass(course, t, place, z)
         return
     end
     event = course.modes[course.mode].events[place]
-    before = wide(course, t, z)
-    z = event.reset === nothing ? z : event.reset * before
+    before = z
+    z = event.reset === nothing ? before : event.reset * wide(course, t, before)
     after = wide(course, t, z)
     holds(it) = it["when"] === nothing || sum(row(it["when"]) .* after) > 0
     follows = first(Iterators.filter(holds, event.successors))["mode"] + 1
-    report(course, t, place, follows, z)
+    report(course, t, place, follows, z, before)
     course.crowd = t - course.t <= ONE_INSTANT * t ? course.crowd + 1 : 1
     course.t, course.mode, course.z = t, follows, z
     course.crowd >= MOST_AT_ONCE && (course.ended = "no-progress")
@@ -206,8 +209,8 @@ end
 version_of(name) = string(only(filter(it -> it.name == name, collect(values(Pkg.dependencies())))).version)
 
 function serve()
-    setups = [Dict("name" => name * suffix, "method" => it[2], "order" => it[3], "events" => "library",
-                   "dense_output" => true, "stepping" => "adaptive")
+    setups = [Dict("name" => name * suffix, "method" => it[2], "class" => it[3], "order" => it[4],
+                   "events" => "library", "dense_output" => true, "stepping" => "adaptive")
               for (name, it) in METHODS for suffix in ("", "-default")]
     for line in eachline(stdin)
         request = JSON.parse(line)

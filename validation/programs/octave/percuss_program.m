@@ -150,13 +150,19 @@ function sample_here()
   sample(repmat(course.z, 1, numel(due(course.t))));
 end
 
-function report(t, event, mode, z)
+% Reports an event and the state after it. `before` is the state before its reset; of an event that
+% is only counted it is left out, and is the state itself.
+function report(t, event, mode, z, before)
   global course
+  if nargin < 5
+    before = z;
+  end
   if numel(course.events) >= course.run.limits.events
     give_up("too many events");
   end
-  course.events{end + 1} = sprintf("{\"time\":%.17g,\"event\":%d,\"mode\":%d,\"state\":%s}", t, ...
-                                   event - 1, mode - 1, numbers(z));
+  course.events{end + 1} = sprintf(["{\"time\":%.17g,\"event\":%d,\"mode\":%d,\"before\":%s," ...
+                                    "\"state\":%s}"], t, event - 1, mode - 1, numbers(before), ...
+                                   numbers(z));
 end
 
 % Goes through an event that ends its mode. `plainly` decides what follows by the signs of
@@ -170,8 +176,9 @@ function pass(t, place, z, plainly)
     return
   end
   event = course.modes{course.mode}.events{place};
-  after = event.reset * wide_of(t, z);
-  z = after(1:numel(z));
+  before = z;
+  after = event.reset * wide_of(t, before);
+  z = after(1:numel(before));
   for successor = event.successors(:).'
     when = successor.when(:).';
     if isempty(when) || (plainly && when * after > 0)
@@ -183,7 +190,7 @@ function pass(t, place, z, plainly)
       end
     end
   end
-  report(t, place, successor.mode + 1, z);
+  report(t, place, successor.mode + 1, z, before);
   if t - course.t <= one_instant() * t
     course.crowd += 1;
   else

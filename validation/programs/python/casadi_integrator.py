@@ -186,6 +186,7 @@ def setups():
             yield {
                 "name": name + suffix,
                 "method": method,
+                "class": "multistep",
                 "events": events,
                 "dense_output": False,
                 "stepping": "adaptive",

@@ -31,9 +31,9 @@ except ImportError as why:
     unavailable(str(why))
 
 METHODS = {
-    "runge_kutta3": ("Bogacki-Shampine 3(2)", 3),
-    "runge_kutta5": ("Dormand-Prince 5(4)", 5),
-    "radau3": ("Radau IIA of order 3", 3),
+    "runge_kutta3": ("Bogacki-Shampine 3(2)", "explicit", 3),
+    "runge_kutta5": ("Dormand-Prince 5(4)", "explicit", 5),
+    "radau3": ("Radau IIA of order 3", "implicit", 3),
 }
 DIRECTIONS = {
     1: WitnessFunctionDirection.kNegativeThenNonNegative,

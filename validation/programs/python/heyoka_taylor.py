@@ -159,6 +159,7 @@ def setups():
         yield {
             "name": name,
             "method": "Taylor series of the order that the tolerance asks for",
+            "class": "taylor",
             "events": "library",
             "dense_output": True,
             "stepping": "adaptive",

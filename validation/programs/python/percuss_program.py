@@ -234,11 +234,16 @@ class Course:
     def sample(self, times, state):
         self.sampled.extend(np.array(state(t)).tolist() for t in times)
 
-    def report(self, t, event, mode, z):
+    def report(self, t, event, mode, z, before=None):
+        """Reports an event and the state after it. `before` is the state before its reset; of an
+        event that is only counted it is the state itself."""
         if len(self.events) >= self.meter.events:
             self.meter.give_up(f"{len(self.events)} events were too few")
         z = np.array(z).tolist()
-        self.events.append({"time": float(t), "event": event, "mode": mode, "state": z})
+        before = z if before is None else np.array(before).tolist()
+        self.events.append(
+            {"time": float(t), "event": event, "mode": mode, "before": before, "state": z}
+        )
 
     def pass_event(self, t, event, z, switch=None):
         """Goes through an event that ends its mode."""
@@ -246,7 +251,7 @@ class Course:
             self.t, self.z, self.ended = t, z, "leaves-domain"
             return
         follows, after = (switch or self.system.switch)(self.mode, event, t, z)
-        self.report(t, event, follows, after)
+        self.report(t, event, follows, after, z)
         self.crowd = self.crowd + 1 if t - self.t <= ONE_INSTANT * t else 1
         self.t, self.mode, self.z = t, follows, after
         if self.crowd >= MOST_AT_ONCE:
@@ -279,17 +284,18 @@ class Course:
 
 def in_pairs(methods):
     """The set-ups `NAME` and `NAME-default` of each method that finds events by itself. `methods`
-    has for each name what the method is, and its order, or None."""
+    has for each name what the method is, its class, and its order, or None."""
     return [
         {
             "name": name + suffix,
             "method": method,
+            "class": class_,
             "order": order,
             "events": "library",
             "dense_output": True,
             "stepping": "adaptive",
         }
-        for name, (method, order) in methods.items()
+        for name, (method, class_, order) in methods.items()
         for suffix in ("", "-default")
     ]
 

@@ -135,6 +135,6 @@ def make(setup, course):
 
 
 if __name__ == "__main__":
-    methods = {name: (method, None) for name, method in METHODS.items()}
+    methods = {name: (method, "multistep", None) for name, method in METHODS.items()}
     version = f"{sksundae.__version__} with SUNDIALS {sksundae.SUNDIALS_VERSION}"
     serve("scikit-sundae", version, in_pairs(methods), make)

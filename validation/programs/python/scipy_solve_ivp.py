@@ -23,11 +23,11 @@ except ImportError as why:
     unavailable(str(why))
 
 METHODS = {
-    "rk45": ("RK45", "Runge-Kutta 5(4) of Dormand and Prince", 5),
-    "dop853": ("DOP853", "Runge-Kutta 8(5,3) of Dormand and Prince", 8),
-    "lsoda": ("LSODA", "Adams and BDF, switching", None),
-    "radau": ("Radau", "Radau IIA", 5),
-    "bdf": ("BDF", "BDF of orders 1 to 5 in quasi-constant steps", None),
+    "rk45": ("RK45", "Runge-Kutta 5(4) of Dormand and Prince", "explicit", 5),
+    "dop853": ("DOP853", "Runge-Kutta 8(5,3) of Dormand and Prince", "explicit", 8),
+    "lsoda": ("LSODA", "Adams and BDF, switching", "multistep", None),
+    "radau": ("Radau", "Radau IIA", "implicit", 5),
+    "bdf": ("BDF", "BDF of orders 1 to 5 in quasi-constant steps", "multistep", None),
 }
 IMPLICIT = ("lsoda", "radau", "bdf")
 

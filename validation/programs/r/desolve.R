@@ -120,10 +120,11 @@ make <- function(setup, course) {
 
 setups <- function() {
   methods <- c(lsodar = "Adams and BDF, switching", radau = "Radau IIA of order 5")
+  classes <- c(lsodar = "multistep", radau = "implicit")
   one <- function(name, suffix) {
     list(
-      name = paste0(name, suffix), method = methods[[name]], events = "library",
-      dense_output = TRUE, stepping = "adaptive"
+      name = paste0(name, suffix), method = methods[[name]], class = classes[[name]],
+      events = "library", dense_output = TRUE, stepping = "adaptive"
     )
   }
   names <- rep(names(methods), each = 2)

@@ -137,9 +137,13 @@ due <- function(course, until = Inf) {
 
 sample_state <- function(course, z) course$sampled[[length(course$sampled) + 1]] <- z
 
-report <- function(course, t, place, mode, z) {
+# Reports an event and the state after it. `before` is the state before its reset; of an event that
+# is only counted it is the state itself.
+report <- function(course, t, place, mode, z, before = z) {
   if (length(course$events) >= course$run$limits$events) give_up(course, "too many events")
-  event <- list(time = t, event = place - 1, mode = mode - 1, state = I(z))
+  event <- list(
+    time = t, event = place - 1, mode = mode - 1, before = I(before), state = I(z)
+  )
   course$events[[length(course$events) + 1]] <- event
 }
 
@@ -153,14 +157,15 @@ pass <- function(course, t, place, z, plainly = FALSE) {
     return()
   }
   event <- course$modes[[course$mode]]$events[[place]]
-  after <- as.vector(event$reset %*% wide_of(course, t, z))
-  z <- after[seq_along(z)]
+  before <- z
+  after <- as.vector(event$reset %*% wide_of(course, t, before))
+  z <- after[seq_along(before)]
   for (it in event$successors) {
     holds <- is.null(it$when) || (if (plainly) sum(it$when * after) > 0 else
       leading(course, it$when, it$mode, t, z, event)$sign > 0)
     if (holds) break
   }
-  report(course, t, place, it$mode, z)
+  report(course, t, place, it$mode, z, before)
   course$crowd <- if (t - course$t <= ONE_INSTANT * t) course$crowd + 1 else 1
   course$t <- t
   course$mode <- it$mode

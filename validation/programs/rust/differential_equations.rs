@@ -102,6 +102,7 @@ fn make(course: &mut Course) -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let setups = [("dop853-default", "Dormand-Prince 8(5,3), built-in events", Some(8))];
+    let method = "Dormand-Prince 8(5,3), built-in events";
+    let setups = [("dop853-default", method, "explicit", Some(8))];
     serve("differential-equations", "0.7.0", &setups, make)
 }

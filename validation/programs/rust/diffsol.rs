@@ -144,8 +144,8 @@ fn make(course: &mut Course) -> Result<(), Box<dyn Error>> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let setups = [
-        ("bdf-default", "BDF, orders 1 to 5", None),
-        ("tsit45-default", "Tsitouras 5(4)", Some(5)),
+        ("bdf-default", "BDF, orders 1 to 5", "multistep", None),
+        ("tsit45-default", "Tsitouras 5(4)", "explicit", Some(5)),
     ];
     serve("diffsol", "0.18.0", &setups, make)
 }

@@ -2,7 +2,7 @@
 
 use crate::wire::{EventReply, RunReply};
 use percuss_engines::engine::{Ended, Event, Limits, Outcome, Task, Work};
-use percuss_engines::system::Mode;
+use percuss_engines::system::{Mode, Values};
 use std::fmt;
 use std::time::Duration;
 
@@ -117,26 +117,39 @@ fn has_states(given: usize, size: usize, part: AnswerPart) -> Result<(), Wrong> 
     Err(part.wrong(format!("has {given} states; accepted are {size}")))
 }
 
+/// The state before an event's reset, where the answer has one.
+fn before_reset(reply: &EventReply, size: usize, n: usize) -> Result<Option<Values>, Wrong> {
+    let Some(before) = reply.before else { return Ok(None) };
+    let given = before.0.len();
+    if given == size {
+        return Ok(Some(before.0));
+    }
+    let what = format!("has {given} states before its reset; accepted are {size}");
+    Err(AnswerPart::Event(n).wrong(what))
+}
+
 fn events(replies: &[EventReply], task: &Task, limits: &Limits) -> Result<Vec<Event>, Wrong> {
     if replies.len() > limits.events {
         let what = format!("gave {} events; accepted are {}", replies.len(), limits.events);
         return Err(AnswerPart::Run.wrong(what));
     }
-    let latest = task.span * (1.0 + ROUNDING);
-    let (mut mode, mut before) = (task.mode, 0.0);
+    let (size, latest) = (task.state.len(), task.span * (1.0 + ROUNDING));
+    let (mut mode, mut earliest) = (task.mode, 0.0);
     let mut events = Vec::with_capacity(replies.len());
     for (n, reply) in replies.iter().enumerate() {
         let said = |what: String| AnswerPart::Event(n).wrong(what);
         let time = reply.time;
-        if !(before..=latest).contains(&time) {
-            return Err(said(format!("is at {time:?}; accepted is {before:?} to {:?}", task.span)));
+        if !(earliest..=latest).contains(&time) {
+            let span = task.span;
+            return Err(said(format!("is at {time:?}; accepted is {earliest:?} to {span:?}")));
         }
         let (event, next) = (part(reply.event.0), part(reply.mode.0));
         follows(&task.system.system().modes, (mode, event, next), task).map_err(said)?;
-        has_states(reply.state.0.len(), task.state.len(), AnswerPart::Event(n))?;
+        has_states(reply.state.0.len(), size, AnswerPart::Event(n))?;
+        let before = before_reset(reply, size, n)?;
         let elapsed = time.min(task.span);
-        events.push(Event { event, mode: next, elapsed, state: reply.state.0 });
-        (mode, before) = (next, time);
+        events.push(Event { event, mode: next, elapsed, before, state: reply.state.0 });
+        (mode, earliest) = (next, time);
     }
     Ok(events)
 }

@@ -63,6 +63,7 @@ impl ProgramEngine {
             library: for_ever(said.library.clone()),
             version: said.version.clone(),
             method: for_ever(set_up.method.clone()),
+            class: set_up.class,
             order: set_up.order,
             events: match set_up.events {
                 EventsBy::Library => Location::Library,
@@ -85,6 +86,7 @@ impl ProgramEngine {
             library: name,
             version: "unknown".to_owned(),
             method: "unknown",
+            class: None,
             order: None,
             events: Location::Library,
             dense_output: false,

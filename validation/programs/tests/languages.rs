@@ -7,8 +7,8 @@
 use percuss::{Parameters, Start};
 use percuss_engines::case::Given;
 use percuss_engines::engine::{
-    Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, Outcome, SampleGrid, Stepping,
-    Task, answer, answer_oscillator,
+    Accuracy, Engine, Event, Limits, OscillatorOutcome, OscillatorTask, Outcome, SampleGrid,
+    Stepping, Task, answer, answer_oscillator,
 };
 use percuss_engines::integrators::exact;
 use percuss_engines::system::{CheckedSystem, Direction, Mode, System, Until, Watch};
@@ -34,6 +34,9 @@ const WRONG: [&str; 6] = [
 const TOLERANCE: Accuracy = Accuracy::Tolerance(1e-8);
 const SPAN: f64 = 3.9;
 const SAMPLES: u32 = 50;
+/// By how much a state after a reset may differ from the reset of the state before it: of doubles
+/// near 1 that are written in decimals, a few units of the last place.
+const WRITTEN: f64 = 1e-15;
 
 /// A ball with e = 1/2 that is thrown up from the floor; where it is highest is counted.
 fn ball() -> Task {
@@ -79,6 +82,15 @@ fn flight(t: f64) -> (f64, f64) {
     (begin, speed)
 }
 
+/// The state before an event's reset: the reset of the ball makes its speed half as large and
+/// turns it, and the event that is only counted changes nothing.
+fn check_before(found: &Event) -> Result<(), String> {
+    let before = found.before.ok_or("it has no state before its reset")?;
+    let expected = if found.event == 0 { [0.0, -0.5 * before[1]] } else { [before[0], before[1]] };
+    let error = (0..2).map(|i| (found.state[i] - expected[i]).abs()).fold(0.0, f64::max);
+    if error <= WRITTEN { Ok(()) } else { Err(format!("its state before is {before:?}")) }
+}
+
 fn check_ball(outcome: &Outcome, unit: f64) -> Result<(), String> {
     let mut expected = Vec::new();
     let (mut t, mut speed) = (0.0, 1.0);
@@ -93,6 +105,7 @@ fn check_ball(outcome: &Outcome, unit: f64) -> Result<(), String> {
         if found.event != *event || error.is_nan() || error > 20.0 {
             return Err(format!("event {n} is {found:?}, not {event} at {t}"));
         }
+        check_before(found).map_err(|why| format!("event {n} is {found:?}: {why}"))?;
     }
     for (k, sample) in outcome.samples.iter().enumerate() {
         let t = SPAN * k as f64 / f64::from(SAMPLES);

@@ -40,7 +40,9 @@ pub fn answer_oscillator(
 pub fn least_work(engine: &dyn Engine, task: &Task, accuracy: Accuracy) -> f64 {
     // No explicit method here is stable over a step of as many of the fastest decay's times as it
     // has stages: a longer run takes more than a right-hand side for each of these times.
-    let stiff = if engine.is_explicit() { task.span * task.system.decay() } else { 0.0 };
+    let declaration = engine.declaration();
+    let stiff =
+        if declaration.is_slowed_by_stiffness() { task.span * task.system.decay() } else { 0.0 };
     let short = least_work_of_short_steps(engine, task);
     engine.least_work(task, accuracy).max(stiff).max(short)
 }
@@ -49,8 +51,9 @@ pub fn least_work(engine: &dyn Engine, task: &Task, accuracy: Accuracy) -> f64 {
 fn least_work_of_short_steps(engine: &dyn Engine, task: &Task) -> f64 {
     let Some(longest) = engine.longest_step_on(task) else { return 0.0 };
     // A method of order p has p stages or more if it is explicit, and else at least half as many.
-    let order = engine.declaration().order.unwrap_or(1);
-    let stages = if engine.is_explicit() { order } else { order.div_ceil(2) };
+    let declaration = engine.declaration();
+    let order = declaration.order.unwrap_or(1);
+    let stages = if declaration.is_slowed_by_stiffness() { order } else { order.div_ceil(2) };
     f64::from(stages) * task.span / longest
 }
 
@@ -117,7 +120,8 @@ mod tests {
         let outcome = whole(&task);
         let late = outcome.events.last().map_or(0.0, |it| it.elapsed);
         for elapsed in [f64::NAN, f64::INFINITY, 0.5 * late] {
-            let event = Event { event: 0, mode: Phase::Contact, elapsed, state: [0.0; 4] };
+            let (mode, state) = (Phase::Contact, [0.0; 4]);
+            let event = Event { event: 0, mode, elapsed, state, before: None };
             let events = [outcome.events.as_slice(), &[event]].concat();
             let odd = OscillatorOutcome { events, ..outcome.clone() };
             assert!(complete(&odd, COUNT).is_err(), "{elapsed}");

@@ -17,6 +17,22 @@ pub enum Location {
     Harness,
 }
 
+/// The class of a method. What a right method's errors are at most, in units of the tolerance, is
+/// measured class by class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Class {
+    /// One step from the last, by right-hand sides alone: Runge-Kutta methods and extrapolation.
+    Explicit,
+    /// One step from the last, by the solution of equations: Radau, Rosenbrock, DIRK and Gauss
+    /// methods.
+    Implicit,
+    /// A step from several before it: Adams methods and BDF.
+    Multistep,
+    /// A step by the derivatives of the solution, to an order that the tolerance chooses.
+    Taylor,
+}
+
 /// In which tests beyond ordinary rows the engine takes part. Each role includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
@@ -54,6 +70,8 @@ pub struct Declaration {
     pub version: String,
     /// The method.
     pub method: &'static str,
+    /// The method's class; closed forms have none.
+    pub class: Option<Class>,
     /// The order of convergence that the method's authors state. Methods of variable order and
     /// closed forms have none.
     pub order: Option<u32>,
@@ -67,4 +85,12 @@ pub struct Declaration {
     pub role: Role,
     /// The colours in which the engine is drawn.
     pub colours: Colours,
+}
+
+impl Declaration {
+    /// Whether stiffness shortens the method's steps: those of a fixed length stay as they are.
+    #[must_use]
+    pub fn is_slowed_by_stiffness(&self) -> bool {
+        self.class == Some(Class::Explicit) && !matches!(self.stepping, Stepping::Fixed { .. })
+    }
 }

@@ -21,7 +21,7 @@ pub use crate::accuracy::{Accuracy, Stepping, shortest_time};
 pub use crate::equations::{Entered, Equations, Numbers};
 pub use crate::failure::Failure;
 pub use answer::{answer, answer_oscillator, least_work};
-pub use declaration::{Colours, Declaration, Location, REFERENCE, Role};
+pub use declaration::{Class, Colours, Declaration, Location, REFERENCE, Role};
 pub(crate) use limits::stop;
 pub use limits::{Limits, contain, hush_contained_panics};
 pub use oscillator_task::{OscillatorTask, SampleGrid};
@@ -47,6 +47,9 @@ pub struct Event<M = usize, S = Values> {
     pub elapsed: f64,
     /// The state as the mode begins.
     pub state: S,
+    /// The state just before the event, which no reset has touched: the guard's value there says
+    /// how well the event was located. None where the engine does not tell it.
+    pub before: Option<S>,
 }
 
 /// The ending of a run, in the words of `docs/SYSTEM_FORMAT.md`.
@@ -149,18 +152,13 @@ pub trait Engine: Sync {
         Ok(())
     }
 
-    /// Whether it is an explicit method, whose steps are no longer than stiffness lets them be.
-    fn is_explicit(&self) -> bool {
-        false
-    }
-
     /// The longest step of a run, where the engine does not leave that to its library.
     fn longest_step_on(&self, _task: &Task) -> Option<f64> {
         None
     }
 
     /// Right-hand sides that a run takes at the least, as far as that is known beforehand and does
-    /// not follow from [`Engine::is_explicit`] and [`Engine::longest_step_on`].
+    /// not follow from [`Declaration::is_slowed_by_stiffness`] and [`Engine::longest_step_on`].
     fn least_work(&self, _task: &Task, _accuracy: Accuracy) -> f64 {
         0.0
     }

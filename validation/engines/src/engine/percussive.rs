@@ -116,6 +116,7 @@ impl From<OscillatorOutcome> for Outcome {
             mode: place(it.mode),
             elapsed: it.elapsed,
             state: Values::of(&it.state),
+            before: it.before.map(|before| Values::of(&before)),
         };
         let look = |it: GuardSample<Phase>| GuardSample {
             t: it.t,
@@ -151,7 +152,8 @@ impl OscillatorOutcome {
         }
         let event = |it: &Event| -> Result<OscillatorEvent, Failure> {
             let &Event { event, elapsed, .. } = it;
-            Ok(Event { event, mode: phase(it.mode)?, elapsed, state: four(&it.state)? })
+            let before = it.before.map(|before| four(&before)).transpose()?;
+            Ok(Event { event, mode: phase(it.mode)?, elapsed, state: four(&it.state)?, before })
         };
         Ok(Self {
             events: run.events.iter().map(event).collect::<Result<_, _>>()?,

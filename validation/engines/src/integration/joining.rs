@@ -158,8 +158,9 @@ pub(crate) fn join<E: Equations>(
                 meter.phase_ended(t);
                 let next = now.after(equations, t, guard, &state);
                 let event = equations.event(now.mode, guard);
-                let state = equations.reported(&next.state);
-                outcome.events.push(Event { event, mode: next.mode, elapsed: t, state });
+                let [before, state] = [&state, &next.state].map(|it| equations.reported(it));
+                let (mode, before) = (next.mode, Some(before));
+                outcome.events.push(Event { event, mode, elapsed: t, state, before });
                 now = next;
                 if instant.is_crowded(t) {
                     outcome.ended = Ended::NoProgress;
@@ -191,7 +192,8 @@ fn record_counted<E: Equations>(
         meter.events(outcome.events.len())?;
         let event = equations.event(mode, crossing.guard);
         let state = equations.reported(&crossing.state);
-        outcome.events.push(Event { event, mode, elapsed: crossing.t, state });
+        let (elapsed, before) = (crossing.t, Some(state));
+        outcome.events.push(Event { event, mode, elapsed, state, before });
     }
     Ok(())
 }

@@ -250,15 +250,15 @@ impl Course {
             return Err(Box::new(GaveUp("too many events")));
         }
         let mode = self.mode();
-        let Event { reset, successors, .. } = &mode.events()[event];
+        let Event { reset: rows, successors, .. } = &mode.events()[event];
         self.crowd = if t - self.t <= ONE_INSTANT * t { self.crowd + 1 } else { 1 };
         self.t = t;
         if self.crowd > 100 * MOST_AT_ONCE {
             return Err(format!("events at {t} are found again and again").into());
         }
         if successors.is_empty() {
-            self.z.clone_from(&z);
-            self.events.push(json!({"time": t, "event": event, "mode": self.mode, "state": z}));
+            self.report(t, event, &z, &z);
+            self.z = z;
             return Ok(());
         }
         if self.run.backward {
@@ -266,17 +266,27 @@ impl Course {
             self.ended = Some("leaves-domain");
             return Ok(());
         }
-        let before = mode.wide(t, &z);
-        let z = reset.as_ref().map_or(z, |rows| rows.iter().map(|row| dot(row, &before)).collect());
-        let after = mode.wide(t, &z);
-        let holds = |it: &&Successor| it.when.as_ref().is_none_or(|row| dot(row, &after) > 0.0);
+        let wide = mode.wide(t, &z);
+        let reset = |rows: &Vec<Row>| rows.iter().map(|row| dot(row, &wide)).collect();
+        let after: Vec<f64> = rows.as_ref().map_or_else(|| z.clone(), reset);
+        let wide_after = mode.wide(t, &after);
+        let holds =
+            |it: &&Successor| it.when.as_ref().is_none_or(|row| dot(row, &wide_after) > 0.0);
         self.mode = successors.iter().find(holds).ok_or("no mode follows")?.mode;
-        self.events.push(json!({"time": t, "event": event, "mode": self.mode, "state": z}));
-        self.z = z;
+        self.report(t, event, &z, &after);
+        self.z = after;
         if self.crowd >= MOST_AT_ONCE {
             self.ended = Some("no-progress");
         }
         Ok(())
+    }
+
+    /// Adds an event to the answer, with the states before and after its reset.
+    fn report(&mut self, t: f64, event: usize, before: &[f64], after: &[f64]) {
+        let mode = self.mode;
+        self.events.push(
+            json!({"time": t, "event": event, "mode": mode, "before": before, "state": after}),
+        );
     }
 
     fn answer(mut self, took: Duration) -> Value {
@@ -306,16 +316,16 @@ fn made(run: Run, make: Make) -> Value {
     }
 }
 
-/// Answers requests until there are no more. A set-up is a name, a method and its order.
+/// Answers requests until there are no more. A set-up is a name, a method, its class and its order.
 pub fn serve(
     library: &str,
     version: &str,
-    setups: &[(&str, &str, Option<u32>)],
+    setups: &[(&str, &str, &str, Option<u32>)],
     make: Make,
 ) -> Result<(), Box<dyn Error>> {
-    let setup = |(name, method, order): &(&str, &str, Option<u32>)| {
-        json!({"name": name, "method": method, "order": order, "events": "library",
-            "dense_output": true, "stepping": "adaptive"})
+    let setup = |(name, method, class, order): &(&str, &str, &str, Option<u32>)| {
+        json!({"name": name, "method": method, "class": class, "order": order,
+            "events": "library", "dense_output": true, "stepping": "adaptive"})
     };
     let setups: Vec<_> = setups.iter().map(setup).collect();
     let mut output = std::io::stdout();

@@ -1,5 +1,6 @@
 //! An answer in files, as the reply of a program would say it.
 
+use super::layout::Layout;
 use super::rows::sample_times;
 use super::table::{Cells, EVENTS, SAMPLES, Table};
 use crate::answer::{AnswerPart, Wrong, checked};
@@ -28,8 +29,10 @@ pub(super) fn answer(
     let (events, samples) = (file(EVENTS)?, file(SAMPLES)?);
     let told = Told::read(&events, task, limits)?;
     let asked = crate::wire::samples(task).len();
-    let (states, lines) = read_samples(&samples, task, told.ended.is_none())?;
+    let is_whole = matches!(told.ended, None | Some((EndedBy::Horizon, ..)));
+    let (states, lines) = read_samples(&samples, task, is_whole)?;
     let (ended, end, ended_at) = match told.ended {
+        Some((EndedBy::Horizon, _, state)) => (EndedBy::Horizon, state, None),
         Some((ended, time, state)) => (ended, state, Some(time)),
         None => (EndedBy::Horizon, states.last().copied().unwrap_or_default(), None),
     };
@@ -57,33 +60,40 @@ struct Told {
     events: Vec<EventReply>,
     /// The line of each event.
     lines: Vec<usize>,
-    /// How and when the run ended before its horizon, and in which state.
+    /// How and when the run ended, where the file says it, and in which state.
     ended: Option<(EndedBy, f64, StateReply)>,
 }
 
 impl Told {
     fn read(table: &Table, task: &Task, limits: &Limits) -> Result<Self, String> {
         let system = task.system.system();
-        let states = system.states.iter().map(String::as_str);
-        let columns: Vec<&str> = ["time", "event", "mode"].into_iter().chain(states).collect();
-        let (mut told, mut mode) = (Self::default(), task.mode);
-        table.lines(&columns, |cells| {
+        let layout = Layout::of_events(table, system)?;
+        let (mut told, mut mode, mut start) = (Self::default(), task.mode, None);
+        table.lines(&layout.columns, |cells| {
             if told.ended.is_some() {
                 return Err("a line after the run's ending; accepted is none".to_owned());
+            }
+            if layout.has_start && start.is_none() {
+                start = Some(cells.number(layout.time, "time")?);
+                return Ok(());
             }
             if told.events.len() == limits.events {
                 return Err(format!("one event more than the {} accepted", limits.events));
             }
-            let time = cells.number(0, "time")?;
-            let state = state(cells, 3, system)?;
-            let next = mode_of(system, cells.word(2))?;
-            if let Some(ended) = EndedBy::named(cells.word(1)) {
+            // Since the start; back in time the clock falls.
+            let time = cells.number(layout.time, "time")?;
+            let time = start.map_or(time, |start| (time - start).abs());
+            let state = state(cells, layout.state, system)?;
+            let [event, next] = [1, 2].map(|column| cells.word(layout.time + column));
+            let next = mode_of(system, next)?;
+            if let Some(ended) = layout.ending(event) {
                 told.ended = Some((ended, time, state));
                 return Ok(());
             }
-            let event = event_of(system, mode, cells.word(1))?;
+            let event = event_of(system, mode, event)?;
+            let before = layout.before.map(|from| self::state(cells, from, system)).transpose()?;
             let [event, next_count] = [event, next].map(|place| Count(place as u64));
-            told.events.push(EventReply { time, event, mode: next_count, state });
+            told.events.push(EventReply { time, event, mode: next_count, state, before });
             told.lines.push(cells.line);
             mode = next;
             Ok(())
@@ -125,12 +135,14 @@ fn read_samples(
     whole: bool,
 ) -> Result<(Vec<StateReply>, Vec<usize>), String> {
     let system = task.system.system();
-    let states = system.states.iter().map(String::as_str);
-    let columns: Vec<&str> = ["time"].into_iter().chain(states).collect();
+    let layout = Layout::of_samples(table, system)?;
     let asked = sample_times(task);
-    let (mut samples, mut lines) = (Vec::new(), Vec::new());
-    table.lines(&columns, |cells| {
-        let time = cells.number(0, "time")?;
+    let (mut samples, mut lines, mut start) = (Vec::new(), Vec::new(), None);
+    table.lines(&layout.columns, |cells| {
+        let mut time = cells.number(layout.time, "time")?;
+        if layout.has_start {
+            time = (time - *start.get_or_insert(time)).abs();
+        }
         let Some(wanted) = asked.get(samples.len()) else {
             return Err(format!("one sample more than the {} accepted", asked.len()));
         };
@@ -138,7 +150,7 @@ fn read_samples(
             let given = plain(cells.word(0));
             return Err(format!("time is {given:?}; accepted is {}", shortest(*wanted)));
         }
-        samples.push(state(cells, 1, system)?);
+        samples.push(state(cells, layout.state, system)?);
         lines.push(cells.line);
         Ok(())
     })?;

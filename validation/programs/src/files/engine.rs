@@ -3,8 +3,8 @@
 use super::answer::answer;
 use super::table::{EVENTS, SAMPLES};
 use percuss_engines::engine::{
-    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role, Stepping,
-    Task,
+    Accuracy, Class, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role,
+    Stepping, Task,
 };
 use std::path::PathBuf;
 
@@ -19,6 +19,10 @@ pub struct Answerer {
     pub version: &'static str,
     /// The language.
     pub language: &'static str,
+    /// The method's class, where it is stated.
+    pub class: Option<Class>,
+    /// The method's order, where it is stated.
+    pub order: Option<u32>,
     /// The way in which the engine's accuracy is chosen, which fixes the unit of its error.
     pub stepping: Stepping,
 }
@@ -40,13 +44,14 @@ impl FileEngine {
 
 impl Engine for FileEngine {
     fn declaration(&self) -> Declaration {
-        let Answerer { name, library, version, stepping, .. } = self.answerer;
+        let Answerer { name, library, version, class, order, stepping, .. } = self.answerer;
         Declaration {
             name,
             library,
             version: version.to_owned(),
             method: "answers in files",
-            order: None,
+            class,
+            order,
             events: Location::Library,
             dense_output: false,
             stepping,

@@ -5,6 +5,7 @@ mod answer;
 mod case;
 mod engine;
 mod equations;
+mod layout;
 mod rows;
 mod table;
 #[cfg(test)]

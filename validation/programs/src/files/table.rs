@@ -66,24 +66,36 @@ impl Table {
         format!("{} line {line}: {what}", self.shown)
     }
 
+    /// The columns that the header names.
+    pub(super) fn header(&self) -> Vec<&str> {
+        cells(self.without_mark().lines().next().unwrap_or_default())
+    }
+
+    /// The error of a header that is none of those accepted.
+    pub(super) fn other_header(&self, accepted: &str) -> String {
+        let header = plain(self.without_mark().lines().next().unwrap_or_default());
+        self.error_in(1, &format!("the columns are {header:?}; accepted are {accepted}"))
+    }
+
+    /// The text without the mark of its encoding that some programs write.
+    fn without_mark(&self) -> &str {
+        self.text.trim_start_matches('\u{feff}')
+    }
+
     /// Hands over its lines after the header, which has to name these columns.
     ///
     /// # Errors
     /// Another header, a line of another length, and what `read` refuses in a line.
     pub(super) fn lines<'a>(
         &'a self,
-        columns: &[&str],
+        columns: &[impl AsRef<str>],
         mut read: impl FnMut(&Cells<'a>) -> Result<(), String>,
     ) -> Result<(), String> {
-        let mut lines = self.text.trim_start_matches('\u{feff}').lines().zip(1..);
-        let header = lines.next().map_or("", |(line, _)| line);
-        if cells(header) != columns {
-            let header = plain(header);
-            let accepted = columns.join(",");
-            return Err(
-                self.error_in(1, &format!("the columns are {header:?}; accepted are {accepted:?}"))
-            );
+        let columns: Vec<&str> = columns.iter().map(AsRef::as_ref).collect();
+        if self.header() != columns {
+            return Err(self.other_header(&format!("{:?}", columns.join(","))));
         }
+        let lines = self.without_mark().lines().zip(1..).skip(1);
         for (text, line) in lines.filter(|(text, _)| !text.trim().is_empty()) {
             let cells = Cells { line, cells: cells(text) };
             let (count, wanted) = (cells.cells.len(), columns.len());

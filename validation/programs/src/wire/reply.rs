@@ -3,7 +3,7 @@
 use super::PROTOCOL;
 use super::numbers::{BoundedList, Count, StateReply};
 use crate::text::plain;
-use percuss_engines::engine::Ended;
+use percuss_engines::engine::{Class, Ended};
 use serde::Deserialize;
 
 /// The most events and samples of an answer.
@@ -51,6 +51,9 @@ pub struct SetUp {
     pub name: String,
     /// The method.
     pub method: String,
+    /// The method's errors are judged by those of its class, which a program may leave out.
+    #[serde(default)]
+    pub class: Option<Class>,
     /// The order of convergence that the method's authors state, if it has one.
     #[serde(default)]
     pub order: Option<u32>,
@@ -115,6 +118,9 @@ pub(crate) struct EventReply {
     pub(crate) time: f64,
     pub(crate) event: Count,
     pub(crate) mode: Count,
+    /// The state just before the event's reset; of an event that ends no mode, its state itself.
+    #[serde(default)]
+    pub(crate) before: Option<StateReply>,
     pub(crate) state: StateReply,
 }
 

@@ -1,6 +1,6 @@
 //! Both sides of the protocol are held to its schemas, and to the examples on its page.
 
-use super::{Ask, Asked, RunAsk, decode};
+use super::{Ask, Asked, ReplyContent, RunAsk, decode};
 use jsonschema::Validator;
 use percuss::Parameters;
 use percuss_engines::engine::{Accuracy, Limits, Task, percussive};
@@ -95,6 +95,14 @@ fn the_examples_of_the_page_are_messages() {
     }
 }
 
+/// The run among the answers of the protocol's page, and the number of its request.
+fn example_run() -> (Value, u64) {
+    let runs: Vec<Value> =
+        examples("Answers").into_iter().filter(|it| it["run"].is_object()).collect();
+    let [run] = runs.as_slice() else { unreachable!("{runs:?}") };
+    (run.clone(), run["id"].as_u64().unwrap_or_default())
+}
+
 /// A change of an answer.
 type Spoiling = fn(&mut Value);
 
@@ -102,7 +110,7 @@ type Spoiling = fn(&mut Value);
 #[test]
 fn reader_and_schema_agree() {
     let schema = schema("answer");
-    let changes: [Spoiling; 12] = [
+    let changes: [Spoiling; 14] = [
         |it| it["percuss_protocol"] = json!(2),
         |it| it["id"] = json!(-1),
         |it| it["mood"] = json!(1),
@@ -115,15 +123,32 @@ fn reader_and_schema_agree() {
         |it| it["run"]["work"]["calls"] = json!(1),
         |it| it["run"]["events"][0]["time"] = Value::Null,
         |it| it["run"]["events"][0]["mode"] = json!(-1),
+        |it| it["run"]["events"][0]["before"] = json!(["1"]),
+        |it| it["run"]["events"][0]["before"] = json!(vec![0.0; 12]),
     ];
-    let runs: Vec<Value> =
-        examples("Answers").into_iter().filter(|it| it["run"].is_object()).collect();
-    let [run] = runs.as_slice() else { unreachable!("{runs:?}") };
-    let id = run["id"].as_u64().unwrap_or_default();
+    let (run, id) = example_run();
     for (n, change) in changes.iter().enumerate() {
         let mut changed = run.clone();
         change(&mut changed);
         assert!(!schema.is_valid(&changed), "{n}: {changed}");
         assert!(decode(changed.to_string().as_bytes(), id).is_err(), "{n}: {changed}");
     }
+}
+
+/// The state before an event's reset is read where it is given; it may be left out or be null.
+#[test]
+fn the_state_before_a_reset_may_be_missing() {
+    let schema = schema("answer");
+    let (mut run, id) = example_run();
+    let given = run["run"]["events"][1]["before"].as_array().map(Vec::len);
+    run["run"]["events"][0].as_object_mut().map(|event| event.remove("before"));
+    run["run"]["events"][2]["before"] = Value::Null;
+    assert!(schema.is_valid(&run), "{run}: {:?}", schema.validate(&run).err());
+    let Ok(ReplyContent::Run(reply)) = decode(run.to_string().as_bytes(), id) else {
+        unreachable!("{run}")
+    };
+    let sizes: Vec<Option<usize>> =
+        reply.events.0.iter().map(|event| event.before.map(|it| it.0.len())).collect();
+    assert_eq!(sizes, [None, given, None]);
+    assert_eq!(given, Some(2));
 }

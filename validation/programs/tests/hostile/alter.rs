@@ -22,6 +22,7 @@ pub fn capabilities(kind: &str) -> Value {
         "set-up-twice" => said["setups"][0]["name"] = json!("odd"),
         "set-up-as-a-path" => said["setups"][1]["name"] = json!("../../x"),
         "unknown-stepping" => said["setups"][1]["stepping"] = json!("by-hand"),
+        "unknown-class" => said["setups"][1]["class"] = json!("clever"),
         "no-order" => said["setups"][1]["stepping"] = json!("per-step"),
         "long-library" => said["library"] = json!("x".repeat(20_000_000)),
         "empty-library" => said["library"] = json!(""),
@@ -34,8 +35,8 @@ pub fn capabilities(kind: &str) -> Value {
 pub fn right() -> Value {
     json!({
         "events": [
-            { "time": 0.5, "event": 0, "mode": 1, "state": [0.0, 1.0] },
-            { "time": 1.5, "event": 0, "mode": 1, "state": [0.5, 1.0] },
+            { "time": 0.5, "event": 0, "mode": 1, "before": [0.5, 1.0], "state": [0.0, 1.0] },
+            { "time": 1.5, "event": 0, "mode": 1, "before": [0.5, 1.0], "state": [0.5, 1.0] },
         ],
         "samples": [[0.0, 1.0], [0.25, 1.0], [0.75, 1.0]],
         "end": [0.75, 1.0],
@@ -51,6 +52,7 @@ fn run(kind: &str) -> Value {
     match kind {
         "nan-as-text" => run["end"][0] = json!("NaN"),
         "null" => run["end"][0] = Value::Null,
+        "null-before" => run["events"][0]["before"][0] = Value::Null,
         "text-as-number" => run["events"][0]["time"] = json!("0.5"),
         "negative-time" => run["events"][0]["time"] = json!(-0.5),
         "time-goes-back" => run["events"][1]["time"] = json!(0.25),
@@ -61,6 +63,8 @@ fn run(kind: &str) -> Value {
         "unknown-mode" => run["events"][0]["mode"] = json!(7),
         "impossible-mode" => run["events"][0]["mode"] = json!(0),
         "states-missing" => run["events"][0]["state"] = json!([0.0]),
+        "states-missing-before" => run["events"][0]["before"] = json!([0.5]),
+        "state-too-many-before" => run["events"][1]["before"] = json!([0.5, 1.0, 2.0]),
         "end-of-another-size" => run["end"] = json!([0.0, 1.0, 2.0]),
         "sample-of-another-size" => run["samples"][1] = json!([]),
         "samples-missing" => run["samples"] = json!([[0.0, 1.0], [0.25, 1.0]]),
@@ -68,6 +72,7 @@ fn run(kind: &str) -> Value {
         "events-too-many" => run["events"] = (0..101).map(|_| event()).collect(),
         "events-without-number" => run["events"] = (0..200_000).map(|_| event()).collect(),
         "state-without-number" => run["end"] = vec![0; 1_000_000].into(),
+        "state-before-without-number" => run["events"][0]["before"] = vec![0; 1_000_000].into(),
         "unknown-end" => run["ended"] = json!("tired"),
         "end-beyond-horizon" => run["ended_at"] = json!(99.0),
         "leaves-domain-forward" => run["ended"] = json!("leaves-domain"),
@@ -89,6 +94,10 @@ fn run(kind: &str) -> Value {
         "no-work" => {
             run.as_object_mut().unwrap().remove("work");
             run["own_ns"] = Value::Null;
+        }
+        "no-states-before" => {
+            drop(run["events"][0].as_object_mut().unwrap().remove("before"));
+            run["events"][1]["before"] = Value::Null;
         }
         _ => {}
     }

@@ -40,6 +40,7 @@ pub const KINDS: &[(&str, ExpectedEnd)] = &[
     ("set-up-twice", Start("its set-up \"odd\" is there twice")),
     ("set-up-as-a-path", Start("its set-up \"../../x\" has no name")),
     ("unknown-stepping", Start("unknown variant `by-hand`")),
+    ("unknown-class", Start("unknown variant `clever`")),
     ("no-order", Start("its set-up \"odd\" has no order: accepted is 1 to 64")),
     ("long-library", Start("its library is \"xxx")),
     ("empty-library", Start("its library is \"\"; accepted is one line of 1 to 200 characters")),
@@ -89,6 +90,7 @@ pub const KINDS: &[(&str, ExpectedEnd)] = &[
     ("infinity", Row("answered wrongly at run.end[0]: invalid number")),
     ("nan-as-text", Row("answered wrongly at run.end[0]: invalid type: string \"NaN\"")),
     ("null", Row("answered wrongly at run.end[0]: invalid type: null")),
+    ("null-before", Row("answered wrongly at run.events[0].before[0]: invalid type: null")),
     ("too-large-a-number", Row("number out of range")),
     ("text-as-number", Row("answered wrongly at run.events[0].time: invalid type: string")),
     // Answers that no run of the task has.
@@ -104,6 +106,8 @@ pub const KINDS: &[(&str, ExpectedEnd)] = &[
         Row("event 0 leads from mode \"first\" into mode \"first\"; accepted are \"second\""),
     ),
     ("states-missing", Row("event 0 has 1 states; accepted are 2")),
+    ("states-missing-before", Row("event 0 has 1 states before its reset; accepted are 2")),
+    ("state-too-many-before", Row("event 1 has 3 states before its reset; accepted are 2")),
     ("end-of-another-size", Row("its end has 3 states; accepted are 2")),
     ("sample-of-another-size", Row("sample 1 has 0 states; accepted are 2")),
     ("samples-missing", Row("gave 2 samples where 3 were asked for")),
@@ -111,6 +115,7 @@ pub const KINDS: &[(&str, ExpectedEnd)] = &[
     ("events-too-many", Row("gave 101 events; accepted are 100")),
     ("events-without-number", Row("a list of more than 100000")),
     ("state-without-number", Row("a list of more than 11")),
+    ("state-before-without-number", Row("a list of more than 11")),
     ("unknown-end", Row("answered wrongly at run.ended: unknown variant `tired`")),
     ("end-beyond-horizon", Row("ended at 99.0; accepted is")),
     ("leaves-domain-forward", Row("ended with leaves-domain, which only runs back in time do")),
@@ -151,4 +156,5 @@ pub const KINDS: &[(&str, ExpectedEnd)] = &[
     ("spaces", Right),
     ("counts-with-a-point", Right),
     ("no-work", Right),
+    ("no-states-before", Right),
 ];

@@ -136,8 +136,12 @@ fn rows(
     is_right(run(good, ENOUGH), "before")?;
     let Some((why, wall)) = expected else {
         let outcome = run(odd, ENOUGH);
-        let no_work = kind == "no-work" && outcome.as_ref().is_ok_and(|it| it.own_time.is_none());
-        return if no_work { Ok(()) } else { is_right(outcome, "odd") };
+        let lacks = |it: &Outcome| match kind {
+            "no-work" => it.own_time.is_none(),
+            "no-states-before" => it.events.iter().all(|event| event.before.is_none()),
+            _ => false,
+        };
+        return if outcome.as_ref().is_ok_and(lacks) { Ok(()) } else { is_right(outcome, "odd") };
     };
     let outcome = match kind {
         "reads-nothing" => run_of_many_samples(odd, wall),
@@ -169,9 +173,12 @@ fn run_of_many_samples(odd: &ProgramEngine, wall: Duration) -> Result<Outcome, F
 fn is_right(outcome: Result<Outcome, Failure>, which: &str) -> Result<(), String> {
     let outcome = outcome.map_err(|failure| format!("the row {which} fails: {failure}"))?;
     let times: Vec<f64> = outcome.events.iter().map(|event| event.elapsed).collect();
+    let before: Vec<Option<f64>> =
+        outcome.events.iter().map(|event| event.before.map(|state| state[0])).collect();
     let samples: Vec<f64> = outcome.samples.iter().map(|sample| sample[0]).collect();
-    let seen = (times, samples, outcome.end[0], outcome.work.rhs_evaluations);
-    let expected = (vec![0.5, 1.5], vec![0.0, 0.25, 0.75], 0.75, 30);
+    let seen = (times, before, samples, outcome.end[0], outcome.work.rhs_evaluations);
+    let before = vec![Some(0.5), Some(0.5)];
+    let expected = (vec![0.5, 1.5], before, vec![0.0, 0.25, 0.75], 0.75, 30);
     if seen == expected && outcome.own_time == Some(Duration::from_nanos(1)) {
         return Ok(());
     }

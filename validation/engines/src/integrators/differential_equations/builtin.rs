@@ -11,7 +11,9 @@ use super::method::{LibraryMethod, Rkv655e};
 use super::state::of_size;
 use super::{COLOURS, LIBRARY, ModeField, reason};
 use crate::accuracy::{Accuracy, Stepping};
-use crate::engine::{Declaration, Engine, GuardSample, Limits, Location, Outcome, Role, Task};
+use crate::engine::{
+    Class, Declaration, Engine, GuardSample, Limits, Location, Outcome, Role, Task,
+};
 use crate::equations::Equations;
 use crate::failure::Failure;
 use crate::integration::{
@@ -36,6 +38,7 @@ impl Engine for BuiltIn {
             library: LIBRARY,
             version: pins::version(LIBRARY),
             method: "Verner 6(5), built-in events",
+            class: Some(Class::Explicit),
             order: Rkv655e::ORDER,
             events: Location::Library,
             dense_output: true,
@@ -47,10 +50,6 @@ impl Engine for BuiltIn {
 
     fn longest_step_on(&self, task: &Task) -> Option<f64> {
         Some(longest_of_period(task.system.period()))
-    }
-
-    fn is_explicit(&self) -> bool {
-        true
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {

@@ -2,6 +2,7 @@
 
 use super::{ModeField, reason};
 use crate::accuracy::Stepping;
+use crate::engine::Class;
 use crate::equations::Equations;
 use crate::failure::Failure;
 use crate::integration::{CubicEnd, Times, longest_of_period, longest_step};
@@ -55,8 +56,8 @@ pub(in super::super) trait LibraryMethod {
     /// The order that the method's authors state; none where it varies.
     const ORDER: Option<u32>;
     const INSIDE: Inside;
-    const EXPLICIT: bool;
-    const MULTISTEP: bool = matches!(Self::INSIDE, Inside::Cubic);
+    const CLASS: Class;
+    const MULTISTEP: bool = matches!(Self::CLASS, Class::Multistep);
     /// Backward differentiation continues with the solution whose error it estimates.
     const STEPPING: Stepping =
         if Self::MULTISTEP { Stepping::PerStep { order: 5 } } else { Stepping::Adaptive };
@@ -109,21 +110,11 @@ macro_rules! inside {
     ($other:ident) => {};
 }
 
-/// Whether a method is explicit, by a word.
-macro_rules! is_explicit {
-    (explicit) => {
-        true
-    };
-    (implicit) => {
-        false
-    };
-}
-
 /// Methods with all that their builders have in common, and then with settings of their own.
 macro_rules! methods {
     ($(
         $(#[$doc:meta])*
-        $name:ident: $kind:ident $text:literal, $order:expr, $inside:ident, |$first:ident| $new:expr $(, $setting:ident($value:expr))*;
+        $name:ident: $class:ident $text:literal, $order:expr, $inside:ident, |$first:ident| $new:expr $(, $setting:ident($value:expr))*;
     )*) => {$(
         $(#[$doc])*
         pub(in super::super) struct $name;
@@ -132,7 +123,7 @@ macro_rules! methods {
             const DESCRIPTION: &'static str = $text;
             const ORDER: Option<u32> = $order;
             const INSIDE: Inside = Inside::$inside;
-            const EXPLICIT: bool = is_explicit!($kind);
+            const CLASS: Class = Class::$class;
 
             inside! { $inside }
 
@@ -151,28 +142,28 @@ macro_rules! methods {
 
 methods! {
     /// Verner's robust pair of order 6.
-    Rkv655e: explicit "Verner 6(5)", Some(6), Interpolant,
+    Rkv655e: Explicit "Verner 6(5)", Some(6), Interpolant,
         |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv655e(),
         max_rejects(ENOUGH);
     /// Verner's efficient pair of order 7.
-    Rkv767e: explicit "Verner 7(6)", Some(7), Interpolant,
+    Rkv767e: Explicit "Verner 7(6)", Some(7), Interpolant,
         |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv767e(),
         max_rejects(ENOUGH);
     /// Dormand and Prince's method of order 8.
-    Dop853: explicit "Dormand-Prince 8(5,3)", Some(8), Again,
+    Dop853: Explicit "Dormand-Prince 8(5,3)", Some(8), Again,
         |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::dop853(),
         max_rejects(ENOUGH);
     /// Collocation at Radau's points.
-    Radau5: implicit "Radau IIA, order 5", Some(5), Again,
+    Radau5: Implicit "Radau IIA, order 5", Some(5), Again,
         |first| ImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::radau5(),
         newton_tol(0.0), max_rejects(ENOUGH),
         filter(if first == 0.0 { power_of_ratio } else { std::convert::identity });
     /// Kvaerno's method of order 5.
-    Kvaerno745: implicit "Kvaerno ESDIRK 5(4)", Some(5), Again,
+    Kvaerno745: Implicit "Kvaerno ESDIRK 5(4)", Some(5), Again,
         |first| DiagonallyImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::kvaerno745(),
         newton_tol(NEWTON), max_rejects(ENOUGH);
     /// Backward differentiation.
-    Bdf: implicit "BDF, orders 1 to 5", None, Cubic,
+    Bdf: Multistep "BDF, orders 1 to 5", None, Cubic,
         |first| BackwardDifferentiationFormula::<Ordinary, _, _>::adaptive(),
         h_max(f64::INFINITY);
 }

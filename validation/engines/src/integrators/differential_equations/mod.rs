@@ -92,6 +92,7 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
             library: LIBRARY,
             version: pins::version(LIBRARY),
             method: M::DESCRIPTION,
+            class: Some(M::CLASS),
             order: M::ORDER,
             events: Location::Harness,
             dense_output: true,
@@ -103,10 +104,6 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
 
     fn longest_step_on(&self, task: &Task) -> Option<f64> {
         (!M::MULTISTEP).then(|| longest_of_period(task.system.period()))
-    }
-
-    fn is_explicit(&self) -> bool {
-        M::EXPLICIT
     }
 
     fn takes(&self, task: &Task) -> Result<(), &'static str> {

@@ -2,7 +2,7 @@
 
 use super::{DenseMatrix, Lu, Vect};
 use crate::accuracy::Stepping;
-use crate::engine::Role;
+use crate::engine::{Class, Role};
 use diffsol::error::DiffsolError;
 use diffsol::{
     NalgebraContext, OdeEquationsImplicit, OdeSolverMethod, OdeSolverProblem, OdeSolverState,
@@ -27,8 +27,7 @@ pub(in super::super) trait DiffsolMethod: Sync {
     const STEPPING: Stepping;
     /// The order that the method's authors state; none where it varies from 1 on.
     const ORDER: Option<u32>;
-    /// Whether the method is explicit.
-    const EXPLICIT: bool = false;
+    const CLASS: Class;
     /// The tests beyond ordinary rows in which the engine takes part.
     const ROLE: Role = Role::Rows;
     /// Whether the step may be shortened without loss: a multistep method would begin anew.
@@ -65,6 +64,7 @@ pub(in super::super) struct Tsit45;
 impl DiffsolMethod for Bdf {
     const NAME: &'static str = "diffsol-bdf";
     const DESCRIPTION: &'static str = "BDF, orders 1 to 5";
+    const CLASS: Class = Class::Multistep;
     const STEPPING: Stepping = Stepping::PerStep { order: 5 };
     const ORDER: Option<u32> = None;
     const ROLE: Role = Role::Representative;
@@ -81,6 +81,7 @@ impl DiffsolMethod for Bdf {
 impl DiffsolMethod for TrBdf2 {
     const NAME: &'static str = "diffsol-tr_bdf2";
     const DESCRIPTION: &'static str = "TR-BDF2, order 2";
+    const CLASS: Class = Class::Implicit;
     const STEPPING: Stepping = Stepping::PerStep { order: 2 };
     const ORDER: Option<u32> = Some(2);
     const ONE_STEP: bool = true;
@@ -98,6 +99,7 @@ impl DiffsolMethod for TrBdf2 {
 impl DiffsolMethod for Esdirk34 {
     const NAME: &'static str = "diffsol-esdirk34";
     const DESCRIPTION: &'static str = "ESDIRK 3(4), order 3";
+    const CLASS: Class = Class::Implicit;
     const STEPPING: Stepping = Stepping::PerStep { order: 3 };
     const ORDER: Option<u32> = Some(3);
     const ONE_STEP: bool = true;
@@ -115,10 +117,10 @@ impl DiffsolMethod for Esdirk34 {
 impl DiffsolMethod for Tsit45 {
     const NAME: &'static str = "diffsol-tsit45";
     const DESCRIPTION: &'static str = "Tsitouras 5(4)";
+    const CLASS: Class = Class::Explicit;
     const STEPPING: Stepping = Stepping::Adaptive;
     const ORDER: Option<u32> = Some(5);
     const ROLE: Role = Role::Damping;
-    const EXPLICIT: bool = true;
     const ONE_STEP: bool = true;
 
     fn solver<'a, E: DiffsolProblem + 'a>(

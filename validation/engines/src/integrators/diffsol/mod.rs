@@ -57,6 +57,7 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
             library: "diffsol",
             version: pins::version("diffsol"),
             method: M::DESCRIPTION,
+            class: Some(M::CLASS),
             order: M::ORDER,
             events: Location::Library,
             dense_output: true,
@@ -68,10 +69,6 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
 
     fn longest_step_on(&self, task: &Task) -> Option<f64> {
         M::ONE_STEP.then(|| longest_of_period(task.system.period()))
-    }
-
-    fn is_explicit(&self) -> bool {
-        M::EXPLICIT
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {

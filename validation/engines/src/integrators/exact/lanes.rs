@@ -32,6 +32,7 @@ impl Watcher for LaneRecord {
             mode: self.phase,
             elapsed: phase.instant.since(&self.start, self.omega).value(),
             state: [p, y, q, phase.v()],
+            before: None,
         });
     }
 }

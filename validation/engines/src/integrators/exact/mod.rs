@@ -30,6 +30,7 @@ impl Engine for Exact {
             library: "percuss",
             version: pins::version("percuss"),
             method: "closed forms, certified first crossing",
+            class: None,
             order: None,
             events: Location::Proved,
             dense_output: true,
@@ -68,8 +69,8 @@ fn run(task: &OscillatorTask, limits: &Limits) -> Result<Outcome, Failure> {
         };
         elapsed = elapsed.plus(duration);
         let (event, mode) = (event_between(before, phase), place(phase));
-        let state = Values::of(&state);
-        outcome.events.push(Event { event, mode, elapsed: elapsed.value(), state });
+        let (elapsed, state) = (elapsed.value(), Values::of(&state));
+        outcome.events.push(Event { event, mode, elapsed, state, before: None });
         before = phase;
         if outcome.events.len() > limits.events {
             return Err(Failure::new(format!("gave up after {} events", limits.events)));

@@ -87,6 +87,7 @@ impl Record<'_> {
             mode: event.mode,
             elapsed: self.elapsed(&event.time),
             state: Values::of(&event.state),
+            before: None,
         });
     }
 

@@ -11,7 +11,7 @@
 
 use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, on_vectors_of, packed, plain};
 use crate::accuracy::{Accuracy, Stepping};
-use crate::engine::{Declaration, Engine, Limits, Location, Outcome, Role, Task};
+use crate::engine::{Class, Declaration, Engine, Limits, Location, Outcome, Role, Task};
 use crate::equations::{Equations, Numbers};
 use crate::failure::Failure;
 use crate::integration::{
@@ -54,6 +54,7 @@ impl Engine for Dop853 {
             } else {
                 "Dormand-Prince 8(5,3)"
             },
+            class: Some(Class::Explicit),
             order: Some(8),
             events: Location::Harness,
             dense_output: false,
@@ -65,10 +66,6 @@ impl Engine for Dop853 {
 
     fn longest_step_on(&self, task: &Task) -> Option<f64> {
         Some(longest_of_period(task.system.period()))
-    }
-
-    fn is_explicit(&self) -> bool {
-        true
     }
 
     /// At first order the error of a step h is a multiple of r h^2, and is held to the tolerance: r

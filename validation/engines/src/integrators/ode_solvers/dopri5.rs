@@ -5,7 +5,7 @@
 
 use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, on_vectors_of, packed, plain};
 use crate::accuracy::{Accuracy, Stepping};
-use crate::engine::{Declaration, Engine, Limits, Location, Outcome, Role, Task};
+use crate::engine::{Class, Declaration, Engine, Limits, Location, Outcome, Role, Task};
 use crate::equations::Equations;
 use crate::failure::Failure;
 use crate::integration::{
@@ -39,6 +39,7 @@ impl<E: Coordinates> Engine for Dopri5<E> {
             library: LIBRARY,
             version: pins::version(LIBRARY),
             method: "Dormand-Prince 5(4)",
+            class: Some(Class::Explicit),
             order: Some(5),
             events: Location::Harness,
             dense_output: true,
@@ -50,10 +51,6 @@ impl<E: Coordinates> Engine for Dopri5<E> {
 
     fn longest_step_on(&self, task: &Task) -> Option<f64> {
         Some(longest_of_period(task.system.period()))
-    }
-
-    fn is_explicit(&self) -> bool {
-        true
     }
 
     fn takes(&self, task: &Task) -> Result<(), &'static str> {

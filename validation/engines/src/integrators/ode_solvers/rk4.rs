@@ -7,7 +7,7 @@
 
 use super::{COLOURS, LIBRARY, TimedField, on_vectors_of, packed, plain};
 use crate::accuracy::{Accuracy, Stepping};
-use crate::engine::{Declaration, Engine, Limits, Location, Outcome, Role, Task};
+use crate::engine::{Class, Declaration, Engine, Limits, Location, Outcome, Role, Task};
 use crate::equations::Equations;
 use crate::failure::Failure;
 use crate::integration::{
@@ -34,6 +34,7 @@ impl Engine for Rk4 {
             library: LIBRARY,
             version: pins::version(LIBRARY),
             method: "classical Runge-Kutta 4, fixed steps",
+            class: Some(Class::Explicit),
             order: Some(ORDER as u32),
             events: Location::Harness,
             dense_output: false,

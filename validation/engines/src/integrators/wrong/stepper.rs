@@ -93,7 +93,8 @@ impl StepperRun<'_> {
             };
             let (next, on_surface) = self.after_event(phase, guard, at, &there);
             (t, phase, state) = (at, next, on_surface);
-            outcome.events.push(Event { event: guard, mode: phase, elapsed: t, state });
+            let (mode, before) = (phase, Some(there));
+            outcome.events.push(Event { event: guard, mode, elapsed: t, state, before });
             if outcome.events.len() > limits.events {
                 return Err(Failure::new(format!("gave up after {} events", limits.events)));
             }

@@ -162,6 +162,7 @@ mod tests {
             mode: phase,
             elapsed,
             state: [0.0; 4],
+            before: None,
         };
         let events = [
             event(3.9, Phase::Progression),

@@ -55,6 +55,7 @@ impl Planted {
             mode: row.phase.unwrap_or(NoContact),
             elapsed: row.elapsed.value(),
             state: row.rounded(),
+            before: None,
         };
         let outcome = OscillatorOutcome {
             events: truth.events.iter().map(event).collect(),

@@ -22,6 +22,7 @@ fn perfect(run: &RestartRun) -> OscillatorOutcome {
         mode: row.phase.unwrap_or(NoContact),
         elapsed: row.elapsed.value(),
         state: row.rounded(),
+        before: None,
     };
     OscillatorOutcome {
         events: run.truth.events.iter().map(event).collect(),

@@ -115,7 +115,7 @@ fn an_answer_is_the_same_in_both_words() {
 #[test]
 fn what_is_no_run_of_the_oscillator_is_refused() {
     let state = Values::of(&[0.5; 4]);
-    let event = Event { event: 0, mode: 1, elapsed: 0.5, state };
+    let event = Event { event: 0, mode: 1, elapsed: 0.5, state, before: Some(state) };
     let run = Outcome { events: vec![event], end: state, ..Outcome::default() };
     assert!(OscillatorOutcome::of_system(run.clone()).is_ok());
     let early = Outcome { ended: Ended::NoProgress, ..run.clone() };
