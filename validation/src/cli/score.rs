@@ -5,13 +5,12 @@ use super::shared::judged::JudgedFlags;
 use super::shared::long_work;
 use super::shared::names::{CASES, held_by};
 use super::{note, say};
-use crate::engine::{Accuracy, REFERENCE, Stepping};
-use crate::integrators;
+use crate::engine::{Accuracy, Class, REFERENCE, Stepping};
 use crate::number::shortest;
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, CaseRun, Scored, Status, Suite};
-use anyhow::{Result, anyhow, bail};
-use clap::Args;
+use anyhow::{Context, Result, anyhow, bail};
+use clap::{Args, ValueEnum};
 use percuss_programs::files::{Answerer, EVENTS, FileEngine, SAMPLES};
 use percuss_programs::{NAMES, is_name};
 use rayon::prelude::*;
@@ -42,11 +41,44 @@ pub(super) struct Arguments {
     /// The tolerance that the answers were made with, which errors are counted in
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: f64,
+    /// The method's order, which --stepping per-step and fixed need
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    order: Option<u32>,
+    /// How the tolerance holds the error (default: adaptive)
+    #[arg(long, value_name = "STEPPING", value_enum)]
+    stepping: Option<SteppingWord>,
+    /// The class of the method
+    #[arg(long, value_name = "CLASS", value_enum)]
+    method: Option<Method>,
     /// The folder of CASE.events.csv and CASE.samples.csv
     #[arg(long, value_name = "DIR")]
     answers: PathBuf,
     #[command(flatten)]
     judged: JudgedFlags,
+}
+
+/// The way in which a tolerance holds the error.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SteppingWord {
+    /// The error of the solution that goes on is below the estimate that is held
+    Adaptive,
+    /// The error of the solution that goes on is what is held: BDF, DIRK
+    PerStep,
+    /// The step is given, and the tolerance is what errors are counted in
+    Fixed,
+}
+
+/// The class of a method.
+#[derive(Clone, Copy, ValueEnum)]
+enum Method {
+    /// Runge-Kutta, extrapolation
+    Explicit,
+    /// Radau, Rosenbrock, DIRK, Gauss
+    Implicit,
+    /// Adams, BDF
+    Multistep,
+    /// Derivatives of the solution
+    Taylor,
 }
 
 fn name(text: &str) -> Result<String, String> {
@@ -80,6 +112,7 @@ const SUITE: Suite = Suite::Quick;
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let judged = &arguments.judged;
     judged.check()?;
+    let stepping = arguments.stepping()?;
     let baseline = judged.baseline()?;
     let cases = judged.open()?;
     let answered = answered(&arguments.answers)?;
@@ -91,7 +124,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let pool = long_work::pool(threads)?;
     let bar = long_work::bar(all.len() as u64, "cases");
     let row = |case: &&dyn CaseRun| {
-        let engine = arguments.engine(case.name());
+        let engine = arguments.engine(case.name(), stepping);
         let accuracy = Accuracy::Tolerance(arguments.tolerance);
         let row = suite::one(*case, &engine, accuracy, SUITE, &defaults);
         bar.inc(1);
@@ -113,14 +146,14 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         evidence.events =
             pool.install(|| event_pictures((&cases.oscillator, &cases.systems), &rows, SUITE));
     }
-    let report = Report::new(SUITE, &[&arguments.engine("")], &rows);
+    let report = Report::new(SUITE, &[&arguments.engine("", stepping)], &rows);
     let asked = |it: &RowPlace<'_>| {
         it.engine == arguments.name
             && judged.chosen.accepts(it.case)
             && it.tolerance == Some(arguments.tolerance)
     };
     if let Some(baseline) = &baseline {
-        evidence.worse = judged.worse(baseline, &report, asked)?;
+        judged.compare(baseline, (&report, &mut evidence), asked)?;
     }
     judged.write(&report, &evidence, all.len())
 }
@@ -130,30 +163,54 @@ impl Arguments {
     fn flags(&self) -> Vec<(&'static str, String)> {
         let answers = self.answers.display().to_string();
         let tolerance = shortest(self.tolerance);
-        vec![("--answers", answers), ("--name", self.name.clone()), ("--tolerance", tolerance)]
+        let mut flags =
+            vec![("--answers", answers), ("--name", self.name.clone()), ("--tolerance", tolerance)];
+        flags.extend(self.order.map(|order| ("--order", order.to_string())));
+        let word = |it: clap::builder::PossibleValue| it.get_name().to_owned();
+        let stepping = self.stepping.and_then(|it| it.to_possible_value());
+        flags.extend(stepping.map(|it| ("--stepping", word(it))));
+        let method = self.method.and_then(|it| it.to_possible_value());
+        flags.extend(method.map(|it| ("--method", word(it))));
+        flags
     }
 
     /// The answers to a case as an engine. The words live as long as this process.
-    fn engine(&self, case: &str) -> FileEngine {
+    fn engine(&self, case: &str, stepping: Stepping) -> FileEngine {
         let for_ever = |text: &str| -> &'static str { Box::leak(text.to_owned().into_boxed_str()) };
         let answerer = Answerer {
             name: for_ever(&self.name),
             library: for_ever(self.library.as_deref().unwrap_or(&self.name)),
             version: for_ever(&self.version),
             language: for_ever(&self.language),
-            stepping: stepping(&self.name),
+            class: self.method.map(Into::into),
+            order: self.order,
+            stepping,
         };
         FileEngine::new(answerer, self.answers.clone(), case.to_owned())
     }
+
+    /// The way in which the accuracy was chosen, which fixes the unit of error.
+    fn stepping(&self) -> Result<Stepping> {
+        let order = || -> Result<i32> {
+            let order = self.order.context("--stepping: per-step and fixed need --order")?;
+            Ok(i32::try_from(order)?)
+        };
+        Ok(match self.stepping {
+            None | Some(SteppingWord::Adaptive) => Stepping::Adaptive,
+            Some(SteppingWord::PerStep) => Stepping::PerStep { order: order()? },
+            Some(SteppingWord::Fixed) => Stepping::Fixed { order: order()? },
+        })
+    }
 }
 
-/// The unit of error is that of the engine inside percuss that is called so, where its accuracy is
-/// chosen by a tolerance too.
-fn stepping(name: &str) -> Stepping {
-    let known = integrators::all().iter().map(|it| it.declaration()).find(|it| it.name == name);
-    match known.map(|it| it.stepping) {
-        Some(stepping @ Stepping::PerStep { .. }) => stepping,
-        _ => Stepping::Adaptive,
+impl From<Method> for Class {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::Explicit => Self::Explicit,
+            Method::Implicit => Self::Implicit,
+            Method::Multistep => Self::Multistep,
+            Method::Taylor => Self::Taylor,
+        }
     }
 }
 

@@ -43,6 +43,8 @@ fn malformed_events_cost_their_row() {
     spoiled(EVENTS, in_line(3, ",flight", ",flight,1"), &[&line(3), "6 columns; accepted are 5"]);
     spoiled(EVENTS, in_line(3, "flight", "rest"), &[&line(3), "\"rest\"", "accepted are flight"]);
     spoiled(EVENTS, in_line(3, "impact", "bump"), &[&line(3), "\"bump\"", "accepted are impact"]);
+    let before = |text: &str| text.replacen("x,v", "x,v,before.x", 1).into_bytes();
+    spoiled(EVENTS, before, &[&line(1), "before.x,before.v"]);
     for number in ["NaN", "inf", "NA", "1.0D0", ""] {
         let change = |text: &str| {
             let row = text.lines().nth(1).expect("an event").split(',').next().expect("a time");

@@ -46,31 +46,40 @@ impl Files {
     fn of(answered: &Answered, task: &Task) -> Self {
         let system = task.system.system();
         let names = system.states.join(",");
+        let has_before = match answered {
+            Answered::Oscillator(run) => run.events.iter().all(|it| it.before.is_some()),
+            Answered::System(run) => run.events.iter().all(|it| it.before.is_some()),
+        };
+        let column = |state: &String| format!(",before.{state}");
+        let more: String = system.states.iter().filter(|_| has_before).map(column).collect();
         let mut files = Self {
-            events: format!("time,event,mode,{names}\n"),
+            events: format!("time,event,mode,{names}{more}\n"),
             samples: format!("time,{names}\n"),
         };
         let mut before = task.mode;
-        let mut event = |event: usize, mode: usize, elapsed: f64, state: &[f64]| {
+        let mut event = |(event, mode): (usize, usize), elapsed: f64, states: [&[f64]; 2]| {
             let (name, next) = (system.event_name(before, event), &system.modes[mode].name);
             let name = name.expect("an event of its mode");
-            let row = format!("{},{name},{next}{}\n", shortest(elapsed), written(state));
+            let [state, left] = states.map(written);
+            let left = if has_before { left } else { String::new() };
             before = mode;
-            row
+            format!("{},{name},{next}{state}{left}\n", shortest(elapsed))
         };
         let (samples, end, (ended, ended_at)) = match answered {
             Answered::Oscillator(run) => {
                 for it in &run.events {
                     let mode = system.modes.iter().position(|mode| mode.name == it.mode.as_str());
                     let mode = mode.expect("a phase is a mode");
-                    files.events += &event(it.event, mode, it.elapsed, &it.state);
+                    let left = it.before.unwrap_or_default();
+                    files.events += &event((it.event, mode), it.elapsed, [&it.state, &left]);
                 }
                 let samples: Vec<String> = run.samples.iter().map(|it| written(it)).collect();
                 (samples, written(&run.end), (run.ended, run.ended_at))
             }
             Answered::System(run) => {
                 for it in &run.events {
-                    files.events += &event(it.event, it.mode, it.elapsed, &it.state);
+                    let left = it.before.unwrap_or_default();
+                    files.events += &event((it.event, it.mode), it.elapsed, [&it.state, &left]);
                 }
                 let samples: Vec<String> = run.samples.iter().map(|it| written(it)).collect();
                 (samples, written(&run.end), (run.ended, run.ended_at))
@@ -78,7 +87,8 @@ impl Files {
         };
         if let Some(word) = ending(ended) {
             let mode = &system.modes[before].name;
-            files.events += &format!("{},{word},{mode}{end}\n", shortest(ended_at));
+            let left = if has_before { end.as_str() } else { "" };
+            files.events += &format!("{},{word},{mode}{end}{left}\n", shortest(ended_at));
         }
         let mut times = task.samples.clone();
         if times.last() != Some(&task.span) {
@@ -148,8 +158,12 @@ fn an_engines_own_run_has_the_verdicts_that_validate_gives_it() {
     let answered = answers("diffsol-bdf", Accuracy::Tolerance(1e-6), CASES, folder.path());
     assert!(answered.len() > 25, "{answered:?}");
     let answers = folder.path().display().to_string();
+    let written = fs::read_to_string(folder.path().join("small-b.events.csv")).expect("read");
+    assert!(written.starts_with("time,event,mode,p,y,q,v,before.p,"), "{written}");
     let score = ["score", "--name", "diffsol-bdf", "--library", "diffsol", "--tolerance", "1e-6"];
-    let (scored, _) = report(&[&score[..], &["--answers", &answers, "-c", CASES]].concat());
+    let method = ["--stepping", "per-step", "--order", "5", "--method", "multistep"];
+    let words = [&score[..], &method, &["--answers", &answers, "-c", CASES]].concat();
+    let (scored, _) = report(&words);
     let (validated, _) =
         report(&["validate", "-e", "^diffsol-bdf$", "--tolerance", "1e-6", "-c", CASES]);
     let of = |rows: &[Value], case: &str| -> Vec<Value> {
@@ -193,6 +207,42 @@ fn exact_answers_have_every_event() {
         }
     }
     assert!(same > 25, "{same}");
+}
+
+/// What `events` prints is an answer as it is: its first line is the start, its last one the end.
+#[test]
+fn what_events_prints_is_an_answer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = "watched-every-direction";
+    answers("exact", Accuracy::Exact, &format!("^{case}$"), folder.path());
+    let printed = run(&["events", "watched-impact-oscillator", "--until", "30"]).stdout;
+    assert!(text(&printed).starts_with("n,time,event,mode,"), "{}", text(&printed));
+    fs::write(folder.path().join(format!("{case}.events.csv")), printed).expect("written");
+    let path = folder.path().join(format!("{case}.samples.csv"));
+    let samples = fs::read_to_string(&path).expect("read");
+    let with_mode = samples.replacen("time,", "time,mode,", 1).lines().enumerate().fold(
+        String::new(),
+        |all, (n, line)| match (n, line.split_once(',')) {
+            (1.., Some((time, state))) => format!("{all}{time},free,{state}\n"),
+            _ => format!("{all}{line}\n"),
+        },
+    );
+    fs::write(&path, with_mode).expect("written");
+    let answers = folder.path().display().to_string();
+    let case = format!("^{case}$");
+    let (rows, code) = report(&[&SCORE[..], &["--answers", &answers, "-c", &case]].concat());
+    assert_eq!(code, Some(0), "{rows:?}");
+    assert_eq!(rows[0]["verdict"], "pass", "{rows:?}");
+    assert_eq!(rows[0]["events_missed"], 0, "{rows:?}");
+}
+
+/// Half of a declaration is refused: a unit of error that follows from an order needs one.
+#[test]
+fn a_stepping_that_needs_an_order_is_refused_without() {
+    for stepping in ["per-step", "fixed"] {
+        let words = [&SCORE[..], &["--answers", ".", "--stepping", stepping]].concat();
+        refused(&words, &["--stepping", "need --order"]);
+    }
 }
 
 /// What `export` writes of the bouncing ball, and how it is answered.
