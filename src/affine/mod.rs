@@ -33,5 +33,6 @@ pub use model::system::{
     Until, Watch, is_unit,
 };
 pub use run::Run;
+pub use run::follow::{Followed, Follower, Imposed};
 pub use solver::Solver;
 pub use solver::event::{Ending, Errors, Event, What};

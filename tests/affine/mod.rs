@@ -10,6 +10,7 @@ mod decided;
 mod enclosed;
 mod endings;
 mod files;
+mod follow;
 mod hostile;
 mod kept;
 mod known;

@@ -57,7 +57,7 @@ impl<T: Number> Solver<T> {
     }
 
     /// A run whose first segment is not entered yet.
-    fn at_start(&self, start: &StartPoint, until: T) -> Result<Run<'_, T>, SystemError> {
+    pub(super) fn at_start(&self, start: &StartPoint, until: T) -> Result<Run<'_, T>, SystemError> {
         let mut graph = self.pool.lend();
         self.system.check_start(start)?;
         let begin = graph.run_start(&self.system, start, || self.time_and_state(start));
@@ -80,6 +80,8 @@ impl<T: Number> Solver<T> {
             failed_attempts: vec![FailedAttempts::default(); self.modes.len()],
             restitution: None,
             at_entry: 0,
+            returning: 0,
+            is_lenient: false,
             tie: None,
             doubt: None,
             events_in_instant: 0,

@@ -43,7 +43,12 @@ impl<T: Number> Run<'_, T> {
             self.watched(mode, n, zero, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
         }
-        let ending = guards & low_bits(until);
+        let back_inside = guards & self.returning;
+        if back_inside != 0 {
+            self.returning &= !back_inside;
+            bits(back_inside).for_each(|n| self.tracks[n].outward = 1.0);
+        }
+        let ending = guards & low_bits(until) & !back_inside;
         if ending == 0 {
             self.segment.at_crossing(&mut self.ends.left, &mut self.work);
             self.ends.passed.guards &= !guards;
@@ -139,6 +144,6 @@ fn bits(mask: u64) -> impl Iterator<Item = usize> {
 }
 
 #[inline]
-fn low_bits(count: usize) -> u64 {
+pub(super) fn low_bits(count: usize) -> u64 {
     if count >= 64 { u64::MAX } else { (1 << count) - 1 }
 }

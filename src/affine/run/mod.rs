@@ -4,14 +4,16 @@
 //! [`crossed`] says which events the crossed guards are, and [`transition`] resets the state and
 //! picks the successor. [`accumulation`] encloses where impacts accumulate, and [`enclosure`]
 //! carries the errors along in a run that follows them. [`horizon`] has the errors at a time that
-//! is given, and [`given_up`] the motion that is known where such a run is not decided. Read this
-//! file first, then `crossed` and `transition`.
+//! is given, and [`given_up`] the motion that is known where such a run is not decided. [`follow`]
+//! continues the records of a run that someone else has made. Read this file first, then `crossed`
+//! and `transition`.
 
 mod accumulation;
 mod begin;
 mod crossed;
 mod enclosure;
 mod exact;
+pub mod follow;
 mod given_up;
 mod horizon;
 mod origins;
@@ -54,6 +56,12 @@ pub struct Run<'a, T: Number> {
     restitution: Option<Restitution<T>>,
     /// The guards that fire at the instant of entry, as bits.
     at_entry: u64,
+    /// The guards of `until` that are positive since the segment was entered and do not fire until
+    /// they have been inside, as bits.
+    returning: u64,
+    /// Whether a guard that is positive at entry fires there instead of ending the run: the states
+    /// of a run that someone else has made are not exact.
+    is_lenient: bool,
     /// The mode and the guards of the last crossing whose order rounding left open.
     tie: Option<(usize, u64)>,
     /// The mode and the guard that rounding left open by itself, first of all.
@@ -177,10 +185,11 @@ impl<'a, T: Number> Run<'a, T> {
             if doubtful {
                 self.work.doubt(n);
             }
-            let outward = if n >= until && is_positive { -1.0 } else { 1.0 };
+            let returns = n >= until || self.returning >> n & 1 == 1;
+            let outward = if returns && is_positive { -1.0 } else { 1.0 };
             self.tracks.push(Track { outward, zeros: order, live });
-            if n < until && is_positive {
-                if order == 0 && !doubtful {
+            if !returns && is_positive {
+                if order == 0 && !doubtful && !self.is_lenient {
                     ending = ending.or(Some(Ending::BeyondGuard));
                 } else if self.solver.backward {
                     ending = ending.or(Some(Ending::LeavesDomain));

@@ -38,6 +38,7 @@ impl<T: Number> Run<'_, T> {
         }
         let arrival = self.graph.arrival(self.node, firing);
         let (impact, zero_entries) = (arrival.impact, arrival.zero_entries);
+        self.returning = 0;
         let from = self.node;
         let next = self.graph.enter(from, firing, successor);
         self.node = next;

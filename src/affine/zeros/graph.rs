@@ -109,6 +109,17 @@ impl ZeroGraph {
         known.filter(same).unwrap_or_else(|| self.intern(mode, zeros.clone()))
     }
 
+    /// A space of zeros in a mode, with these guards of it as zeros too.
+    pub fn with_guards(&self, mode: usize, zeros: &ZeroSpace, guards: u64) -> ZeroSpace {
+        with_rows(zeros, &self.modes[mode], ZeroGuards { guards, point: None })
+    }
+
+    /// What is zero at an instant of a node's segment, or at its entry, where these guards are.
+    pub fn zeros_with(&self, node: usize, zero: ZeroGuards, at_entry: bool) -> ZeroSpace {
+        let node = &self.nodes[node];
+        with_rows(node.zeros_at(at_entry), &self.modes[node.mode], zero)
+    }
+
     /// The guards that are zero at an event because the given ones are, which are included.
     #[inline]
     pub fn tied(&mut self, node: usize, zero: ZeroGuards, at_entry: bool) -> u64 {
@@ -189,6 +200,11 @@ impl ZeroGraph {
 }
 
 impl Node {
+    /// The structural zeros at entry.
+    pub fn zeros(&self) -> &ZeroSpace {
+        &self.zeros
+    }
+
     /// The structural zeros just before an event: at the instant of entry those of the entry.
     fn zeros_at(&self, entry: bool) -> &ZeroSpace {
         if entry { &self.zeros } else { &self.lasting }
