@@ -21,6 +21,8 @@ Examples:
       chosen engines on one case, row by row
   percuss validate -e '^exact$' -e dopri5 -c '^small-b$' --out report
       with a report, and close-ups of the first wrong events
+  percuss validate --power
+      with engines that are wrong on purpose, which the bounds must notice
 
 Words:
   engine       a method of a library, with the way in which its events
@@ -61,6 +63,8 @@ Examples:
 Words:
   answer       CASE.events.csv and CASE.samples.csv in the folder of
                --answers
+  before       columns before.<state> of an event: the state that its
+               reset has not touched
   checked      true events that a row is judged on: those before an
                error of one tolerance has grown to 1e-3
   missed       a checked event that the solver does not have

@@ -35,6 +35,9 @@ pub(super) struct Arguments {
     /// Only engines whose name matches; several are alternatives
     #[arg(short, long = "engine", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
     engine: Vec<Regex>,
+    /// Also run engines that are wrong on purpose: each has to fail a bound
+    #[arg(long)]
+    power: bool,
     #[command(flatten)]
     judged: JudgedFlags,
     #[command(flatten)]
@@ -48,7 +51,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let baseline = judged.baseline()?;
     let _programs = arguments.programs.start()?;
     let engines = chosen_engines(&arguments.engine)?;
-    let wrong = WrongEngines::of(arguments);
+    let wrong = WrongEngines::of(arguments)?;
     let probed = wrong.count() > 0 || suite::probes_any(&engines, &scope);
     let cases = judged.open()?.prepare(probed.then_some(arguments.suite))?;
     let all = cases.all();
@@ -80,7 +83,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
             && scope.makes(it.tolerance, it.step)
     };
     if let Some(baseline) = &baseline {
-        evidence.worse = judged.worse(baseline, &report, asked)?;
+        judged.compare(baseline, (&report, &mut evidence), asked)?;
     }
     let code = judged.write(&report, &evidence, all.len())?;
     Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code })
@@ -116,8 +119,7 @@ fn scope(arguments: &Arguments) -> Result<SuiteScope> {
     Ok(all.at(arguments.tolerance.iter().map(|it| it.value).collect()))
 }
 
-/// Engines that are wrong on purpose, for the power of the gates; none where something else is
-/// asked.
+/// Engines that are wrong on purpose, for the power of the gates; none where that is not asked.
 #[derive(Default)]
 struct WrongEngines {
     anywhere: Vec<(WrongEngine, Standard)>,
@@ -125,15 +127,17 @@ struct WrongEngines {
 }
 
 impl WrongEngines {
-    fn of(arguments: &Arguments) -> Self {
-        let chosen = &arguments.judged.chosen;
-        let everything =
-            arguments.engine.is_empty() && chosen.case.is_empty() && chosen.cases.is_none();
-        if everything {
-            Self { anywhere: power::all(), on_systems: power::all_on_systems() }
-        } else {
-            Self::default()
+    fn of(arguments: &Arguments) -> Result<Self> {
+        if !arguments.power {
+            return Ok(Self::default());
         }
+        let chosen = &arguments.judged.chosen;
+        if !chosen.case.is_empty() || chosen.cases.is_some() {
+            bail!(
+                "--power: accepted is all cases, without --case and --cases: each gate needs its own"
+            );
+        }
+        Ok(Self { anywhere: power::all(), on_systems: power::all_on_systems() })
     }
 
     fn count(&self) -> usize {

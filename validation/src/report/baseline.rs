@@ -1,4 +1,4 @@
-//! An earlier report, to be no worse than.
+//! Earlier reports, to be no worse than the best of them.
 
 use super::{Report, ReportRow};
 use crate::number::brief;
@@ -11,7 +11,7 @@ pub struct Baseline {
     results: Vec<Earlier>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 struct Earlier {
     case: String,
     engine: String,
@@ -23,9 +23,10 @@ struct Earlier {
     event_time_error: Largest,
     state_error: Largest,
     drift_error: Option<f64>,
+    rhs_evaluations: Option<u64>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize)]
 struct Largest {
     max: Option<f64>,
 }
@@ -48,6 +49,8 @@ pub struct RowPlace<'a> {
 pub struct Compared {
     /// Rows that got worse, with the reason.
     pub worse: Vec<String>,
+    /// Rows that take many more right-hand sides, with how many more.
+    pub dearer: Vec<String>,
     /// Rows of the baseline that were asked for and not made.
     pub gone: Vec<String>,
     /// The number of rows in both reports.
@@ -57,7 +60,9 @@ pub struct Compared {
 /// Errors may grow by this factor: another processor or compiler rounds differently, and a step
 /// that is accepted here is refused there. A method that loses an order, or an adapter a digit, is
 /// beyond it.
-const FACTOR: f64 = 2.0;
+const FACTOR: f64 = 1.5;
+/// A cost that has grown by this factor is named.
+const DEARER: f64 = 1.2;
 /// Errors below this are rounding.
 const ROUNDING: f64 = 1e-14;
 
@@ -75,6 +80,23 @@ impl Baseline {
         }
     }
 
+    /// The best of several reports, figure by figure: what has crept from one to the next, each
+    /// time by less than is worse, is not lost so.
+    #[must_use]
+    pub fn best(all: impl IntoIterator<Item = Self>) -> Option<Self> {
+        let mut all = all.into_iter();
+        let mut best = all.next()?;
+        for other in all {
+            for row in other.results {
+                match best.results.iter_mut().find(|it| it.is_alike(&row)) {
+                    Some(own) => own.take_the_better(&row),
+                    None => best.results.push(row),
+                }
+            }
+        }
+        Some(best)
+    }
+
     /// Holds a report against this one; `asked` says whether a row of the baseline was asked for.
     #[must_use]
     pub fn compare(&self, report: &Report, asked: impl Fn(&RowPlace<'_>) -> bool) -> Compared {
@@ -86,6 +108,7 @@ impl Baseline {
                     compared.common += 1;
                     let lines = earlier.against(row).into_iter();
                     compared.worse.extend(lines.map(|it| format!("{who}: {it}")));
+                    compared.dearer.extend(earlier.dearer(row).map(|it| format!("{who} {it}")));
                 }
                 None if asked(&earlier.place()) => compared.gone.push(who),
                 None => {}
@@ -104,6 +127,37 @@ impl Earlier {
     fn who(&self) -> String {
         let setting = super::setting::setting(self.tolerance, self.step);
         format!("{} {}", self.case, super::setting::who(&self.engine, &setting))
+    }
+
+    /// Whether another earlier row has the same place.
+    fn is_alike(&self, other: &Self) -> bool {
+        let place = |it: &Self| (it.tolerance, it.step);
+        self.case == other.case && self.engine == other.engine && place(self) == place(other)
+    }
+
+    /// Takes what is better in another earlier row of the same place.
+    fn take_the_better(&mut self, other: &Self) {
+        if rank(&other.verdict) < rank(&self.verdict) {
+            self.verdict.clone_from(&other.verdict);
+        }
+        let count = |own: &mut Option<usize>, other: Option<usize>| {
+            *own = own.iter().copied().chain(other).min();
+        };
+        count(&mut self.events_missed, other.events_missed);
+        count(&mut self.events_spurious, other.events_spurious);
+        self.rhs_evaluations = self.rhs_evaluations.into_iter().chain(other.rhs_evaluations).min();
+        let error = |own: &mut Option<f64>, other: Option<f64>| {
+            *own = own.iter().copied().chain(other).reduce(f64::min);
+        };
+        error(&mut self.event_time_error.max, other.event_time_error.max);
+        error(&mut self.state_error.max, other.state_error.max);
+        error(&mut self.drift_error, other.drift_error);
+    }
+
+    /// How many times as many right-hand sides a row takes, where they are many more.
+    fn dearer(&self, row: &ReportRow) -> Option<String> {
+        let factor = row.rhs_evaluations? as f64 / self.rhs_evaluations? as f64;
+        (factor > DEARER && factor.is_finite()).then(|| format!("{factor:.2} times"))
     }
 
     fn is(&self, row: &ReportRow) -> bool {
@@ -147,4 +201,11 @@ impl Earlier {
         }
         worse
     }
+}
+
+/// The place of a verdict among all, the best first.
+fn rank(verdict: &str) -> usize {
+    const BEST_FIRST: [&str; 8] =
+        ["pass", "known", "undecidable", "not-scored", "not-run", "unavailable", "fail", "error"];
+    BEST_FIRST.iter().position(|it| *it == verdict).unwrap_or(BEST_FIRST.len())
 }

@@ -33,6 +33,8 @@ pub struct ReportEvidence {
     pub faults: Vec<FaultRow>,
     /// Rows that got worse than in the baseline, one line per row.
     pub worse: Vec<String>,
+    /// Rows that take many more right-hand sides than in the baseline, with how many more.
+    pub dearer: Vec<String>,
     /// Flags with their folders, and other words, that a command needs to repeat a row on the same
     /// data.
     pub folders: Vec<(&'static str, String)>,

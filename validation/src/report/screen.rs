@@ -25,6 +25,7 @@ pub fn screen(report: &Report, evidence: &ReportEvidence, with_rows: bool) -> St
         failing_cases(report, evidence, with_rows),
         reasons(&report.results),
         worse(evidence),
+        dearer(evidence),
         counts(report),
     ];
     parts.concat()
@@ -122,6 +123,13 @@ pub(super) fn figure(value: f64) -> String {
 fn worse(evidence: &ReportEvidence) -> String {
     let lines = evidence.worse.iter();
     lines.map(|it| wrapped(&format!("worse than the baseline: {it}"))).collect()
+}
+
+fn dearer(evidence: &ReportEvidence) -> String {
+    match evidence.dearer.as_slice() {
+        [] => String::new(),
+        rows => wrapped(&format!("right-hand sides beside the baseline: {}", rows.join("; "))),
+    }
 }
 
 fn counts(report: &Report) -> String {

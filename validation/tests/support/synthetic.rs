@@ -343,6 +343,7 @@ pub fn evidence() -> ReportEvidence {
         ],
         events: vec![event()],
         worse: vec![NASTY.to_owned()],
+        dearer: Vec::new(),
         folders: Vec::new(),
     }
 }

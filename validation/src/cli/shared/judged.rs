@@ -30,9 +30,9 @@ pub(in crate::cli) struct JudgedFlags {
     /// was not answered
     #[arg(long)]
     require: bool,
-    /// Fails where anything is worse than in this report, or gone
+    /// Fails where anything is worse than in this report, or gone; of several the best counts
     #[arg(long, value_name = "report.json")]
-    baseline: Option<PathBuf>,
+    baseline: Vec<PathBuf>,
     /// A row of the baseline that was not made is no failure
     #[arg(long, requires = "baseline")]
     allow_missing: bool,
@@ -194,9 +194,10 @@ impl JudgedFlags {
         Ok(())
     }
 
-    /// The baseline report with which this run is compared.
+    /// The best of the baseline reports, with which this run is compared.
     pub(in crate::cli) fn baseline(&self) -> Result<Option<Baseline>> {
-        self.baseline.as_deref().map(read_baseline).transpose()
+        let all: Result<Vec<Baseline>> = self.baseline.iter().map(|it| read_baseline(it)).collect();
+        Ok(Baseline::best(all?))
     }
 
     /// The chosen cases with their reference data, once the folder of the report is made: to make
@@ -224,14 +225,15 @@ impl JudgedFlags {
         given.into_iter().filter_map(shown).collect()
     }
 
-    /// Rows that are worse than in the baseline, or gone although they were `asked` for.
-    pub(in crate::cli) fn worse(
+    /// Notes the rows that are worse or dearer than in the baseline, or gone although they were
+    /// `asked` for.
+    pub(in crate::cli) fn compare(
         &self,
         baseline: &Baseline,
-        report: &Report,
+        (report, evidence): (&Report, &mut ReportEvidence),
         asked: impl Fn(&RowPlace<'_>) -> bool,
-    ) -> Result<Vec<String>> {
-        let Compared { mut worse, gone, common } = baseline.compare(report, asked);
+    ) -> Result<()> {
+        let Compared { mut worse, dearer, gone, common } = baseline.compare(report, asked);
         if common == 0 {
             bail!(
                 "--baseline: no row in common with this run; accepted is a report of the same rows"
@@ -242,7 +244,8 @@ impl JudgedFlags {
         } else {
             worse.extend(gone.iter().map(|it| format!("{it}: gone, --allow-missing accepts that")));
         }
-        Ok(worse)
+        (evidence.worse, evidence.dearer) = (worse, dearer);
+        Ok(())
     }
 
     /// Writes files, annotations and the summary, and says what the verdicts come to.
