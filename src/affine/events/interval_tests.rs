@@ -73,6 +73,40 @@ fn midpoint_and_error_enclose() {
 fn proved_numbers_are_printed_as_wide_as_asked_for() {
     let half = Proved::of(DoubleDouble::exact(0.5), 0.0);
     assert_eq!(format!("{half:.3}|{half:>8.3}|{half:<8.3}|"), "0.500|   0.500|0.500   |");
+    assert_eq!(format!("{half:8.3}|{half:^8.3}|{half:4.3}|"), "   0.500| 0.500  |0.500|");
+    assert_eq!(format!("{half:*^9.3}|{half:_<8.3}|{half:->8.3}|"), "**0.500**|0.500___|---0.500|");
+}
+
+/// All flags at once, beside those of an f64 that has the same digits.
+#[test]
+fn proved_numbers_are_padded_as_f64_are() {
+    for value in [0.5, -0.5, 12.25, -12.25] {
+        let proved = Proved::of(DoubleDouble::exact(value), 0.0);
+        // As many significant digits as three after the point.
+        let digits = if value.abs() < 1.0 { 3 } else { 5 };
+        assert_eq!(format!("{proved:+.digits$}"), format!("{value:+.3}"));
+        assert_eq!(format!("{proved:+12.digits$}"), format!("{value:+12.3}"));
+        assert_eq!(format!("{proved:#<+12.digits$}"), format!("{value:#<+12.3}"));
+        assert_eq!(format!("{proved:#^+12.digits$}"), format!("{value:#^+12.3}"));
+        assert_eq!(format!("{proved:012.digits$}"), format!("{value:012.3}"));
+        assert_eq!(format!("{proved:+012.digits$}"), format!("{value:+012.3}"));
+        assert_eq!(format!("{proved:*<012.digits$}"), format!("{value:*<012.3}"));
+    }
+}
+
+#[test]
+fn numbers_without_a_proved_digit_are_padded_too() {
+    let zero = Proved::of(DoubleDouble::exact(0.0), 0.0);
+    assert_eq!(format!("{zero:+}|{zero:^5}|{zero:03}|"), "+0|  0  |000|");
+    let unknown = Proved::of(DoubleDouble::exact(1e-30), 1e-28);
+    assert_eq!(format!("{unknown:>8}|{unknown:^8}|{unknown:08}|"), "   0e-27| 0e-27  |0000e-27|");
+    let small = Proved::of(DoubleDouble::exact(-1.5e-9), 1e-12);
+    assert_eq!(format!("{small:011}|{small:<11}|"), "-0001.50e-9|-1.50e-9   |");
+    let third = DoubleDouble::exact(1.0) / DoubleDouble::exact(3.0);
+    assert_eq!(
+        format!("{third:+9.3}|{third:_^9.3}|{third:09.3}|"),
+        "   +0.333|__0.333__|00000.333|"
+    );
 }
 
 /// The cell by its definition, in exact rationals, one count of digits after the other.

@@ -28,7 +28,7 @@ const USUAL_DIGITS: usize = 17;
 /// It is printed with the digits that are proved: those to which all numbers within the error round
 /// alike, 17 at most, or as many as the precision of the format says. `0` is exactly zero; a number
 /// of which no digit is known is printed as a zero with an exponent, such as `0e-28`, and is less
-/// than that power of ten in size.
+/// than that power of ten in size. Width, fill, alignment, `+` and `0` act as they do on an `f64`.
 ///
 /// ```
 /// use percuss::{Proved, System, gallery};
@@ -39,6 +39,7 @@ const USUAL_DIGITS: usize = 17;
 /// // The ball falls from 1 to 0 with g = 1: it arrives at the root of two.
 /// assert_eq!(impact.time().to_string(), "1.4142135623730950");
 /// assert_eq!(format!("{:.25}", impact.time()), "1.414213562373095048801689");
+/// assert_eq!(format!("{:+9.4}|{:*^9.4}", impact.time(), impact.time()), "   +1.414|**1.414**");
 /// assert!((impact.time().midpoint() - 2_f64.sqrt()).abs() < 1e-15);
 /// assert!(impact.time().error() < 1e-28);
 /// # Ok::<(), percuss::SystemError>(())
@@ -173,11 +174,8 @@ impl fmt::Display for Proved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(USUAL_DIGITS).max(1);
         let text = self.to_digits(digits);
-        match f.width() {
-            Some(width) if f.align() == Some(fmt::Alignment::Left) => write!(f, "{text:<width$}"),
-            Some(width) => write!(f, "{text:>width$}"),
-            None => f.write_str(&text),
-        }
+        let size = text.strip_prefix('-');
+        f.pad_integral(size.is_none(), "", size.unwrap_or(&text))
     }
 }
 

@@ -254,10 +254,10 @@ impl<B: Bound> RowPart<B> {
 /// an entry that is large beside what the row can ever see of it, the bounds then know nothing.
 fn smallest_subspace<T: Number>(flow: &ModeFlow<T>, n: usize, part: &[Vec<BigReal>]) -> usize {
     let start = flow.blocks[n].at;
-    let holds = |subspace: &Subspace| {
-        let before = subspace.range.start - start;
-        subspace.block == n && part.iter().all(|it| it[..before].iter().all(BigReal::is_zero))
-    };
+    let is_zero_before =
+        |end: usize| part.iter().all(|it| it[..end - start].iter().all(BigReal::is_zero));
+    // Subspaces of other blocks may begin before this one.
+    let holds = |it: &Subspace| it.block == n && is_zero_before(it.range.start);
     flow.subspaces.iter().rposition(holds).unwrap_or(n)
 }
 
