@@ -126,7 +126,7 @@ const ROWS: &[Row] = &[
     (&["score"], "--tolerance", NUMBERS, "1e-16 to 0.1"),
     (&["validate"], "--tolerance", NUMBERS, "accepted"),
     (&["score"], "--tolerance", &["0", "-1e-6", "0.2"], "1e-16 to 0.1"),
-    (&["score"], "--order", &["", "0", "65", "5.0"], "1..=64"),
+    (&["score"], "--order", &["", "0", "65", "5.0"], "1 to 64"),
     (&["score"], "--stepping", &["", "Adaptive"], "adaptive, per-step, fixed"),
     (&["score"], "--method", &["", "bdf"], "explicit, implicit, multistep, taylor"),
     (&["score"], "--answers", &["/no/such", "/proc/version"], "accepted is a folder"),

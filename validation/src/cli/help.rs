@@ -22,7 +22,7 @@ Examples:
   percuss validate -e '^exact$' -e dopri5 -c '^small-b$' --out report
       with a report, and close-ups of the first wrong events
   percuss validate --power
-      with engines that are wrong on purpose, which the bounds must notice
+      with engines that are wrong on purpose, which must fail
 
 Words:
   engine       a method of a library, with the way in which its events

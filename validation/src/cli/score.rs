@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: f64,
     /// The method's order, which --stepping per-step and fixed need
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", value_parser = order)]
     order: Option<u32>,
     /// How the tolerance holds the error (default: adaptive)
     #[arg(long, value_name = "STEPPING", value_enum)]
@@ -98,6 +98,11 @@ fn words(text: &str) -> Result<String, String> {
     } else {
         Err("accepted are 1 to 80 characters".to_owned())
     }
+}
+
+fn order(text: &str) -> Result<u32, String> {
+    let value = text.parse().ok().filter(|value: &u32| (1..=64).contains(value));
+    value.ok_or_else(|| "accepted is an integer, 1 to 64".to_owned())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

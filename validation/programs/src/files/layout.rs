@@ -1,5 +1,5 @@
-//! The columns of files of events and of samples: those of an answer, or those that `percuss events`
-//! prints.
+//! The columns of files of events and of samples: those of an answer, or those that `percuss
+//! events` prints.
 
 use super::table::Table;
 use crate::wire::EndedBy;
@@ -74,8 +74,8 @@ impl Layout {
     }
 }
 
-/// The first columns of what `percuss events` prints, and the states, which have a prefix where they
-/// are called as one of its columns.
+/// The first columns of what `percuss events` prints, and the states, which have a prefix where
+/// they are called as one of its columns.
 fn columns(first: &[&str], system: &System) -> Vec<String> {
     let column = |state: &String| match ["n", "time", "event", "mode"].contains(&state.as_str()) {
         true => format!("state.{state}"),
