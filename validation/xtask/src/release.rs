@@ -47,6 +47,9 @@ pub struct Arguments {
     without_scoreboard: bool,
 }
 
+/// The folder in which packed packages are compiled.
+const TRIAL: &str = "target/trial";
+
 /// What a version changes.
 struct Plan {
     /// The version before.
@@ -187,8 +190,13 @@ fn write(root: &Folder, arguments: &Arguments, plan: &Plan, step: &impl Fn(&str)
 /// packed, and uploads nothing.
 fn packages(root: &Folder, version: &Version) -> Result<()> {
     forget_unpacked(version)?;
-    let arguments = ["publish", "--workspace", "--dry-run", "--locked", "--allow-dirty"];
-    root.run("cargo", &arguments)
+    // What an earlier trial of the same version compiled there, cargo would take for the new one's.
+    let target = root.path(TRIAL);
+    if target.exists() {
+        std::fs::remove_dir_all(&target).with_context(|| target.display().to_string())?;
+    }
+    let what = ["publish", "--workspace", "--dry-run", "--locked", "--allow-dirty"];
+    root.run("cargo", &[&what[..], &["--target-dir", TRIAL]].concat())
         .context("a package cannot be published (cargo before 1.90 can try none)")
 }
 
