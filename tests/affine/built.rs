@@ -109,7 +109,7 @@ fn an_error_of_the_system_names_it() {
     for (builder, refused) in [
         (
             plastic().states(["x", "x"]),
-            "states: x is given twice; states, parameters and [let] \
+            "states: x is given twice; states, parameters and definitions \
                                         share their names",
         ),
         (plastic().states(["x", "cos"]), "states: cos is reserved for theta = omega t + phi"),
@@ -117,7 +117,7 @@ fn an_error_of_the_system_names_it() {
         (
             plastic().parameter("B", f64::NAN),
             "parameters: B: a parameter is a finite number; an \
-                                              expression belongs into [let]",
+                                              expression is given as a definition",
         ),
         (plastic().definition("thrust", "1"), "definitions: thrust is given twice"),
         (
@@ -238,14 +238,14 @@ fn an_error_of_a_mode_names_it() {
         (
             on().until(until().next_when("x > 1", "on")),
             "mode \"on\", until \"full\": every \
-                                                        successor but the last has a `when`, and \
+                                                        successor but the last has a condition, and \
                                                         the last has none",
         ),
         (
             on().watch("half", "x > 0.5", Direction::Both),
             "mode \"on\", watch \"half\", guard: a \
-                                                          decimal is not accepted here: write it \
-                                                          into [parameters]",
+                                                          decimal is not accepted here: give it \
+                                                          as a parameter",
         ),
     ] {
         assert_eq!(with(mode), refused);
@@ -254,17 +254,75 @@ fn an_error_of_a_mode_names_it() {
     assert_eq!(with(many), "mode \"on\": 65 events are too many: up to 64 a mode are accepted");
 }
 
+/// A guard that is constant never fires; the rule is that of files.
+#[test]
+fn a_guard_that_never_changes_is_refused() {
+    let until = |guard: Expression| with(on().until(UntilBuilder::new("full", guard)));
+    let number = "mode \"on\", until \"full\", guard: a number is no condition: `left > right`, \
+                  `left < right` or a row of factors is accepted";
+    for guard in [5.into(), 0.5.into(), (Rational::ONE / Rational::from(3)).into()] {
+        assert_eq!(until(guard), number);
+    }
+    let constant = "the guard never changes: accepted is one with a state, cos or sin in it";
+    assert_eq!(until("2 > 1".into()), format!("mode \"on\", until \"full\", guard: {constant}"));
+    assert_eq!(
+        with(on().watch("half", "1 < 1/2", Direction::Both)),
+        format!("mode \"on\", watch \"half\", guard: {constant}")
+    );
+    let defined = |half: &str, guard: &str| {
+        let mode = on().until(UntilBuilder::new("full", guard));
+        let one = System::builder("one").states(["x"]).parameter("k", 0);
+        one.definition("half", half).definition("all", "2*half").mode(mode).build()
+    };
+    let refused = defined("k/2", "all + k > 1").unwrap_err().to_string();
+    assert_eq!(refused, format!("mode \"on\", until \"full\", guard: {constant}"));
+    assert!(defined("x/2", "all > 1").is_ok());
+    // Parameters may be 0, and what a row has for a state, too.
+    assert!(defined("k*x", "all > 1").is_ok());
+    let row = on().until(UntilBuilder::new("full", [0, -1]));
+    assert!(System::builder("one").states(["x"]).mode(row).build().is_ok());
+}
+
+/// A successor's condition may hang on parameters alone.
+#[test]
+fn a_condition_may_be_constant() {
+    let until = || UntilBuilder::new("full", "x > 1");
+    let mode = on().until(until().next_when("2 > 1", "on").next("on"));
+    assert!(System::builder("one").states(["x"]).mode(mode).build().is_ok());
+    assert_eq!(
+        with(on().until(until().next_when(1, "on").next("on"))),
+        "mode \"on\", until \"full\", successor 1: a number is no condition: `left > right`, \
+         `left < right` or a row of factors is accepted"
+    );
+}
+
+/// No error of a builder speaks of the tables of a file, which its user has not written.
+#[test]
+fn errors_of_a_builder_have_no_words_of_files() {
+    let until = UntilBuilder::new("full", "x > 1");
+    let one = || System::builder("one").states(["x"]);
+    for builder in [
+        one().mode(on()).parameter("x", 1),
+        one().mode(on()).parameter("k", "x"),
+        one().mode(on()).start("on", [("y", 1)]),
+        one().mode(on()).start("on", [("x", 1), ("y", 1)]),
+        one().mode(on().until(until.clone().next_when("x > 0", "on"))),
+        one().mode(on().until(until.reset("x = 0.5"))),
+        one().mode(on()).definition("half", "1/0"),
+    ] {
+        let said = refusal(builder);
+        assert!(!said.contains(['[', ']']) && !said.contains("`when`"), "{said}");
+    }
+}
+
 #[test]
 fn an_error_of_the_start_names_it() {
     let begin = |states: &[(&str, Expression)]| {
         refusal(System::builder("one").states(["x"]).mode(on()).start("on", states.to_vec()))
     };
-    assert_eq!(begin(&[]), "start: the state x is missing in [start]");
+    assert_eq!(begin(&[]), "start: the start has no state x");
     assert_eq!(begin(&[("x", 1.into()), ("x", 2.into())]), "start: x is given twice");
-    assert_eq!(
-        begin(&[("x", 1.into()), ("y", 2.into())]),
-        "start: y is no state: accepted are mode, t, x"
-    );
+    assert_eq!(begin(&[("x", 1.into()), ("y", 2.into())]), "start: y is no state: accepted are x");
     assert_eq!(
         begin(&[("x", [1, 1].into())]),
         "start: x: a start is an expression of parameters, cos and sin"

@@ -131,7 +131,8 @@ fn combination(
     let (mut text, mut value) = ("0".to_owned(), 0.0);
     for (n, state) in start.iter().enumerate() {
         let factor = if draw.below(3) == 0 { 0.0 } else { draw.eighths(8) };
-        if factor != 0.0 {
+        // A guard names a state, and the factor may be 0.
+        if factor != 0.0 || n == 0 {
             let _ = write!(text, " + {name}{n}*x{n}");
             let _ = writeln!(parameters, "{name}{n} = {factor:?}");
             value += factor * state;

@@ -1,4 +1,4 @@
-//! Affine expressions of a system's file: a reader for `+ - * / ^`, integers, names and
+//! Affine expressions of a system: a reader for `+ - * / ^`, integers, names and
 //! parentheses, whose results are exact.
 
 use super::form::Form;
@@ -10,7 +10,7 @@ const DEEPEST: usize = 64;
 /// The largest exponent.
 const LARGEST_EXPONENT: usize = 64;
 
-const DECIMAL: &str = "a decimal is not accepted here: write it into [parameters]";
+const DECIMAL: &str = "a decimal is not accepted here: give it as a parameter";
 
 /// The names that an expression may use, with their values.
 pub(super) trait Scope {

@@ -20,6 +20,14 @@ impl Source {
         }
     }
 
+    /// The keys that a start has before its states, each followed by a comma; a builder has none.
+    pub fn keys_of_a_start(&self) -> &'static str {
+        match self {
+            Self::Text(_) => "mode, t, ",
+            Self::Items(_) => "",
+        }
+    }
+
     pub fn error(&self, span: &Range<usize>, what: &str) -> SystemError {
         SystemError::at(&self.place(span), what)
     }

@@ -111,8 +111,7 @@ fn start_point(
             return Err(SystemError::at(place, &what));
         }
         None => {
-            let what =
-                format!("mode is missing in [start]: accepted is one of {}", known.join(", "));
+            let what = format!("the start has no mode: accepted is one of {}", known.join(", "));
             return Err(refuse(&what));
         }
     };
@@ -125,7 +124,7 @@ fn start_point(
     let mut state = Vec::with_capacity(states.len());
     for name in &states {
         let Some(GivenParameter { value, place }) = table.entries.get(name) else {
-            return Err(refuse(&format!("the state {name} is missing in [start]")));
+            return Err(refuse(&format!("the start has no state {name}")));
         };
         let form = names.affine(value);
         let form = form.map_err(|what| SystemError::at(place, &format!("{name}: {what}")))?;
@@ -139,8 +138,8 @@ fn start_point(
     let surplus = |key: &&String| !(["mode", "t"].contains(&key.as_str()) || states.contains(key));
     if let Some(key) = table.entries.keys().find(surplus) {
         let place = &table.entries[key].place;
-        let what = format!("{key} is no state: accepted are mode, t, {}", states.join(", "));
-        return Err(SystemError::at(place, &what));
+        let accepted = [names.file.source.keys_of_a_start(), &states.join(", ")].concat();
+        return Err(SystemError::at(place, &format!("{key} is no state: accepted are {accepted}")));
     }
     Ok(StartPoint { mode, time, state })
 }

@@ -7,7 +7,7 @@ use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
 use crate::affine::model::form::Form;
 use crate::affine::model::naming::{check_event, unknown_mode};
 use crate::affine::model::rational::Rational;
-use crate::affine::model::scalar::{Assignment, Condition};
+use crate::affine::model::scalar::{Assignment, Condition, Scalar};
 use crate::affine::model::system::{Direction, LARGEST_COUNT, Mode, Row, Successor, Until, Watch};
 use crate::unknown_name::UnknownName;
 use std::collections::{BTreeMap, BTreeSet};
@@ -110,10 +110,25 @@ impl ModeReader<'_> {
         Ok(form.0.into_iter().enumerate().filter_map(kept).collect())
     }
 
-    fn guard(&self, names: &mut Names, text: &Spanned<Condition>) -> Result<Row, SystemError> {
-        let form = names.condition(text.get_ref());
+    /// The row that is positive where a condition holds.
+    fn condition(&self, names: &mut Names, it: &Spanned<Condition>) -> Result<Row, SystemError> {
+        let form = names.condition(it.get_ref());
         let row = form.and_then(|form| self.row(form));
-        row.map_err(|what| self.file.error(&text.span(), &what))
+        row.map_err(|what| self.file.error(&it.span(), &what))
+    }
+
+    /// The row of an event's guard. One whose factors are 0 by the parameters is accepted, so that
+    /// parameters may be scanned over 0.
+    fn guard(&self, names: &mut Names, it: &Spanned<Condition>) -> Result<Row, SystemError> {
+        let row = self.condition(names, it)?;
+        match &it.get_ref().0 {
+            Scalar::Text(text) if !names.may_change(text) => {
+                let what =
+                    "the guard never changes: accepted is one with a state, cos or sin in it";
+                Err(self.file.error(&it.span(), what))
+            }
+            _ => Ok(row),
+        }
     }
 
     fn until(
@@ -160,14 +175,16 @@ impl ModeReader<'_> {
         let mut successors = Vec::with_capacity(count);
         for (n, entry) in next.get_ref().iter().enumerate() {
             if entry.when.is_some() == (n + 1 == count) {
-                return refuse("every successor but the last has a `when`, and the last has none");
+                return refuse(
+                    "every successor but the last has a condition, and the last has none",
+                );
             }
             let Some(mode) = self.places.get(entry.mode.get_ref()) else {
                 let known = self.places.keys().map(String::as_str);
                 let what = unknown_mode(entry.mode.get_ref(), known);
                 return Err(self.file.error(&entry.mode.span(), &what));
             };
-            let when = entry.when.as_ref().map(|it| self.guard(names, it)).transpose()?;
+            let when = entry.when.as_ref().map(|it| self.condition(names, it)).transpose()?;
             successors.push(Successor { when, mode: *mode });
         }
         Ok(successors)

@@ -13,7 +13,7 @@ use toml::Spanned;
 
 /// The names that a file's expressions may use, with their values.
 pub(super) struct Names<'a> {
-    file: &'a SystemFile,
+    pub(super) file: &'a SystemFile,
     pub(super) states: Vec<String>,
     forced: bool,
     values: BTreeMap<String, Form>,
@@ -51,7 +51,7 @@ impl<'a> Names<'a> {
         names.check_names()?;
         for (name, GivenParameter { value, place }) in &file.parameters {
             let number = value.number().ok_or_else(|| {
-                let what = "a parameter is a finite number; an expression belongs into [let]";
+                let what = "a parameter is a finite number; an expression is given as a definition";
                 SystemError::at(place, &format!("{name}: {what}"))
             })?;
             names.values.insert(name.clone(), Form::number(names.states.len(), number));
@@ -71,7 +71,7 @@ impl<'a> Names<'a> {
                 .map_err(|what| SystemError::at(&place, &what))?;
             if !seen.insert(name) {
                 let what = format!(
-                    "{name} is given twice; states, parameters and [let] share their names"
+                    "{name} is given twice; states, parameters and definitions share their names"
                 );
                 return Err(SystemError::at(&place, &what));
             }
@@ -169,8 +169,27 @@ impl<'a> Names<'a> {
     pub(super) fn condition(&mut self, Condition(scalar): &Condition) -> Result<Form, String> {
         match scalar {
             Scalar::Text(text) => condition(text, self),
-            row => self.affine(row),
+            Scalar::Row(_) => self.affine(scalar),
+            _ => Err("a number is no condition: `left > right`, `left < right` or a row of \
+                      factors is accepted"
+                .to_owned()),
         }
+    }
+
+    /// Whether a text names a state, cos or sin, or a definition that does; it is constant
+    /// otherwise.
+    pub(super) fn may_change(&self, text: &str) -> bool {
+        let lets = &self.file.tables.lets;
+        let (mut open, mut met) = (words(text), BTreeSet::new());
+        while let Some(word) = open.pop() {
+            if ["cos", "sin"].contains(&word) || self.states.iter().any(|it| it == word) {
+                return true;
+            }
+            if met.insert(word) {
+                open.extend(lets.get(word).into_iter().flat_map(|it| words(it.get_ref())));
+            }
+        }
+        false
     }
 
     /// A form by its factors, in the order of z.
@@ -261,6 +280,11 @@ impl Scope for Names<'_> {
     fn states(&self) -> usize {
         self.states.len()
     }
+}
+
+/// The names and integers of an expression.
+fn words(text: &str) -> Vec<&str> {
+    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect()
 }
 
 impl Names<'_> {

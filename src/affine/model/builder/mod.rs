@@ -12,8 +12,8 @@ pub use mode::{ModeBuilder, UntilBuilder};
 /// An expression of a system that is built: text, a number, or a row of coefficients.
 ///
 /// - Text is read as in a file: `"-g"`, `"A*cos - x"`; a guard or another condition is
-///   `"left > right"` or `"left < right"`.
-/// - A number is taken exactly: integers, `f64` and [`Rational`].
+///   `"left > right"` or `"left < right"`. A guard names a state, cos or sin.
+/// - A number is taken exactly: integers, `f64` and [`Rational`]. It is no condition.
 /// - A row has a factor for each state, then those of cos theta and sin theta if the system is
 ///   forced, then that of 1. As a guard it is positive where the condition holds. Its entries are
 ///   numbers, or expressions of parameters.
