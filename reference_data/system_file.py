@@ -189,9 +189,25 @@ class Builder:
     def row(self, text: str) -> list:
         return in_range(Reader(text, self.value_of, self.size).whole())
 
-    def guard(self, text: str) -> fmpq_mat:
+    def condition(self, text: str) -> fmpq_mat:
         row = in_range(Reader(text, self.value_of, self.size).condition())
         return fmpq_mat(1, self.size, row)
+
+    def guard(self, text: str) -> fmpq_mat:
+        row = self.condition(text)
+        return row if self.may_change(text) else self.refuse(f"guard {text!r} never changes")
+
+    def may_change(self, text: str) -> bool:
+        """Whether a text names a state, cos or sin, or a `let` that does."""
+        names, met = SYMBOL.findall(text), set()
+        while names:
+            name = names.pop()
+            if name in (*self.states, "cos", "sin"):
+                return True
+            if name not in met:
+                met.add(name)
+                names += SYMBOL.findall(self.lets.get(name, ""))
+        return False
 
     def assignments(self, texts: list, pattern: str, what: str) -> dict:
         """{index of a state: coefficients} of texts such as `x' = v`."""
@@ -233,7 +249,8 @@ class Builder:
             only(table, "when mode", "next")
             if ("when" in table) == (position == len(tables) - 1):
                 raise Refused("in `next` every entry has a `when`, but not the last")
-            found.append((self.guard(table["when"]) if "when" in table else None, table["mode"]))
+            when = self.condition(table["when"]) if "when" in table else None
+            found.append((when, table["mode"]))
         if not 1 <= len(found) <= LARGEST_COUNT:
             raise Refused(f"`next` has 1 to {LARGEST_COUNT} entries")
         return found
