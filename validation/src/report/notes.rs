@@ -41,15 +41,24 @@ fn not_run(rows: &[ReportRow]) -> String {
     reasons.into_iter().map(paragraph).collect()
 }
 
-/// The engines that are not installed, in one line.
+/// The number of rows that were not answered, with their engines, in one line: an engine is not
+/// installed, or its files lack a case.
 fn unavailable(rows: &[ReportRow]) -> String {
-    let missing = rows.iter().filter(|row| row.verdict == Verdict::Unavailable);
-    let missing: BTreeMap<&str, &str> = missing.map(|row| (row.engine, row.why.as_str())).collect();
-    if missing.is_empty() {
+    let mut engines: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for row in rows.iter().filter(|row| row.verdict == Verdict::Unavailable) {
+        engines.entry(row.engine).or_default().push(&row.why);
+    }
+    let total: usize = engines.values().map(Vec::len).sum();
+    if total == 0 {
         return String::new();
     }
-    let named: Vec<_> = missing.iter().map(|(engine, why)| format!("{engine} ({why})")).collect();
-    wrapped(&format!("unavailable: {}", named.join(", ")))
+    let of_engine = |(engine, reasons): (&&str, &Vec<&str>)| {
+        let first = reasons.first().copied().unwrap_or_default();
+        let others = if reasons.iter().any(|it| *it != first) { ", and so on" } else { "" };
+        format!("{engine} {} ({first}{others})", reasons.len())
+    };
+    let engines: Vec<_> = engines.iter().map(of_engine).collect();
+    wrapped(&format!("unavailable: {total} rows: {}", engines.join(", ")))
 }
 
 fn short_orders(report: &Report) -> String {

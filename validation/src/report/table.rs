@@ -47,11 +47,9 @@ pub(super) fn row_table(rows: &[ReportRow]) -> String {
     shown.join("\n") + "\n"
 }
 
-/// The reasons of rows without a result and of rows whose failure nothing excuses.
+/// The reasons of rows whose run gave no result and of rows whose failure nothing excuses.
 pub(super) fn reasons(rows: &[ReportRow]) -> String {
-    let bad = |row: &&ReportRow| {
-        matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Unavailable)
-    };
+    let bad = |row: &&ReportRow| matches!(row.verdict, Verdict::Fail | Verdict::Error);
     let line = |row: &ReportRow| {
         let (verdict, case, engine) = (row.verdict.as_str(), &row.case, row.engine);
         wrapped(&format!("{verdict}: {case} {engine} {}: {}", setting(row), row.why))

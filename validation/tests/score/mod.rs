@@ -244,8 +244,14 @@ fn what_is_not_answered_counts_as_not_found() {
         "{missing}"
     );
     assert!(missing["events_total"].as_u64() > Some(0));
-    let said = text(&run(&words).stderr);
+    let output = run(&words);
+    let said = text(&output.stderr);
     assert!(said.contains("no-case is no case"), "{said}");
+    let shown = text(&output.stdout);
+    let told: Vec<&str> = shown.lines().filter(|line| line.starts_with("unavailable: ")).collect();
+    let counted =
+        "unavailable: 1 rows: mine 1 (not answered: there is no ball-cut-short.events.csv)";
+    assert_eq!(told, [counted], "{shown}");
     assert_eq!(run(&[&words[..], &["--require"]].concat()).status.code(), Some(1));
     let json = text(&run(&[&words[..], &["--format", "json"]].concat()).stdout);
     let ranking: Value = serde_json::from_str(&json).expect("JSON");
@@ -260,6 +266,22 @@ fn what_is_not_answered_counts_as_not_found() {
         &[&SCORE[..], &["--answers", "/no/such"]].concat(),
         &["--answers /no/such", "accepted is"],
     );
+}
+
+/// Most cases are not answered while a program is written: one line counts them.
+#[test]
+fn cases_without_an_answer_are_counted_in_one_line() {
+    let (_folder, out) = ball();
+    let words = [&SCORE[..], &["--answers", &out, "-c", "^(ball-.*|relay-.*)$"]].concat();
+    let shown = text(&run(&words).stdout);
+    let told: Vec<&str> = shown.lines().filter(|line| line.contains("not answered")).collect();
+    assert_eq!(told.len(), 1, "{shown}");
+    let (rows, _) = report(&words);
+    let count = rows.iter().filter(|row| row["verdict"] == "unavailable").count();
+    assert!(count > 3 && count + 2 == rows.len(), "{count} of {}", rows.len());
+    let counted = format!("unavailable: {count} rows: mine {count} (not answered: there is no ");
+    assert!(told[0].starts_with(&counted), "{shown}");
+    assert!(shown.contains(&format!(" {count} unavailable")), "{shown}");
 }
 
 #[test]
