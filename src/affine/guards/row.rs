@@ -56,8 +56,8 @@ pub struct RowPart<B> {
 }
 
 impl<T: Number> ModalRow<T> {
-    /// A row of z in the modal co-ordinates of a closed form, of whose blocks `blocks` are the exact
-    /// forms.
+    /// A row of z in the modal co-ordinates of a closed form, of whose blocks `blocks` are the
+    /// exact forms.
     pub fn of(row: &Row, flow: &ModeFlow<T>, blocks: &[modal::Block]) -> Self {
         let row: Vec<BigReal> = row.iter().map(|it| BigReal::of(it, bits_for::<T>())).collect();
         let parts: Vec<_> = blocks.iter().map(|block| bound::derivatives(&row, block)).collect();
