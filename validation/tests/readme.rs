@@ -47,7 +47,7 @@ fn it_is_short_and_its_commands_come_first() {
         assert!(line < FIRST_SCREEN, "{words:?} is on line {line}");
         let parsed = command().try_get_matches_from(&words);
         assert!(parsed.is_ok(), "{words:?}: {:?}", parsed.err());
-        // All set-ups on all cases are a job of their own in CI.
+        // All engines on all cases are a job of their own in CI.
         if words.len() > 2 {
             let arguments: Vec<&str> = words[1..].iter().map(String::as_str).collect();
             let output = percuss(&arguments).output().expect("it runs");
@@ -56,17 +56,17 @@ fn it_is_short_and_its_commands_come_first() {
     }
 }
 
-/// A row of the table with the figures of the same set-up in the summary of all.
+/// A row of the table with the figures of the same engine in the summary of all.
 fn row(row: &str, summary: &str) -> String {
     let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
-    let [set_up, .., cause] = &cells[..] else { panic!("{row}") };
-    let name = set_up.trim_matches('`');
+    let [engine, .., cause] = &cells[..] else { panic!("{row}") };
+    let name = engine.trim_matches('`');
     let mut lines = summary.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
     let found = lines.find(|words| words.get(1) == Some(&name));
     let found = found.unwrap_or_else(|| panic!("{name} is not in the summary"));
     let [_, _, events, missed, spurious, .., fail] = &found[..] else { panic!("{found:?}") };
-    let judged = events.split('/').nth(1).expect("found/checked/all");
-    format!("| {set_up} | {judged} | {missed} | {spurious} | {fail} | {cause} |\n")
+    let checked = events.split('/').nth(1).expect("found/checked/all");
+    format!("| {engine} | {checked} | {missed} | {spurious} | {fail} | {cause} |\n")
 }
 
 /// The page with the figures of a summary in its table.
@@ -93,14 +93,14 @@ fn its_figures_are_those_of_the_results_and_its_transcript_of_the_program() {
         assert!(readme == whole, "PERCUSS_SPLICE=1 cargo test --test harness readme::\n{whole}");
     }
     let exact = row("| `exact` | | | | | |", summary);
-    let said = exact.split(" | ").nth(1).map(|judged| format!("is judged on {judged} events"));
+    let said = exact.split(" | ").nth(1).map(|checked| format!("is checked on {checked} events"));
     assert!(
         exact.contains(" | 0 | 0 | 0 | ") && readme.contains(&said.expect("events")),
         "{exact}"
     );
     let cases = Cases::embedded().expect("the cases are read").names().count();
     let of = format!(
-        "Five of the {} set-ups that `percuss validate` runs on {cases} cases",
+        "Five of the {} engines that `percuss validate` runs on {cases} cases",
         all().len()
     );
     assert!(readme.contains(&of), "{of}");

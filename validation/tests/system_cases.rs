@@ -170,7 +170,7 @@ fn a_run_beyond_a_guard_is_refused() {
 
 #[test]
 fn what_is_not_accepted_in_a_case_is_named() {
-    let wrong: [(&str, &str, &[&str]); 8] = [
+    let wrong: [(&str, &str, &[&str]); 10] = [
         ("until = 5.0", "until = -1.0", &["warming-up.toml:7:", "until = -1.0", "after the start"]),
         ("until = 5.0", "until = 5.0\nsamples = 0", &["warming-up.toml:8:", "1 to 100000"]),
         ("\"heater\"", "\"cooler\"", &["warming-up.toml:3:", "cooler.system.toml beside the case"]),
@@ -183,6 +183,8 @@ fn what_is_not_accepted_in_a_case_is_named() {
         ("name = \"warming-up\"", "name = \"../up\"", &["warming-up.toml:2:", "name"]),
         ("[horizon]", "[parameters]\nbond = 1.0\n[horizon]", &["bond", "accepted is one of band"]),
         ("[horizon]", "[start]\nmode = \"in\"\nwarmth = 0\n[horizon]", &["in", "on"]),
+        ("why = ", "# ", &["warming-up.toml:1: why is missing here; accepted is a string"]),
+        ("until = 5.0", "", &["warming-up.toml:6: until is missing here; accepted is a number"]),
     ];
     for (from, to, wanted) in wrong {
         let folder = folder(|case| case.replacen(from, to, 1));

@@ -176,8 +176,8 @@ impl<'a> Names<'a> {
         }
     }
 
-    /// Whether a text names a state, cos or sin, or a definition that does: what does not is
-    /// constant.
+    /// Whether a text names a state, cos or sin, or a definition that does; it is constant
+    /// otherwise.
     pub(super) fn may_change(&self, text: &str) -> bool {
         let lets = &self.file.tables.lets;
         let (mut open, mut met) = (words(text), BTreeSet::new());
