@@ -4,6 +4,7 @@ use super::help;
 use super::shared::judged::JudgedFlags;
 use super::shared::long_work;
 use super::shared::names::{CASES, held_by};
+use super::shared::parse;
 use super::{note, say};
 use crate::engine::{Accuracy, Class, REFERENCE, Stepping};
 use crate::number::shortest;
@@ -42,7 +43,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: f64,
     /// The method's order, which --stepping per-step and fixed need
-    #[arg(long, value_name = "N", value_parser = order)]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, 64), allow_hyphen_values = true)]
     order: Option<u32>,
     /// How the tolerance holds the error (default: adaptive)
     #[arg(long, value_name = "STEPPING", value_enum)]
@@ -98,11 +99,6 @@ fn words(text: &str) -> Result<String, String> {
     } else {
         Err("accepted are 1 to 80 characters".to_owned())
     }
-}
-
-fn order(text: &str) -> Result<u32, String> {
-    let value = text.parse().ok().filter(|value: &u32| (1..=64).contains(value));
-    value.ok_or_else(|| "accepted is an integer, 1 to 64".to_owned())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -4,6 +4,20 @@
 use super::table::Table;
 use crate::wire::EndedBy;
 use percuss_engines::system::System;
+use std::borrow::Cow;
+
+/// The columns that `percuss events` prints before those of the states.
+pub const PRINTED: [&str; 4] = ["n", "time", "event", "mode"];
+
+/// The columns that `percuss events --samples` prints before those of the states.
+pub const PRINTED_SAMPLE: [&str; 2] = ["time", "mode"];
+
+/// The column of a state in what `percuss events` prints: its name, unless that is another
+/// column's.
+#[must_use]
+pub fn printed_column(state: &str) -> Cow<'_, str> {
+    if PRINTED.contains(&state) { format!("state.{state}").into() } else { state.into() }
+}
 
 /// The places of the parts of an event or a sample in a line.
 pub(super) struct Layout {
@@ -25,8 +39,9 @@ impl Layout {
     /// # Errors
     /// Another header, with those that are accepted.
     pub(super) fn of_events(table: &Table, system: &System) -> Result<Self, String> {
-        let with_before = Self::answer_with_before(system);
-        Self::named(table, [Self::answer(system), with_before, Self::printed(system)])
+        let answer = || Self::answer(&["time", "event", "mode"], system);
+        let with_before = answer().with_before(system);
+        Self::named(table, [answer(), with_before, Self::printed(&PRINTED, system)])
     }
 
     /// The layout of a file of samples, which its header names.
@@ -34,11 +49,10 @@ impl Layout {
     /// # Errors
     /// Another header, with those that are accepted.
     pub(super) fn of_samples(table: &Table, system: &System) -> Result<Self, String> {
-        let layout = |first: &[&str], has_start| {
-            let columns = columns(first, system);
-            Self { columns, has_start, time: 0, state: first.len(), before: None }
-        };
-        Self::named(table, [layout(&["time"], false), layout(&["time", "mode"], true)])
+        Self::named(
+            table,
+            [Self::answer(&["time"], system), Self::printed(&PRINTED_SAMPLE, system)],
+        )
     }
 
     /// The ending that a word in the column of events stands for.
@@ -54,33 +68,46 @@ impl Layout {
         found.ok_or_else(|| table.other_header(&texts.join(", ")))
     }
 
-    fn answer(system: &System) -> Self {
-        let first = ["time", "event", "mode"].map(str::to_owned).into_iter();
-        let columns = first.chain(system.states.iter().cloned()).collect();
-        Self { columns, has_start: false, time: 0, state: 3, before: None }
+    /// The columns of an answer: these, and the states by their names.
+    fn answer(first: &[&str], system: &System) -> Self {
+        let all = first.iter().copied().chain(system.states.iter().map(String::as_str));
+        let columns = all.map(str::to_owned).collect();
+        Self { columns, has_start: false, time: 0, state: first.len(), before: None }
     }
 
-    fn answer_with_before(system: &System) -> Self {
-        let mut layout = Self::answer(system);
-        layout.before = Some(layout.columns.len());
-        layout.columns.extend(system.states.iter().map(|it| format!("before.{it}")));
-        layout
+    fn with_before(mut self, system: &System) -> Self {
+        self.before = Some(self.columns.len());
+        self.columns.extend(system.states.iter().map(|it| format!("before.{it}")));
+        self
     }
 
-    /// What `percuss events` prints.
-    fn printed(system: &System) -> Self {
-        let columns = columns(&["n", "time", "event", "mode"], system);
-        Self { columns, has_start: true, time: 1, state: 4, before: None }
+    /// The columns that `percuss events` prints: these, and the states.
+    fn printed(first: &[&str], system: &System) -> Self {
+        let states = system.states.iter().map(|it| printed_column(it));
+        let all = first.iter().map(|it| Cow::from(*it)).chain(states);
+        let columns: Vec<_> = all.map(Cow::into_owned).collect();
+        let time = columns.iter().position(|it| it == "time").unwrap_or_default();
+        Self { columns, has_start: true, time, state: first.len(), before: None }
     }
 }
 
-/// The first columns of what `percuss events` prints, and the states, which have a prefix where
-/// they are called as one of its columns.
-fn columns(first: &[&str], system: &System) -> Vec<String> {
-    let column = |state: &String| match ["n", "time", "event", "mode"].contains(&state.as_str()) {
-        true => format!("state.{state}"),
-        false => state.clone(),
-    };
-    let states = system.states.iter().map(column);
-    first.iter().map(|it| (*it).to_owned()).chain(states).collect()
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percuss_engines::engine::percussive;
+
+    /// A state that is called as a column keeps its name in answers, in both files.
+    #[test]
+    fn a_state_may_be_called_as_a_column() {
+        let mut system = percussive(&percuss::Parameters::default(), 0.0);
+        system.states[0] = "n".to_owned();
+        let answer = Layout::answer(&["time"], &system);
+        assert_eq!(answer.columns, ["time", "n", "y", "q", "v"]);
+        let with_before = answer.with_before(&system);
+        assert_eq!((with_before.state, with_before.before), (1, Some(5)));
+        let printed = Layout::printed(&PRINTED_SAMPLE, &system);
+        assert_eq!(printed.columns, ["time", "mode", "state.n", "y", "q", "v"]);
+        let printed = Layout::printed(&PRINTED, &system);
+        assert_eq!((printed.time, printed.state), (1, 4));
+    }
 }

@@ -13,4 +13,5 @@ mod tests;
 
 pub use case::CaseFile;
 pub use engine::{Answerer, FileEngine};
+pub use layout::{PRINTED, PRINTED_SAMPLE, printed_column};
 pub use table::{EVENTS, SAMPLES};

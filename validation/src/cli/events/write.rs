@@ -6,37 +6,30 @@ use super::samples::SampleRow;
 use crate::cli::shared::output::json_value;
 use anyhow::Result;
 use percuss::System;
+use percuss_programs::files::{PRINTED, PRINTED_SAMPLE, printed_column};
 use std::borrow::Cow;
 use std::io::Write;
 
-/// The columns beside those of the states.
-const COLUMNS: [&str; 4] = ["n", "time", "event", "mode"];
-
 /// Writes CSV, a row as soon as it is known.
 pub(super) fn csv(run: &Rows<'_>, samples: Option<u32>, out: &mut dyn Write) -> Result<RunEnd> {
-    let states = || run.system.states.iter().map(|name| column(name));
+    let states = || run.system.states.iter().map(|name| printed_column(name));
     let header = |names: &[&'static str], out: &mut dyn Write| {
         let names: Vec<_> = names.iter().map(|name| Cow::from(*name)).chain(states()).collect();
         line(out, names.iter().map(AsRef::as_ref))
     };
     if let Some(samples) = samples {
-        header(&["time", "mode"], out)?;
+        header(&PRINTED_SAMPLE, out)?;
         return run.each_sample(samples, &mut |row: SampleRow| {
             let first = [row.time.as_str(), &row.mode];
             line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
         });
     }
-    header(&COLUMNS, out)?;
+    header(&PRINTED, out)?;
     run.each(&mut |row: EventRow, _| {
         let n = row.n.to_string();
         let first = [n.as_str(), &row.time, &row.event, &row.mode];
         line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
     })
-}
-
-/// The column of a state: its name, unless that is another column's.
-fn column(state: &str) -> Cow<'_, str> {
-    if COLUMNS.contains(&state) { format!("state.{state}").into() } else { state.into() }
 }
 
 /// Writes a line of CSV; an error is the output's own, as a reader who has left.
