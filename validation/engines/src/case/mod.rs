@@ -5,6 +5,7 @@ mod bound;
 mod expectations;
 mod library;
 mod located;
+mod of_oscillator;
 mod probed;
 mod problem;
 mod regime;
@@ -20,6 +21,7 @@ pub use library::{
     Cases, defaults, defaults_of_own_cases, embedded, from_directory, shortcomings_of,
 };
 pub use located::{FileError, Origins, read_text};
+pub use of_oscillator::{percussive_oscillator, place};
 pub use percuss::affine::TROUBLE;
 pub use probed::ProbedCase;
 pub use problem::{Given, Problem};

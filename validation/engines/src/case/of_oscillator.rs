@@ -1,0 +1,110 @@
+//! A run of the oscillator as one of the system `percussive-oscillator`, with exact coefficients.
+
+use super::systems::named;
+use super::{FileError, Problem};
+use percuss::affine::{Rational, StartPoint, System, SystemFile};
+use percuss::{Entry, Parameters, Phase};
+
+/// The system's name, which is that of its file.
+const NAME: &str = "percussive-oscillator";
+
+/// The rule of starts: within four units in the last place a state is on the surface or on a
+/// threshold, and is then put there exactly.
+const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
+
+/// The system with a problem's parameters and start. The clock shows tau at the start: whole
+/// forcing cycles before it change nothing.
+///
+/// # Errors
+/// Numbers that the system's file does not accept.
+pub fn percussive_oscillator(problem: &Problem) -> Result<System, FileError> {
+    let text = named(NAME).unwrap_or_default();
+    let refused = |error: percuss::affine::SystemError| FileError(error.to_string());
+    let mut file = SystemFile::read(&format!("systems/{NAME}.system.toml"), text).map_err(refused)?;
+    let Parameters { a, b, xi, omega, g, phi } = *problem.model.parameters();
+    let parameters =
+        [("a", a), ("b", b), ("xi", xi), ("frequency", omega), ("g", g), ("phase", phi)];
+    for (name, value) in parameters {
+        file.set(name, value, name).map_err(refused)?;
+    }
+    let start = start(problem).ok_or_else(|| FileError::of(NAME, "the start is not finite"))?;
+    let mut system = file.system().map_err(refused)?;
+    system.start = Some(start);
+    Ok(system)
+}
+
+/// The place of a phase among the oscillator's modes, which are in the order of [`Phase::ALL`].
+#[must_use]
+pub const fn place(phase: Phase) -> usize {
+    phase as usize
+}
+
+fn start(problem: &Problem) -> Option<StartPoint> {
+    let number = |value: f64| Rational::try_from(value).ok();
+    let entry = &problem.entry;
+    let [p, q] = surface(entry, problem.model.parameters())?;
+    let states = [p, number(entry.state.y)?, q, number(entry.v())?];
+    let state = states.map(|it| [Rational::ZERO, Rational::ZERO, it]).to_vec();
+    Some(StartPoint { mode: place(entry.phase()), time: number(problem.start.tau)?, state })
+}
+
+/// The exact p and q of a start: where it lies on the surface, and where its trial force lies on a
+/// threshold, rounding has put them beside it.
+fn surface(entry: &Entry, parameters: &Parameters) -> Option<[Rational; 2]> {
+    let number = |value: f64| Rational::try_from(value).ok();
+    let (p, y, q) = (number(entry.state.p)?, number(entry.state.y)?, number(entry.state.q)?);
+    let (g, two_xi) = (number(parameters.g)?, number(2.0 * parameters.xi)?);
+    let near = |value: &Rational, sizes: &[&Rational]| {
+        let largest = sizes.iter().map(|it| it.abs().to_f64()).fold(0.0, f64::max);
+        value.abs().to_f64() <= FOUR_ULPS * largest
+    };
+    if entry.phase() == Phase::NoContact && !near(&(&(&p - &q) - &g), &[&p, &q, &g]) {
+        return Some([p, q]);
+    }
+    let damper = &two_xi * &y;
+    let force = &damper + &q;
+    let one = Rational::from(1);
+    let q = if near(&force, &[&damper, &q]) {
+        -damper
+    } else if near(&(&force - &one), &[&damper, &q, &one]) {
+        one - damper
+    } else {
+        q
+    };
+    Some([&q + &g, q])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Given, embedded};
+    use percuss::affine::Solver;
+
+    /// The general solver, from the system's file, comes to the events of the oscillator's own.
+    #[test]
+    fn the_systems_run_is_the_oscillators() {
+        for case in embedded().unwrap_or_default() {
+            let given =
+                Given { parameters: case.parameters, start: case.start, ..Given::default() };
+            let Ok(problem) = given.check() else { unreachable!("{} is checked", case.name) };
+            let system = percussive_oscillator(&problem);
+            let Ok(system) = system else { unreachable!("{}: {:?}", case.name, system.err()) };
+            let (Ok(solver), Some(start)) = (Solver::<f64>::new(&system), &system.start) else {
+                unreachable!("{} is solved", case.name)
+            };
+            let begin = problem.entry.instant;
+            let omega = case.parameters.omega;
+            let segments = problem.model.trajectory(problem.entry).until(begin.after_periods(3, 1));
+            let own: Vec<_> = segments.skip(1).map(|it| *it.entry()).collect();
+            let until = problem.start.tau + 3.0 * problem.model.period();
+            let Ok(run) = solver.run(start, until) else { unreachable!("{} runs", case.name) };
+            let found: Vec<_> = run.filter(|it| matches!(it.what, percuss::affine::What::Until(..))).collect();
+            assert_eq!(own.len(), found.len(), "{}", case.name);
+            for (own, found) in own.iter().zip(&found) {
+                let elapsed = found.time.high - problem.start.tau + found.time.low;
+                let apart = (own.instant.since(&begin, omega).value() - elapsed).abs();
+                assert!(place(own.phase()) == found.mode && apart <= 1e-6, "{}: {apart:e}", case.name);
+            }
+        }
+    }
+}
