@@ -3,7 +3,6 @@
 
 use crate::exact;
 use crate::support::{refused, run, stdout, text};
-use percuss::Phase;
 use percuss_validation::bench::cases::{SYSTEMS, USUAL};
 use percuss_validation::bench::contest::{contest_at, most_accurate, system_contest};
 use percuss_validation::bench::contestant::{Contestant, EnteredEngine, settings};
@@ -11,7 +10,7 @@ use percuss_validation::bench::library_part::library_part;
 use percuss_validation::bench::timed_case::TimedCase;
 use percuss_validation::bench::timed_system_case::TimedSystemCase;
 use percuss_validation::case::Cases;
-use percuss_validation::engine::{Accuracy, Engine, Limits, Location, Outcome, answer_oscillator};
+use percuss_validation::engine::{Accuracy, Engine, Limits, Location, Outcome, Task, answer};
 use percuss_validation::integration::Script;
 use percuss_validation::integrators::{CONTROL, all, wrong};
 use percuss_validation::truth::Library;
@@ -132,12 +131,13 @@ fn an_engine_that_is_told_its_events_makes_the_same_run() {
 #[test]
 fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let case = case("impact-into-progression");
-    let none = Script::of::<Phase, [f64; 4]>(&[]);
+    let none = Script::of(&[]);
     let limits = Limits::default();
+    let task = Task::of_oscillator(&case.task).expect("it is a system");
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {
         let accuracy = settings(engine.declaration().stepping)[2];
-        let found = none.follow(|| answer_oscillator(*engine, &case.task, accuracy, &limits));
+        let found = none.follow(|| answer(*engine, &task, accuracy, &limits));
         let (name, by) = (engine.declaration().name, engine.declaration().events);
         let found = found.map(|it| it.events.len()).unwrap_or_default();
         assert_eq!(found == 0, by == Location::Harness, "{name}: {found} events");

@@ -2,17 +2,17 @@
 
 use crate::exact;
 use percuss_validation::engine::{
-    Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, SampleGrid, Stepping, answer,
-    answer_oscillator,
+    Accuracy, Engine, Limits, OscillatorTask, Outcome, SampleGrid, Stepping, Task, answer,
 };
 use percuss_validation::integrators::all;
 use percuss_validation::suite::CaseRun;
 
-fn outcome(engine: &dyn Engine) -> OscillatorOutcome {
+fn outcome(engine: &dyn Engine) -> Outcome {
     let case = exact::case("chaos-from-rest");
     let task =
         OscillatorTask::of(&case, exact::problem(&case), SampleGrid { per_period: 4, count: 161 });
-    answer_oscillator(engine, &task, loose(engine), &Limits::default()).expect("it runs")
+    let task = Task::of_oscillator(&task).expect("it is a system");
+    answer(engine, &task, loose(engine), &Limits::default()).expect("it runs")
 }
 
 fn loose(engine: &dyn Engine) -> Accuracy {

@@ -5,6 +5,7 @@
 use crate::exact;
 use percuss::number::Number;
 use percuss_validation::case::Problem;
+use percuss_validation::engine::{OscillatorTask, Task};
 use percuss_validation::score::{HorizonTest, far_apart};
 use percuss_validation::truth::{DoubleDouble, Replay};
 
@@ -83,11 +84,12 @@ fn a_coarser_solver_lasts_as_long_as_its_own_unit_lets_it() {
     const UNIT: f64 = 1e-9;
     let test = HorizonTest::new(&chaos(), 40, 60);
     let coarse = test.score(UNIT, |task| {
+        let task = exact::own(task);
         let mut start = task.problem.start;
         start.y += UNIT;
         let entry = task.problem.model.start(&start).expect("a start is off by little");
         let problem = Problem { entry, start, ..task.problem };
-        exact::run(&percuss_validation::engine::OscillatorTask { problem, ..task.clone() })
+        exact::run(&Task::of_oscillator(&OscillatorTask { problem, ..task.clone() })?)
     });
     println!("{:?} {:?} {:?}", coarse.valid, coarse.predicted, coarse.gained);
     assert!(coarse.valid.median < 60.0 && coarse.gained.median.abs() <= 4.0);

@@ -7,7 +7,7 @@ use crate::exact;
 use percuss::lanes::Instructions;
 use percuss::{Parameters, Phase};
 use percuss_validation::case::{Case, Problem, embedded};
-use percuss_validation::engine::{Failure, OscillatorOutcome, OscillatorTask};
+use percuss_validation::engine::{Failure, Outcome, Task, place};
 use percuss_validation::score::{Restart, RestartTest};
 
 /// Largest median of the runs with an impact, in eps (1 + |value|) x growth: twice the largest
@@ -20,7 +20,7 @@ const LARGEST: f64 = 10.0;
 const WITHOUT_IMPACT: [&str; 3] = ["never-returns", "never-stops", "rests-for-ever"];
 
 /// How a motion is solved.
-type Run = dyn Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync;
+type Run = dyn Fn(&Task) -> Result<Outcome, Failure> + Sync;
 
 fn restarts(case: &Case, count: usize) -> (RestartTest, Restart) {
     let test = RestartTest::new(&exact::problem(case), count);
@@ -29,7 +29,7 @@ fn restarts(case: &Case, count: usize) -> (RestartTest, Restart) {
 }
 
 fn every_case(count: usize) {
-    let lanes = |task: &OscillatorTask| Ok(exact::run_in_lanes(Instructions::widest(), task));
+    let lanes = |task: &Task| Ok(exact::run_in_lanes(Instructions::widest(), task));
     for case in embedded().expect("the cases are read") {
         let test = RestartTest::new(&exact::problem(&case), count);
         holds_its_digits(&case, &test, "alone", &exact::run);
@@ -85,7 +85,7 @@ const FORMS: [(f64, f64); 8] = [
 
 #[test]
 fn lanes_keep_their_digits_in_every_form_of_contact() {
-    let lanes = |task: &OscillatorTask| Ok(exact::run_in_lanes(Instructions::widest(), task));
+    let lanes = |task: &Task| Ok(exact::run_in_lanes(Instructions::widest(), task));
     for (omega, xi) in FORMS {
         let mut case = exact::case("chaos-from-rest");
         case.name = format!("omega {omega} xi {xi}");
@@ -116,15 +116,16 @@ fn figures_do_not_depend_on_chance() {
 #[test]
 fn starts_lie_in_every_phase_and_runs_end_at_a_strobe() {
     let (test, restart) = restarts(&exact::case("chaos-from-rest"), 1000);
-    let starts_in = |phase| test.runs.iter().filter(|run| run.task.phase == phase).count();
+    let starts_in = |phase| test.runs.iter().filter(|run| run.task.mode == place(phase)).count();
     // A progression is under way for less than a hundredth of the time.
     for phase in Phase::ALL {
         assert!(starts_in(phase) > 0, "{phase}: {}", starts_in(phase));
     }
     for run in &test.runs {
-        let Problem { entry, .. } = run.task.problem;
+        let own = exact::own(&run.task);
+        let Problem { entry, .. } = own.problem;
         assert_eq!(entry.instant.cycle(), 0);
-        let horizon = run.task.horizon;
+        let horizon = own.horizon;
         assert!(horizon.angle() == 0.0 && (1..=8).contains(&horizon.cycle()), "{horizon:?}");
         assert_eq!(run.growth.events.len(), run.truth.events.len());
     }
@@ -139,7 +140,7 @@ fn an_error_of_a_few_eps_is_seen() {
     let (test, honest) = restarts(&exact::case("chaos-from-rest"), 200);
     let faulty = test.score(f64::EPSILON, |task| {
         let mut outcome = exact::run(task)?;
-        for value in &mut outcome.end {
+        for value in outcome.end.iter_mut() {
             *value += 1e-13;
         }
         Ok(outcome)
@@ -163,7 +164,7 @@ fn an_error_of_the_drift_alone_is_seen() {
     let cases = embedded().expect("the cases are read");
     let case = cases.iter().find(|case| case.name == "table1-from-rest").expect("the case");
     let test = RestartTest::new(&exact::problem(case), 20);
-    let drifted = |task: &OscillatorTask| {
+    let drifted = |task: &Task| {
         let mut outcome = exact::run(task)?;
         outcome.end[3] += OFF;
         Ok(outcome)

@@ -3,17 +3,18 @@
 use percuss::Phase;
 use percuss_validation::case::{defaults, embedded};
 use percuss_validation::engine::{
-    Accuracy, Declaration, Engine, Event, Failure, Limits, OscillatorOutcome, Outcome, Task,
+    Accuracy, Declaration, Engine, Event, Failure, Limits, Numbers, Outcome, Task, place,
 };
 use percuss_validation::integrators::exact;
 use percuss_validation::score::Verdict;
 use percuss_validation::suite::{CaseRun, Suite, prepare, run};
+use percuss_validation::system::Values;
 use percuss_validation::truth::Library;
 
 /// The exact solver's answer with one change.
 struct Spoiled {
     name: &'static str,
-    change: fn(&mut OscillatorOutcome),
+    change: fn(&mut Outcome),
 }
 
 impl Engine for Spoiled {
@@ -23,20 +24,21 @@ impl Engine for Spoiled {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let mut outcome = OscillatorOutcome::of_system(exact().run(task, accuracy, limits)?)?;
+        let mut outcome = exact().run(task, accuracy, limits)?;
         (self.change)(&mut outcome);
-        Ok(outcome.into())
+        Ok(outcome)
     }
 }
 
-const fn spoiled(name: &'static str, change: fn(&mut OscillatorOutcome)) -> Spoiled {
+const fn spoiled(name: &'static str, change: fn(&mut Outcome)) -> Spoiled {
     Spoiled { name, change }
 }
 
 /// Two events that are not there, from this time on.
-fn add_spurious(outcome: &mut OscillatorOutcome, at: usize, elapsed: f64) {
+fn add_spurious(outcome: &mut Outcome, at: usize, elapsed: f64) {
+    let state = Values::of(&[0.0; 4]);
     let event =
-        |phase, elapsed| Event { event: 0, mode: phase, elapsed, state: [0.0; 4], before: None };
+        |phase, elapsed| Event { event: 0, mode: place(phase), elapsed, state, before: None };
     let pair = [event(Phase::Contact, elapsed), event(Phase::NoContact, elapsed + 1e-9)];
     outcome.events.splice(at..at, pair);
 }
@@ -64,7 +66,7 @@ static FAILS: [Spoiled; 7] = [
 ];
 static ERRS: [Spoiled; 4] = [
     spoiled("exact-few-samples", |it| it.samples.truncate(2)),
-    spoiled("exact-surplus-sample", |it| it.samples.push([0.0; 4])),
+    spoiled("exact-surplus-sample", |it| it.samples.push(Values::of(&[0.0; 4]))),
     spoiled("exact-event-without-time", |it| it.events[3].elapsed = f64::NAN),
     spoiled("exact-events-out-of-order", |it| it.events.swap(2, 5)),
 ];

@@ -1,7 +1,7 @@
 //! The interface through which an integrator sees a system: the equations of each mode, the guards
 //! at which modes end, and the mode and state after an event.
 //!
-//! The types of states, guards and modes belong to the system, so that a system whose dimension is
+//! The types of states and guards belong to the system, so that a system whose dimension is
 //! known beforehand is integrated on arrays of that size, and one whose dimension is read from a
 //! file on numbers that know how many they are. Integrators see the system's own dimension in both.
 
@@ -51,10 +51,9 @@ impl Entered {
 
 /// The equations of motion of a system with modes, in the time elapsed since the start.
 ///
-/// Guards are negative inside a mode and rise to zero at an event.
+/// A mode is its place among the modes of the system. Guards are negative inside a mode and rise to
+/// zero at an event.
 pub trait Equations: Copy {
-    /// The name of a mode.
-    type Mode: Copy + PartialEq + Debug;
     /// The states, as many as the system has.
     type State: Numbers;
     /// The values of the guards of one mode.
@@ -68,36 +67,36 @@ pub trait Equations: Copy {
     fn most_guards(&self) -> usize;
 
     /// The number of guards of a mode.
-    fn count(&self, mode: Self::Mode) -> usize;
+    fn count(&self, mode: usize) -> usize;
 
     /// The right-hand side.
-    fn derivatives(&self, mode: Self::Mode, t: f64, u: &[f64], du: &mut [f64]);
+    fn derivatives(&self, mode: usize, t: f64, u: &[f64], du: &mut [f64]);
 
     /// The derivatives' derivative along `w`.
-    fn jacobian_product(&self, mode: Self::Mode, w: &[f64], dw: &mut [f64]);
+    fn jacobian_product(&self, mode: usize, w: &[f64], dw: &mut [f64]);
 
     /// The mode's guards.
-    fn guards(&self, mode: Self::Mode, t: f64, u: &[f64]) -> Self::Guards;
+    fn guards(&self, mode: usize, t: f64, u: &[f64]) -> Self::Guards;
 
     /// The guards' rates by the equations of motion.
-    fn rates(&self, mode: Self::Mode, t: f64, u: &[f64]) -> Self::Guards;
+    fn rates(&self, mode: usize, t: f64, u: &[f64]) -> Self::Guards;
 
     /// The mode and the state after the event at which a guard has risen to zero.
     fn after_event(
         &self,
-        mode: Self::Mode,
+        mode: usize,
         guard: usize,
         t: f64,
         u: &Self::State,
-    ) -> (Self::Mode, Self::State);
+    ) -> (usize, Self::State);
 
     /// Whether a guard ends its mode; crossings of one that does not are counted only.
-    fn ends(&self, _mode: Self::Mode, _guard: usize) -> bool {
+    fn ends(&self, _mode: usize, _guard: usize) -> bool {
         true
     }
 
     /// The event of its mode that a guard belongs to.
-    fn event(&self, _mode: Self::Mode, guard: usize) -> usize {
+    fn event(&self, _mode: usize, guard: usize) -> usize {
         guard
     }
 
@@ -105,8 +104,8 @@ pub trait Equations: Copy {
     /// start.
     fn enter(
         &self,
-        _after: Option<(Self::Mode, usize)>,
-        _mode: Self::Mode,
+        _after: Option<(usize, usize)>,
+        _mode: usize,
         _t: f64,
         _u: &Self::State,
     ) -> Entered {

@@ -71,10 +71,10 @@ fn shows(finding: &Finding) -> String {
 }
 
 fn growth(prepared: &Prepared, row: &Scored) -> Option<ErrorGrowth> {
-    let Status::Ok(_, answered) = &row.status else { return None };
+    let Status::Ok(_, outcome) = &row.status else { return None };
     let per_period = f64::from(crate::truth::Truth::SAMPLES_PER_PERIOD);
     let largest = |growth: &[f64; 4]| growth[..3].iter().fold(1.0_f64, |a, b| a.max(*b));
-    let error = sample_errors(&prepared.truth, answered.oscillator()?);
+    let error = sample_errors(&prepared.truth, outcome);
     Some(ErrorGrowth {
         case: row.case.clone(),
         engine: row.engine.to_owned(),

@@ -153,10 +153,10 @@ fn rhs_per_event(rows: &[(&Scored, &ReportRow)], exact: bool) -> Option<f64> {
     let costs = rows.chunk_by(|a, b| a.1.case == b.1.case).filter_map(|case| {
         let events = case.first()?.0.events;
         let point = |(scored, row): &(&Scored, &ReportRow)| {
-            let Status::Ok(measures, answered) = &scored.status else { return None };
+            let Status::Ok(measures, outcome) = &scored.status else { return None };
             let whole = measures.whole && measures.matched == measures.total && events > 0;
             let error = row.event_time_error.max;
-            let cost = answered.work().rhs_evaluations as f64 / events as f64;
+            let cost = outcome.work.rhs_evaluations as f64 / events as f64;
             (whole && error.is_finite()).then_some((error, cost))
         };
         let curve: Vec<_> = case.iter().filter_map(point).collect();

@@ -251,10 +251,10 @@ impl ReportRow {
 
     fn of(scored: &Scored) -> Self {
         let empty = Self::empty(scored);
-        let Status::Ok(measures, answered) = &scored.status else { return empty };
+        let Status::Ok(measures, outcome) = &scored.status else { return empty };
         let whole_ns = |time: Duration| u64::try_from(time.as_nanos()).ok();
         // Where nothing at all was counted the work is not known.
-        let work = Some(answered.work()).filter(|work| *work != Work::default());
+        let work = Some(outcome.work).filter(|work| *work != Work::default());
         Self {
             horizon_periods: measures.horizon_periods,
             events_expected: Some(measures.expected),
@@ -272,7 +272,7 @@ impl ReportRow {
             linear_solves: work.map(|it| it.linear_solves),
             steps: work.map(|it| it.steps),
             wall_ns: Some(scored.wall).filter(|wall| !wall.is_zero()).and_then(whole_ns),
-            own_ns: answered.own_time().and_then(whole_ns),
+            own_ns: outcome.own_time.and_then(whole_ns),
             valid_horizon: measures.probed.horizons.as_ref().map(ValidHorizons::of),
             restart: measures.probed.restart.as_ref().map(RestartFigures::of),
             distance: measures

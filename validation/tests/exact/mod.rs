@@ -3,7 +3,7 @@
 use percuss::lanes::Instructions;
 use percuss_validation::case::{Case, Cases, Given, Problem, embedded};
 use percuss_validation::engine::{
-    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, answer_oscillator,
+    Accuracy, Engine, Failure, Limits, OscillatorTask, Outcome, Task, answer,
 };
 use percuss_validation::integrators::all;
 use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
@@ -15,13 +15,19 @@ fn engine() -> &'static dyn Engine {
 }
 
 /// Runs a task.
-pub fn run(task: &OscillatorTask) -> Result<OscillatorOutcome, Failure> {
-    answer_oscillator(engine(), task, Accuracy::Exact, &Limits::default())
+pub fn run(task: &Task) -> Result<Outcome, Failure> {
+    answer(engine(), task, Accuracy::Exact, &Limits::default())
 }
 
 /// Runs a task by these instructions.
-pub fn run_in_lanes(by: Instructions, task: &OscillatorTask) -> OscillatorOutcome {
+pub fn run_in_lanes(by: Instructions, task: &Task) -> Outcome {
+    let task = own(task);
     percuss_validation::integrators::run_in_lanes(by, task, 1).pop().expect("one motion")
+}
+
+/// A task in the oscillator's own words.
+pub fn own(task: &Task) -> &OscillatorTask {
+    task.of_the_oscillator().expect("it is a task of the oscillator")
 }
 
 /// The embedded case of this name.

@@ -2,10 +2,10 @@
 
 use crate::support::{refused, run, text};
 use percuss_validation::case::{Cases, defaults};
-use percuss_validation::engine::{Accuracy, Ended, Task};
+use percuss_validation::engine::{Accuracy, Ended, Outcome, Task};
 use percuss_validation::integrators::all;
 use percuss_validation::number::shortest;
-use percuss_validation::suite::{Answered, CaseRun, Status, Suite, one, prepare, prepare_systems};
+use percuss_validation::suite::{CaseRun, Status, Suite, one, prepare, prepare_systems};
 use percuss_validation::truth::Library;
 use serde_json::Value;
 use std::fs;
@@ -43,13 +43,10 @@ struct Files {
 }
 
 impl Files {
-    fn of(answered: &Answered, task: &Task) -> Self {
+    fn of(run: &Outcome, task: &Task) -> Self {
         let system = task.system.system();
         let names = system.states.join(",");
-        let has_before = match answered {
-            Answered::Oscillator(run) => run.events.iter().all(|it| it.before.is_some()),
-            Answered::System(run) => run.events.iter().all(|it| it.before.is_some()),
-        };
+        let has_before = run.events.iter().all(|it| it.before.is_some());
         let column = |state: &String| format!(",before.{state}");
         let more: String = system.states.iter().filter(|_| has_before).map(column).collect();
         let mut files = Self {
@@ -57,34 +54,15 @@ impl Files {
             samples: format!("time,{names}\n"),
         };
         let mut before = task.mode;
-        let mut event = |(event, mode): (usize, usize), elapsed: f64, states: [&[f64]; 2]| {
-            let (name, next) = (system.event_name(before, event), &system.modes[mode].name);
-            let name = name.expect("an event of its mode");
-            let [state, left] = states.map(written);
-            let left = if has_before { left } else { String::new() };
-            before = mode;
-            format!("{},{name},{next}{state}{left}\n", shortest(elapsed))
-        };
-        let (samples, end, (ended, ended_at)) = match answered {
-            Answered::Oscillator(run) => {
-                for it in &run.events {
-                    let mode = system.modes.iter().position(|mode| mode.name == it.mode.as_str());
-                    let mode = mode.expect("a phase is a mode");
-                    let left = it.before.unwrap_or_default();
-                    files.events += &event((it.event, mode), it.elapsed, [&it.state, &left]);
-                }
-                let samples: Vec<String> = run.samples.iter().map(|it| written(it)).collect();
-                (samples, written(&run.end), (run.ended, run.ended_at))
-            }
-            Answered::System(run) => {
-                for it in &run.events {
-                    let left = it.before.unwrap_or_default();
-                    files.events += &event((it.event, it.mode), it.elapsed, [&it.state, &left]);
-                }
-                let samples: Vec<String> = run.samples.iter().map(|it| written(it)).collect();
-                (samples, written(&run.end), (run.ended, run.ended_at))
-            }
-        };
+        for it in &run.events {
+            let name = system.event_name(before, it.event).expect("an event of its mode");
+            before = it.mode;
+            let (next, state) = (&system.modes[before].name, written(&it.state));
+            let left = it.before.filter(|_| has_before).map(|it| written(&it)).unwrap_or_default();
+            files.events += &format!("{},{name},{next}{state}{left}\n", shortest(it.elapsed));
+        }
+        let samples: Vec<String> = run.samples.iter().map(|it| written(it)).collect();
+        let (end, ended, ended_at) = (written(&run.end), run.ended, run.ended_at);
         if let Some(word) = ending(ended) {
             let mode = &system.modes[before].name;
             let left = if has_before { end.as_str() } else { "" };

@@ -1,7 +1,7 @@
 //! An engine's answer, checked for completeness before anything is measured of it, and the work
 //! that it takes at the least.
 
-use super::{Engine, Limits, OscillatorOutcome, OscillatorTask, Outcome, Task, contain};
+use super::{Engine, Limits, Outcome, Task, contain};
 use crate::accuracy::Accuracy;
 use crate::failure::Failure;
 
@@ -16,22 +16,8 @@ pub fn answer(
     limits: &Limits,
 ) -> Result<Outcome, Failure> {
     let outcome = contain(|| engine.run(task, accuracy, limits))?;
-    complete(&outcome, task.samples.len())?;
+    complete(&outcome, task)?;
     Ok(outcome)
-}
-
-/// Runs an engine on the oscillator as [`answer`] does on any system.
-///
-/// # Errors
-/// The run's failure, or what its answer lacks.
-pub fn answer_oscillator(
-    engine: &dyn Engine,
-    task: &OscillatorTask,
-    accuracy: Accuracy,
-    limits: &Limits,
-) -> Result<OscillatorOutcome, Failure> {
-    let outcome = answer(engine, &Task::of_oscillator(task)?, accuracy, limits)?;
-    OscillatorOutcome::of_system(outcome)
 }
 
 /// Right-hand sides that a run takes at the least, as far as that is known beforehand, where it
@@ -57,9 +43,10 @@ fn least_work_of_short_steps(engine: &dyn Engine, task: &Task) -> f64 {
     f64::from(stages) * task.span / longest
 }
 
-/// Checks that there is a sample for each instant asked for, and that events follow each other.
-fn complete<M, S>(outcome: &Outcome<M, S>, asked: usize) -> Result<(), Failure> {
-    let given = outcome.samples.len();
+/// Checks that there is a sample for each instant asked for, that events follow each other, and
+/// that modes and states are the system's.
+fn complete(outcome: &Outcome, task: &Task) -> Result<(), Failure> {
+    let (given, asked) = (outcome.samples.len(), task.samples.len());
     if given != asked {
         return Err(Failure::new(format!("gave {given} samples where {asked} were asked for")));
     }
@@ -73,6 +60,14 @@ fn complete<M, S>(outcome: &Outcome<M, S>, asked: usize) -> Result<(), Failure> 
         }
         before = event.elapsed;
     }
+    let (modes, size) = (task.system.system().modes.len(), task.state.len());
+    if let Some(event) = outcome.events.iter().find(|it| it.mode >= modes) {
+        return Err(Failure::new(format!("gave the mode {}, of {modes} modes", event.mode)));
+    }
+    let states = outcome.events.iter().map(|it| &it.state).chain(&outcome.samples);
+    if states.chain([&outcome.end]).any(|it| it.len() != size) {
+        return Err(Failure::new(format!("gave a state that has not {size} numbers")));
+    }
     Ok(())
 }
 
@@ -80,23 +75,27 @@ fn complete<M, S>(outcome: &Outcome<M, S>, asked: usize) -> Result<(), Failure> 
 mod tests {
     use super::*;
     use crate::case::{Case, Given, embedded};
-    use crate::engine::{Event, SampleGrid};
+    use crate::engine::{Event, OscillatorTask, SampleGrid};
+    use crate::equations::Numbers;
     use crate::integrators::exact;
-    use percuss::Phase;
+    use crate::system::Values;
 
     const COUNT: usize = 100;
 
-    fn task() -> OscillatorTask {
+    fn task() -> Task {
         let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == "small-b");
         let Some(case) = case else { unreachable!("small-b is embedded") };
         let Case { parameters, start, .. } = case;
         let given = Given { parameters, start, ..Given::default() };
         let Ok(problem) = given.check() else { unreachable!("small-b is checked") };
-        OscillatorTask::of(&case, problem, SampleGrid { per_period: 8, count: COUNT })
+        let task =
+            OscillatorTask::of(&case, problem, SampleGrid { per_period: 8, count: COUNT });
+        let Ok(task) = Task::of_oscillator(&task) else { unreachable!("it is a system") };
+        task
     }
 
-    fn whole(task: &OscillatorTask) -> OscillatorOutcome {
-        let outcome = answer_oscillator(exact(), task, Accuracy::Exact, &Limits::default());
+    fn whole(task: &Task) -> Outcome {
+        let outcome = answer(exact(), task, Accuracy::Exact, &Limits::default());
         outcome.unwrap_or_default()
     }
 
@@ -104,10 +103,10 @@ mod tests {
     fn missing_and_surplus_samples_are_refused() {
         let task = task();
         let mut outcome = whole(&task);
-        assert_eq!(complete(&outcome, COUNT), Ok(()));
-        outcome.samples.push([0.0; 4]);
+        assert_eq!(complete(&outcome, &task), Ok(()));
+        outcome.samples.push(Values::of(&[0.0; 4]));
         let refused =
-            |outcome: &OscillatorOutcome| complete(outcome, COUNT).map_err(|it| it.reason);
+            |outcome: &Outcome| complete(outcome, &task).map_err(|it| it.reason);
         let said = |count| Err(format!("gave {count} samples where {COUNT} were asked for"));
         assert_eq!(refused(&outcome), said(COUNT + 1));
         outcome.samples.truncate(2);
@@ -120,11 +119,25 @@ mod tests {
         let outcome = whole(&task);
         let late = outcome.events.last().map_or(0.0, |it| it.elapsed);
         for elapsed in [f64::NAN, f64::INFINITY, 0.5 * late] {
-            let (mode, state) = (Phase::Contact, [0.0; 4]);
+            let (mode, state) = (1, Values::of(&[0.0; 4]));
             let event = Event { event: 0, mode, elapsed, state, before: None };
             let events = [outcome.events.as_slice(), &[event]].concat();
-            let odd = OscillatorOutcome { events, ..outcome.clone() };
-            assert!(complete(&odd, COUNT).is_err(), "{elapsed}");
+            let odd = Outcome { events, ..outcome.clone() };
+            assert!(complete(&odd, &task).is_err(), "{elapsed}");
+        }
+    }
+
+    #[test]
+    fn modes_and_states_that_the_system_lacks_are_refused() {
+        let task = task();
+        let outcome = whole(&task);
+        let mut mode = outcome.clone();
+        mode.events[1].mode = 3;
+        let short = Values::of(&[0.5; 3]);
+        let mut sample = outcome.clone();
+        sample.samples[1] = short;
+        for odd in [mode, sample, Outcome { end: short, ..outcome }] {
+            assert!(complete(&odd, &task).is_err(), "{odd:?}");
         }
     }
 }

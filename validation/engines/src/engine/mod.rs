@@ -18,38 +18,36 @@ mod task;
 mod trace;
 
 pub use crate::accuracy::{Accuracy, Stepping, shortest_time};
+pub use crate::case::place;
 pub use crate::equations::{Entered, Equations, Numbers};
 pub use crate::failure::Failure;
-pub use answer::{answer, answer_oscillator, least_work};
+pub use answer::{answer, least_work};
 pub use declaration::{Class, Colours, Declaration, Location, REFERENCE, Role};
 pub(crate) use limits::stop;
 pub use limits::{Limits, contain, hush_contained_panics};
 pub use oscillator_task::{OscillatorTask, SampleGrid};
 pub use percussive::percussive;
-pub(crate) use percussive::place;
 pub use task::Task;
 pub use trace::{GuardSample, Trace, Watched};
 
 use crate::system::Values;
-use percuss::Phase;
 use std::time::Duration;
 
-/// An event as an engine found it. A mode is a place among the system's modes, or what a system
-/// written by hand has for it.
+/// An event as an engine found it. A mode is a place among the system's modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Event<M = usize, S = Values> {
+pub struct Event {
     /// The place of the event among those of its mode: those that end the mode come first, then
     /// those that are only counted, in the order in which the system names them.
     pub event: usize,
     /// The mode that begins; for an event that ends no mode, the mode that goes on.
-    pub mode: M,
+    pub mode: usize,
     /// Time since the start.
     pub elapsed: f64,
     /// The state as the mode begins.
-    pub state: S,
+    pub state: Values,
     /// The state just before the event, which no reset has touched: the guard's value there says
     /// how well the event was located. None where the engine does not tell it.
-    pub before: Option<S>,
+    pub before: Option<Values>,
 }
 
 /// The ending of a run, in the words of `docs/SYSTEM_FORMAT.md`.
@@ -84,14 +82,14 @@ pub struct Work {
 }
 
 /// The result of a run.
-#[derive(Clone, Debug)]
-pub struct Outcome<M = usize, S = Values> {
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
     /// The events in the order of their times.
-    pub events: Vec<Event<M, S>>,
+    pub events: Vec<Event>,
     /// The states on the grid.
-    pub samples: Vec<S>,
+    pub samples: Vec<Values>,
     /// The state at the run's end.
-    pub end: S,
+    pub end: Values,
     /// The ending of the run.
     pub ended: Ended,
     /// The time at which the run ended, since the start.
@@ -102,29 +100,8 @@ pub struct Outcome<M = usize, S = Values> {
     /// of the run's time went into starting that program and speaking with it.
     pub own_time: Option<Duration>,
     /// The recording of the run, where the task asks for one and the engine can record.
-    pub trace: Option<Trace<M>>,
+    pub trace: Option<Trace>,
 }
-
-impl<M, S: Default> Default for Outcome<M, S> {
-    fn default() -> Self {
-        Self {
-            events: Vec::new(),
-            samples: Vec::new(),
-            end: S::default(),
-            ended: Ended::default(),
-            ended_at: 0.0,
-            work: Work::default(),
-            own_time: None,
-            trace: None,
-        }
-    }
-}
-
-/// A run of the oscillator that was made, in the oscillator's own words.
-pub type OscillatorOutcome = Outcome<Phase, [f64; 4]>;
-
-/// An event of the oscillator: the phase that begins, with p, y, q and v.
-pub type OscillatorEvent = Event<Phase, [f64; 4]>;
 
 /// Something that can run a system with modes from a start to a horizon.
 pub trait Engine: Sync {

@@ -1,18 +1,12 @@
 //! The oscillator written down as any other system is, which is how engines are asked to run it.
 
-use super::{
-    Ended, Event, GuardSample, OscillatorEvent, OscillatorOutcome, OscillatorTask, Outcome, Task,
-    Trace,
-};
-use crate::equations::Numbers;
+use super::{OscillatorTask, Task, place};
 use crate::failure::Failure;
 use crate::system::by_hand::{self, mode, until};
-use crate::system::{CheckedSystem, Row, System, Values};
-use percuss::{Parameters, Phase};
+use crate::system::{CheckedSystem, Row, System};
+use percuss::Parameters;
 use std::sync::Arc;
 
-/// The oscillator's phases in the order of its modes.
-const MODES: [Phase; 3] = [Phase::NoContact, Phase::Contact, Phase::Progression];
 /// p, y, q and v.
 const STATES: usize = 4;
 /// The place of the coefficient of cos theta in a row.
@@ -89,11 +83,6 @@ fn state(place: usize) -> Row {
     by_hand::state(STATES, place)
 }
 
-/// The place of a phase among the oscillator's modes.
-pub(crate) fn place(phase: Phase) -> usize {
-    MODES.iter().position(|mode| *mode == phase).unwrap_or_default()
-}
-
 impl Task {
     /// A task of the oscillator, as the task of a system.
     ///
@@ -107,83 +96,4 @@ impl Task {
         let oscillator = Some(Arc::new(task.clone()));
         Ok(Self { watched: task.watched.clone(), oscillator, ..run })
     }
-}
-
-impl From<OscillatorOutcome> for Outcome {
-    fn from(run: OscillatorOutcome) -> Self {
-        let event = |it: OscillatorEvent| Event {
-            event: it.event,
-            mode: place(it.mode),
-            elapsed: it.elapsed,
-            state: Values::of(&it.state),
-            before: it.before.map(|before| Values::of(&before)),
-        };
-        let look = |it: GuardSample<Phase>| GuardSample {
-            t: it.t,
-            mode: place(it.mode),
-            guard: it.guard,
-            value: it.value,
-        };
-        let trace = |it: Trace<Phase>| Trace {
-            steps: it.steps,
-            looks: it.looks.into_iter().map(look).collect(),
-        };
-        Self {
-            events: run.events.into_iter().map(event).collect(),
-            samples: run.samples.iter().map(|it| Values::of(it)).collect(),
-            end: Values::of(&run.end),
-            ended: run.ended,
-            ended_at: run.ended_at,
-            work: run.work,
-            own_time: run.own_time,
-            trace: run.trace.map(trace),
-        }
-    }
-}
-
-impl OscillatorOutcome {
-    /// The outcome of a system's run as an outcome of the oscillator.
-    ///
-    /// # Errors
-    /// A mode or a state that the oscillator does not have, or an end before the horizon.
-    pub fn of_system(run: Outcome) -> Result<Self, Failure> {
-        if run.ended != Ended::Horizon {
-            return Err(Failure::new(format!("the run ended early: {:?}", run.ended)));
-        }
-        let event = |it: &Event| -> Result<OscillatorEvent, Failure> {
-            let &Event { event, elapsed, .. } = it;
-            let before = it.before.map(|before| four(&before)).transpose()?;
-            Ok(Event { event, mode: phase(it.mode)?, elapsed, state: four(&it.state)?, before })
-        };
-        Ok(Self {
-            events: run.events.iter().map(event).collect::<Result<_, _>>()?,
-            samples: run.samples.iter().map(|it| four(it)).collect::<Result<_, _>>()?,
-            end: four(&run.end)?,
-            ended: run.ended,
-            ended_at: run.ended_at,
-            work: run.work,
-            own_time: run.own_time,
-            trace: run.trace.map(phases).transpose()?,
-        })
-    }
-}
-
-/// The phase of the oscillator that a mode stands for.
-fn phase(mode: usize) -> Result<Phase, Failure> {
-    MODES.get(mode).copied().ok_or_else(|| Failure::new(format!("no phase is {mode}")))
-}
-
-/// p, y, q and v.
-fn four(state: &[f64]) -> Result<[f64; STATES], Failure> {
-    let four = state.try_into();
-    four.map_err(|_| Failure::new(format!("{} states, not {STATES}", state.len())))
-}
-
-/// A record of guards, with the phases that their modes are.
-fn phases(trace: Trace) -> Result<Trace<Phase>, Failure> {
-    let look = |it: GuardSample| -> Result<GuardSample<Phase>, Failure> {
-        Ok(GuardSample { t: it.t, mode: phase(it.mode)?, guard: it.guard, value: it.value })
-    };
-    let looks = trace.looks.into_iter().map(look).collect::<Result<_, _>>()?;
-    Ok(Trace { steps: trace.steps, looks })
 }

@@ -13,11 +13,11 @@ pub struct Watched {
 
 /// One evaluation of a guard by a search for events.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GuardSample<M = usize> {
+pub struct GuardSample {
     /// Time of the evaluation, since the start.
     pub t: f64,
     /// The mode to which the guard belongs.
-    pub mode: M,
+    pub mode: usize,
     /// The number of the guard in its mode.
     pub guard: usize,
     /// The guard's value, which is negative inside the mode.
@@ -25,17 +25,11 @@ pub struct GuardSample<M = usize> {
 }
 
 /// The recording of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Trace<M = usize> {
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trace {
     /// Ends of accepted steps, since the start, in ascending order; a step in which a mode ends
     /// has none.
     pub steps: Vec<f64>,
     /// Evaluations of guards, in the order in which they were made.
-    pub looks: Vec<GuardSample<M>>,
-}
-
-impl<M> Default for Trace<M> {
-    fn default() -> Self {
-        Self { steps: Vec::new(), looks: Vec::new() }
-    }
+    pub looks: Vec<GuardSample>,
 }

@@ -7,7 +7,7 @@
 //! defines (p = q + g, and q = 0 or 1 - 2 xi y where the trial force is known), always by moving q
 //! and p, because y = (1 - q)/(2 xi) would multiply what is left of the error by 1/(2 xi).
 
-use crate::engine::Task;
+use crate::engine::{Task, place};
 use crate::equations::{Entered, Equations, NO_GUARD};
 use percuss::{Parameters, Phase};
 
@@ -20,7 +20,7 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// The oscillator in some co-ordinates.
 pub(crate) trait Coordinates:
-    Equations<Mode = Phase, State = [f64; 4], Guards = [f64; GUARDS]>
+    Equations<State = [f64; 4], Guards = [f64; GUARDS]>
 {
     /// Whether a task's system has these co-ordinates: the paper's bounded ones are a system's own
     /// states, others are defined for the oscillator alone.
@@ -109,7 +109,6 @@ impl Coordinates for Oscillator {
 }
 
 impl Equations for Oscillator {
-    type Mode = Phase;
     type State = [f64; 4];
     type Guards = [f64; GUARDS];
 
@@ -121,15 +120,15 @@ impl Equations for Oscillator {
         GUARDS
     }
 
-    fn count(&self, phase: Phase) -> usize {
-        count(phase)
+    fn count(&self, mode: usize) -> usize {
+        count(Phase::ALL[mode])
     }
 
     /// Eqs. (11), (12), (13) and the drift's velocity.
-    fn derivatives(&self, phase: Phase, t: f64, u: &[f64], du: &mut [f64]) {
+    fn derivatives(&self, mode: usize, t: f64, u: &[f64], du: &mut [f64]) {
         let (y, q) = (u[1], u[2]);
         let force = self.force(t);
-        let rates = match phase {
+        let rates = match Phase::ALL[mode] {
             Phase::NoContact => [y, force, -q / self.two_xi, 0.0],
             Phase::Contact => [y, -self.two_xi * y - q + force, y, 0.0],
             Phase::Progression => {
@@ -140,9 +139,9 @@ impl Equations for Oscillator {
         du[..4].copy_from_slice(&rates);
     }
 
-    fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]) {
+    fn jacobian_product(&self, mode: usize, w: &[f64], dw: &mut [f64]) {
         let (y, q) = (w[1], w[2]);
-        let rates = match phase {
+        let rates = match Phase::ALL[mode] {
             Phase::NoContact => [y, 0.0, -q / self.two_xi, 0.0],
             Phase::Contact => [y, -self.two_xi * y - q, y, 0.0],
             Phase::Progression => {
@@ -153,32 +152,32 @@ impl Equations for Oscillator {
         dw[..4].copy_from_slice(&rates);
     }
 
-    fn guards(&self, phase: Phase, _: f64, u: &[f64]) -> [f64; GUARDS] {
-        match phase {
+    fn guards(&self, mode: usize, _: f64, u: &[f64]) -> [f64; GUARDS] {
+        match Phase::ALL[mode] {
             Phase::NoContact => [u[0] - u[2] - self.g, NO_GUARD],
             Phase::Contact => [self.trial_force(u) - 1.0, -self.trial_force(u)],
             Phase::Progression => [1.0 - self.trial_force(u), NO_GUARD],
         }
     }
 
-    fn rates(&self, phase: Phase, t: f64, u: &[f64]) -> [f64; GUARDS] {
-        if phase == Phase::NoContact {
+    fn rates(&self, mode: usize, t: f64, u: &[f64]) -> [f64; GUARDS] {
+        if Phase::ALL[mode] == Phase::NoContact {
             return [self.trial_force(u) / self.two_xi, 0.0];
         }
         let mut du = [0.0; 4];
-        self.derivatives(phase, t, u, &mut du);
+        self.derivatives(mode, t, u, &mut du);
         let rate = self.two_xi * du[1] + du[2];
-        if phase == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
+        if Phase::ALL[mode] == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
     }
 
-    fn after_event(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+    fn after_event(&self, mode: usize, guard: usize, _: f64, u: &[f64; 4]) -> (usize, [f64; 4]) {
         let mut state = *u;
-        let (next, imposed) = successor(phase, guard, self.trial_force(u));
+        let (next, imposed) = successor(Phase::ALL[mode], guard, self.trial_force(u));
         if let Some(force) = imposed {
             state[2] = force - self.two_xi * state[1];
         }
         state[0] = state[2] + self.g;
-        (next, state)
+        (place(next), state)
     }
 
     fn settle(&self, _: Entered, u: &[f64], guards: &mut [f64; GUARDS]) {

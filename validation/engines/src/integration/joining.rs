@@ -4,10 +4,10 @@ use super::field::Coordinates;
 use super::meter::Meter;
 use super::sampler::Sampler;
 use crate::accuracy::shortest_time;
-use crate::engine::{Ended, Event, OscillatorTask, Outcome, Task, Watched};
-use crate::equations::{Entered, Equations};
+use crate::engine::{Ended, Event, OscillatorTask, Outcome, Task, Watched, place};
+use crate::equations::{Entered, Equations, Numbers};
 use crate::failure::Failure;
-use crate::system::Affine;
+use crate::system::{Affine, Values};
 use std::f64::consts::TAU;
 
 /// The times in which a system changes; libraries that have to be told how long a step may be are
@@ -25,7 +25,7 @@ pub(crate) struct Times {
 /// A run that an integrator is asked for, in the time elapsed since its start.
 pub(crate) struct Integration<'a, E: Equations> {
     pub(crate) equations: E,
-    pub(crate) mode: E::Mode,
+    pub(crate) mode: usize,
     pub(crate) state: E::State,
     pub(crate) span: f64,
     /// The instants at which the state is taken.
@@ -45,7 +45,7 @@ impl<'a, E: Coordinates> Integration<'a, E> {
         let period = task.problem.model.period();
         Self {
             equations,
-            mode: task.phase,
+            mode: place(task.phase),
             state: equations.of_bounded(&task.state),
             span: task.span,
             samples: task.sample_times(),
@@ -83,7 +83,7 @@ pub(crate) struct Moment<E: Equations> {
     pub(crate) t: f64,
     /// The time at which the mode began.
     pub(crate) began: f64,
-    pub(crate) mode: E::Mode,
+    pub(crate) mode: usize,
     pub(crate) state: E::State,
     /// The guards that are known at the mode's entry.
     pub(crate) entered: Entered,
@@ -99,7 +99,7 @@ impl<E: Equations> Copy for Moment<E> {}
 
 impl<E: Equations> Moment<E> {
     /// The start of a run.
-    pub(crate) fn start(equations: &E, mode: E::Mode, state: E::State) -> Self {
+    pub(crate) fn start(equations: &E, mode: usize, state: E::State) -> Self {
         let entered = equations.enter(None, mode, 0.0, &state);
         Self { t: 0.0, began: 0.0, mode, state, entered }
     }
@@ -129,9 +129,9 @@ const SHORTEST: f64 = 16.0 * f64::EPSILON;
 /// later time in the same mode, the end of the integration at the latest.
 pub(crate) fn join<E: Equations>(
     integration: &Integration<'_, E>,
-    meter: &Meter<E::Mode>,
+    meter: &Meter,
     mut stretch: impl FnMut(&Moment<E>, &mut Sampler<E::State>) -> Result<StretchEnd<E::State>, Failure>,
-) -> Result<Outcome<E::Mode, E::State>, Failure> {
+) -> Result<Outcome, Failure> {
     let Integration { equations, span, .. } = integration;
     let mut outcome = Outcome::default();
     integration.watched.iter().for_each(|watched| meter.watch(watched));
@@ -158,7 +158,7 @@ pub(crate) fn join<E: Equations>(
                 meter.phase_ended(t);
                 let next = now.after(equations, t, guard, &state);
                 let event = equations.event(now.mode, guard);
-                let [before, state] = [&state, &next.state].map(|it| equations.reported(it));
+                let [before, state] = [&state, &next.state].map(|it| reported(equations, it));
                 let (mode, before) = (next.mode, Some(before));
                 outcome.events.push(Event { event, mode, elapsed: t, state, before });
                 now = next;
@@ -170,28 +170,31 @@ pub(crate) fn join<E: Equations>(
             }
         };
     }
-    outcome.end = equations.reported(&now.state);
+    outcome.end = reported(equations, &now.state);
     outcome.ended_at = now.t;
-    outcome.samples = sampler.finish(now.state);
-    for state in &mut outcome.samples {
-        *state = equations.reported(state);
-    }
+    let samples = sampler.finish(now.state);
+    outcome.samples = samples.iter().map(|it| reported(equations, it)).collect();
     outcome.work = meter.work();
     meter.hand_over(&mut outcome);
     Ok(outcome)
 }
 
+/// A state as an outcome has it.
+fn reported<E: Equations>(equations: &E, state: &E::State) -> Values {
+    Values::of(equations.reported(state).as_ref())
+}
+
 /// Moves the crossings of guards that do not end the mode from the sampler to the outcome.
 fn record_counted<E: Equations>(
     equations: &E,
-    mode: E::Mode,
-    (sampler, meter): (&mut Sampler<E::State>, &Meter<E::Mode>),
-    outcome: &mut Outcome<E::Mode, E::State>,
+    mode: usize,
+    (sampler, meter): (&mut Sampler<E::State>, &Meter),
+    outcome: &mut Outcome,
 ) -> Result<(), Failure> {
     for crossing in sampler.counted.drain(..) {
         meter.events(outcome.events.len())?;
         let event = equations.event(mode, crossing.guard);
-        let state = equations.reported(&crossing.state);
+        let state = reported(equations, &crossing.state);
         let (elapsed, before) = (crossing.t, Some(state));
         outcome.events.push(Event { event, mode, elapsed, state, before });
     }

@@ -52,14 +52,14 @@ impl<G: Numbers> GuardValues<G> {
 /// The search for the end of one mode.
 pub(crate) struct GuardSearch<'a, E: Equations> {
     equations: E,
-    mode: E::Mode,
-    meter: &'a Meter<E::Mode>,
+    mode: usize,
+    meter: &'a Meter,
     began: f64,
     entered: Entered,
 }
 
 impl<'a, E: Equations> GuardSearch<'a, E> {
-    pub(crate) fn new(equations: E, from: &Moment<E>, meter: &'a Meter<E::Mode>) -> Self {
+    pub(crate) fn new(equations: E, from: &Moment<E>, meter: &'a Meter) -> Self {
         let &Moment { mode, began, entered, .. } = from;
         Self { equations, mode, meter, began, entered }
     }

@@ -3,14 +3,14 @@
 use super::*;
 use crate::engine::Limits;
 use crate::integration::field::{GUARDS, Oscillator};
-use percuss::{Parameters, Phase};
+use percuss::Parameters;
 
 /// Contact with a trial force as given and no velocity, so that q is the force.
 fn first(force: fn(f64) -> f64, rate: fn(f64) -> f64) -> Option<GuardRise> {
     let parameters = Parameters { a: 0.0, b: 0.0, ..Parameters::default() };
     let meter = Meter::new(&Limits::default());
     let equations = Made { oscillator: Oscillator::of(&parameters, 0.0), force, rate };
-    let from = Moment::start(&equations, Phase::Contact, [0.0; 4]);
+    let from = Moment::start(&equations, 1, [0.0; 4]);
     let search = GuardSearch::new(equations, &from, &meter);
     let mut state_at = |t| Ok([t, 0.0, 0.0, 0.0]);
     search.step(0.0, 1.0, &mut state_at, &mut Vec::new()).ok().flatten()
@@ -25,7 +25,6 @@ struct Made {
 }
 
 impl Equations for Made {
-    type Mode = Phase;
     type State = [f64; 4];
     type Guards = [f64; GUARDS];
     fn dimension(&self) -> usize {
@@ -34,23 +33,23 @@ impl Equations for Made {
     fn most_guards(&self) -> usize {
         GUARDS
     }
-    fn count(&self, phase: Phase) -> usize {
-        self.oscillator.count(phase)
+    fn count(&self, mode: usize) -> usize {
+        self.oscillator.count(mode)
     }
-    fn derivatives(&self, phase: Phase, t: f64, u: &[f64], du: &mut [f64]) {
-        self.oscillator.derivatives(phase, t, u, du);
+    fn derivatives(&self, mode: usize, t: f64, u: &[f64], du: &mut [f64]) {
+        self.oscillator.derivatives(mode, t, u, du);
     }
-    fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]) {
-        self.oscillator.jacobian_product(phase, w, dw);
+    fn jacobian_product(&self, mode: usize, w: &[f64], dw: &mut [f64]) {
+        self.oscillator.jacobian_product(mode, w, dw);
     }
-    fn guards(&self, _: Phase, _: f64, u: &[f64]) -> [f64; GUARDS] {
+    fn guards(&self, _: usize, _: f64, u: &[f64]) -> [f64; GUARDS] {
         [(self.force)(u[0]) - 1.0, -(self.force)(u[0])]
     }
-    fn rates(&self, _: Phase, t: f64, _: &[f64]) -> [f64; GUARDS] {
+    fn rates(&self, _: usize, t: f64, _: &[f64]) -> [f64; GUARDS] {
         [(self.rate)(t), -(self.rate)(t)]
     }
-    fn after_event(&self, phase: Phase, guard: usize, t: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
-        self.oscillator.after_event(phase, guard, t, u)
+    fn after_event(&self, mode: usize, guard: usize, t: f64, u: &[f64; 4]) -> (usize, [f64; 4]) {
+        self.oscillator.after_event(mode, guard, t, u)
     }
     fn settle(&self, entered: Entered, u: &[f64], guards: &mut [f64; GUARDS]) {
         self.oscillator.settle(entered, u, guards);

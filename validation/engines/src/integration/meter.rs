@@ -9,12 +9,11 @@ use super::recorder::Recorder;
 use super::script::ToldCrossings;
 use crate::engine::{GuardSample, Limits, Outcome, Watched, Work, stop};
 use crate::failure::Failure;
-use percuss::Phase;
 use std::cell::{Cell, OnceCell};
 use std::time::Instant;
 
 /// Counts what a run calls and unwinds when a limit is passed.
-pub(crate) struct Meter<M = Phase> {
+pub(crate) struct Meter {
     limits: Limits,
     began: Instant,
     calls: Cell<u64>,
@@ -22,7 +21,7 @@ pub(crate) struct Meter<M = Phase> {
     jacobians: Cell<u64>,
     solves: Cell<u64>,
     steps: Cell<u64>,
-    recorder: OnceCell<Recorder<M>>,
+    recorder: OnceCell<Recorder>,
     /// The times of this run's events, if it is made without the harness's own part.
     told: Option<ToldCrossings>,
 }
@@ -30,7 +29,7 @@ pub(crate) struct Meter<M = Phase> {
 /// The number of calls between two readings of the clock.
 const CLOCK_EVERY: u64 = 4096;
 
-impl<M: Copy> Meter<M> {
+impl Meter {
     pub(crate) fn new(limits: &Limits) -> Self {
         let zero = || Cell::new(0);
         Self {
@@ -127,7 +126,7 @@ impl<M: Copy> Meter<M> {
     }
 
     /// Counts an evaluation of a mode's guards, and records it where that is wanted.
-    pub(crate) fn guards(&self, t: f64, mode: M, guards: &[f64]) {
+    pub(crate) fn guards(&self, t: f64, mode: usize, guards: &[f64]) {
         self.call();
         if let Some(recorder) = self.recorder.get() {
             for (guard, value) in guards.iter().copied().enumerate() {
@@ -137,7 +136,7 @@ impl<M: Copy> Meter<M> {
     }
 
     /// Counts an evaluation of one guard, and records it where that is wanted.
-    pub(crate) fn guard(&self, look: GuardSample<M>) {
+    pub(crate) fn guard(&self, look: GuardSample) {
         self.call();
         if let Some(recorder) = self.recorder.get() {
             recorder.look(look);
@@ -164,7 +163,7 @@ impl<M: Copy> Meter<M> {
     }
 
     /// Moves the recording into the outcome.
-    pub(crate) fn hand_over<S>(&self, outcome: &mut Outcome<M, S>) {
+    pub(crate) fn hand_over(&self, outcome: &mut Outcome) {
         if let Some(recorder) = self.recorder.get() {
             recorder.hand_over(outcome);
         }
@@ -190,7 +189,7 @@ mod tests {
     fn limits_unwind_to_a_failure() {
         let limits = Limits { calls: 10, ..Limits::default() };
         let endless = || -> Result<(), Failure> {
-            let meter = Meter::<Phase>::new(&limits);
+            let meter = Meter::new(&limits);
             loop {
                 meter.rhs(&[0.0]);
             }
@@ -202,7 +201,7 @@ mod tests {
     fn a_nan_and_a_panic_are_failures() {
         let limits = Limits::default();
         let not_finite = contain(|| -> Result<(), Failure> {
-            Meter::<Phase>::new(&limits).rhs(&[f64::NAN]);
+            Meter::new(&limits).rhs(&[f64::NAN]);
             Ok(())
         });
         assert_eq!(not_finite, Err(Failure::new("a right-hand side is not finite")));

@@ -6,7 +6,7 @@
 //! surface and v stays, as in the bounded co-ordinates.
 
 use super::field::{Coordinates, GUARDS, count, settle, successor};
-use crate::engine::Task;
+use crate::engine::{Task, place};
 use crate::equations::{Entered, Equations, NO_GUARD};
 use percuss::{Parameters, Phase};
 
@@ -53,7 +53,6 @@ impl Coordinates for OriginalOscillator {
 }
 
 impl Equations for OriginalOscillator {
-    type Mode = Phase;
     type State = [f64; 4];
     type Guards = [f64; GUARDS];
 
@@ -65,8 +64,8 @@ impl Equations for OriginalOscillator {
         GUARDS
     }
 
-    fn count(&self, phase: Phase) -> usize {
-        count(phase)
+    fn count(&self, mode: usize) -> usize {
+        count(Phase::ALL[mode])
     }
 
     fn reported(&self, u: &[f64; 4]) -> [f64; 4] {
@@ -74,10 +73,10 @@ impl Equations for OriginalOscillator {
         [x - v, y, z - v, v]
     }
 
-    fn derivatives(&self, phase: Phase, t: f64, u: &[f64], du: &mut [f64]) {
+    fn derivatives(&self, mode: usize, t: f64, u: &[f64], du: &mut [f64]) {
         let (y, q) = (u[1], u[2] - u[3]);
         let force = self.force(t);
-        let rates = match phase {
+        let rates = match Phase::ALL[mode] {
             Phase::NoContact => [y, force, -q / self.two_xi, 0.0],
             Phase::Contact => [y, -self.two_xi * y - q + force, y, 0.0],
             Phase::Progression => [y, force - 1.0, y, y + (q - 1.0) / self.two_xi],
@@ -85,9 +84,9 @@ impl Equations for OriginalOscillator {
         du[..4].copy_from_slice(&rates);
     }
 
-    fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]) {
+    fn jacobian_product(&self, mode: usize, w: &[f64], dw: &mut [f64]) {
         let (y, q) = (w[1], w[2] - w[3]);
-        let rates = match phase {
+        let rates = match Phase::ALL[mode] {
             Phase::NoContact => [y, 0.0, -q / self.two_xi, 0.0],
             Phase::Contact => [y, -self.two_xi * y - q, y, 0.0],
             Phase::Progression => [y, 0.0, y, y + q / self.two_xi],
@@ -95,31 +94,31 @@ impl Equations for OriginalOscillator {
         dw[..4].copy_from_slice(&rates);
     }
 
-    fn guards(&self, phase: Phase, _: f64, u: &[f64]) -> [f64; GUARDS] {
-        match phase {
+    fn guards(&self, mode: usize, _: f64, u: &[f64]) -> [f64; GUARDS] {
+        match Phase::ALL[mode] {
             Phase::NoContact => [u[0] - u[2] - self.g, NO_GUARD],
             Phase::Contact => [self.contact_force(u) - 1.0, -self.contact_force(u)],
             Phase::Progression => [1.0 - self.contact_force(u), NO_GUARD],
         }
     }
 
-    fn rates(&self, phase: Phase, t: f64, u: &[f64]) -> [f64; GUARDS] {
-        if phase == Phase::NoContact {
+    fn rates(&self, mode: usize, t: f64, u: &[f64]) -> [f64; GUARDS] {
+        if Phase::ALL[mode] == Phase::NoContact {
             return [self.contact_force(u) / self.two_xi, 0.0];
         }
         let mut du = [0.0; 4];
-        self.derivatives(phase, t, u, &mut du);
+        self.derivatives(mode, t, u, &mut du);
         let rate = self.two_xi * du[1] + (du[2] - du[3]);
-        if phase == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
+        if Phase::ALL[mode] == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
     }
 
-    fn after_event(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+    fn after_event(&self, mode: usize, guard: usize, _: f64, u: &[f64; 4]) -> (usize, [f64; 4]) {
         let [_, y, mut z, v] = *u;
-        let (next, imposed) = successor(phase, guard, self.contact_force(u));
+        let (next, imposed) = successor(Phase::ALL[mode], guard, self.contact_force(u));
         if let Some(force) = imposed {
             z = v + (force - self.two_xi * y);
         }
-        (next, [z + self.g, y, z, v])
+        (place(next), [z + self.g, y, z, v])
     }
 
     fn settle(&self, _: Entered, u: &[f64], guards: &mut [f64; GUARDS]) {
@@ -142,26 +141,26 @@ mod tests {
         let near = |left: [f64; 4], right: [f64; 4]| {
             left.iter().zip(right).all(|(a, b)| (a - b).abs() <= 1e-13 * (1.0 + b.abs()))
         };
-        for phase in [Phase::NoContact, Phase::Contact, Phase::Progression] {
+        for phase in Phase::ALL.map(place) {
             let u = original.of_bounded(&state);
             let (mut du, mut expected) = ([0.0; 4], [0.0; 4]);
             original.derivatives(phase, 0.7, &u, &mut du);
             bounded.derivatives(phase, 0.7, &state, &mut expected);
-            assert!(near(original.reported(&du), expected), "{phase:?}");
+            assert!(near(original.reported(&du), expected), "{phase}");
             original.jacobian_product(phase, &u, &mut du);
             bounded.jacobian_product(phase, &state, &mut expected);
-            assert!(near(original.reported(&du), expected), "{phase:?}");
+            assert!(near(original.reported(&du), expected), "{phase}");
             for guard in 0..GUARDS {
                 let (next, there) = original.after_event(phase, guard, 0.7, &u);
                 let (expected, state) = bounded.after_event(phase, guard, 0.7, &state);
                 assert_eq!(next, expected);
-                assert!(near(original.reported(&there), state), "{phase:?} {guard}");
+                assert!(near(original.reported(&there), state), "{phase} {guard}");
             }
             let differences = [
                 original.guards(phase, 0.7, &u)[0] - bounded.guards(phase, 0.7, &state)[0],
                 original.rates(phase, 0.7, &u)[0] - bounded.rates(phase, 0.7, &state)[0],
             ];
-            assert!(differences.iter().all(|it| it.abs() < 1e-12), "{phase:?} {differences:?}");
+            assert!(differences.iter().all(|it| it.abs() < 1e-12), "{phase} {differences:?}");
         }
     }
 }

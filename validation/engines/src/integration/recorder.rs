@@ -8,12 +8,12 @@ const MOST: usize = 20_000;
 
 /// Records inside a window.
 #[derive(Debug)]
-pub(crate) struct Recorder<M> {
+pub(crate) struct Recorder {
     window: [f64; 2],
-    trace: RefCell<Trace<M>>,
+    trace: RefCell<Trace>,
 }
 
-impl<M> Recorder<M> {
+impl Recorder {
     pub(crate) fn new(watched: &Watched) -> Self {
         Self { window: watched.window, trace: RefCell::default() }
     }
@@ -40,7 +40,7 @@ impl<M> Recorder<M> {
     }
 
     /// Records one evaluation of a guard.
-    pub(crate) fn look(&self, look: GuardSample<M>) {
+    pub(crate) fn look(&self, look: GuardSample) {
         let looks = &mut self.trace.borrow_mut().looks;
         if self.holds(look.t) && looks.len() < MOST {
             looks.push(look);
@@ -53,7 +53,7 @@ impl<M> Recorder<M> {
     }
 
     /// Moves the recording into the outcome.
-    pub(crate) fn hand_over<S>(&self, outcome: &mut Outcome<M, S>) {
+    pub(crate) fn hand_over(&self, outcome: &mut Outcome) {
         outcome.trace = Some(self.trace.take());
     }
 }
@@ -61,15 +61,14 @@ impl<M> Recorder<M> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use percuss::Phase;
 
     #[test]
     fn only_what_lies_in_the_window_is_kept() {
         let recorder = Recorder::new(&Watched { window: [1.0, 2.0], instants: Vec::new() });
         [0.5, 1.0, 2.0, 2.5].into_iter().for_each(|t| recorder.step(t));
-        let look = |t, guard| GuardSample { t, mode: Phase::Contact, guard, value: -0.25 };
+        let look = |t, guard| GuardSample { t, mode: 1, guard, value: -0.25 };
         [look(0.5, 1), look(1.5, 0), look(3.0, 0)].into_iter().for_each(|it| recorder.look(it));
-        let mut outcome: Outcome<Phase> = Outcome::default();
+        let mut outcome = Outcome::default();
         recorder.hand_over(&mut outcome);
         let expected = Trace { steps: vec![1.0, 2.0], looks: vec![look(1.5, 0)] };
         assert_eq!(outcome.trace, Some(expected));
@@ -77,8 +76,7 @@ mod tests {
 
     #[test]
     fn a_step_in_which_a_phase_ends_is_taken_back() {
-        let recorder =
-            Recorder::<Phase>::new(&Watched { window: [0.0, 9.0], instants: Vec::new() });
+        let recorder = Recorder::new(&Watched { window: [0.0, 9.0], instants: Vec::new() });
         [1.0, 2.0].into_iter().for_each(|t| recorder.step(t));
         recorder.back_to(1.5);
         [1.75, 4.0, 3.0].into_iter().for_each(|t| recorder.step(t));
@@ -87,8 +85,7 @@ mod tests {
 
     #[test]
     fn the_memory_is_bounded() {
-        let recorder =
-            Recorder::<Phase>::new(&Watched { window: [0.0, 1.0], instants: Vec::new() });
+        let recorder = Recorder::new(&Watched { window: [0.0, 1.0], instants: Vec::new() });
         (0..=MOST).for_each(|_| recorder.step(0.5));
         assert_eq!(recorder.trace.take().steps.len(), MOST);
     }

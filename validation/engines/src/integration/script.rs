@@ -36,8 +36,8 @@ struct AnswerLines {
 impl Script {
     /// The crossings of a run that found these events.
     #[must_use]
-    pub fn of<M, S>(events: &[Event<M, S>]) -> Self {
-        let crossing = |event: &Event<M, S>| GuardRise { t: event.elapsed, guard: event.event };
+    pub fn of(events: &[Event]) -> Self {
+        let crossing = |event: &Event| GuardRise { t: event.elapsed, guard: event.event };
         let crossings = events.iter().map(crossing).collect();
         Self(Rc::new(AnswerLines { crossings, read: Cell::new(false) }))
     }

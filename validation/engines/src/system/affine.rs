@@ -61,7 +61,6 @@ impl<'a> Affine<'a> {
 }
 
 impl Equations for Affine<'_> {
-    type Mode = usize;
     type State = Values;
     type Guards = Guards;
 

@@ -11,7 +11,7 @@ use super::timed::{ContestEntry, TimedRun};
 use super::timed_case::{Score, TimedCase};
 use super::timed_system_case::TimedSystemCase;
 use crate::engine::{
-    Accuracy, Declaration, Engine, Failure, Limits, OscillatorOutcome, Outcome, Stepping, Task,
+    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Task,
     Work, contain, least_work,
 };
 use crate::number::brief;
@@ -157,7 +157,7 @@ impl Benchmark for EngineBenchmark<'_> {
 
 impl TimedRun for EngineBenchmark<'_> {
     fn score(&self) -> Result<Score, Failure> {
-        self.case.score(&OscillatorOutcome::of_system(self.answer.clone())?)
+        self.case.score(&self.answer)
     }
 
     fn work(&self) -> Work {

@@ -9,7 +9,7 @@ use super::rounds::Benchmark;
 use super::timed::TimedRun;
 use super::timed_case::{Score, TimedCase};
 use crate::engine::contain;
-use crate::engine::{Accuracy, Declaration, Failure, OscillatorOutcome, Work};
+use crate::engine::{Accuracy, Declaration, Failure, Outcome, Work};
 use crate::integrators::{exact, run_in_lanes};
 use percuss::lanes::Instructions;
 
@@ -40,7 +40,7 @@ impl Contestant for ExactLanes {
 
 struct Many<'a> {
     case: &'a TimedCase,
-    answers: Vec<OscillatorOutcome>,
+    answers: Vec<Outcome>,
 }
 
 impl Benchmark for Many<'_> {

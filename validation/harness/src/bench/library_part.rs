@@ -8,9 +8,10 @@
 
 use super::rounds::Benchmark;
 use super::timed_case::TimedCase;
-use crate::engine::{Accuracy, Engine, Failure, Limits, OscillatorOutcome, Outcome, Task, contain};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Numbers, Outcome, Task, contain};
 use crate::integration::Script;
 use crate::integrators::exact;
+use crate::system::Values;
 use percuss::Step;
 use std::hint::black_box;
 
@@ -31,7 +32,7 @@ pub fn library_part<'a>(
     let task = Task::of_oscillator(&case.task)?;
     let answer = contain(|| engine.run(&task, setting, &limits))?;
     if engine.declaration().name == exact().declaration().name {
-        let end = OscillatorOutcome::of_system(answer)?.end;
+        let end = answer.end;
         return Ok(Some(Box::new(ExactSteps { case, end, last: end })));
     }
     told(answer, move || engine.run(&task, setting, &limits))
@@ -41,14 +42,10 @@ pub fn library_part<'a>(
 ///
 /// # Errors
 /// Why it is not the same run.
-pub fn told<'a, M, S>(
-    answer: Outcome<M, S>,
-    run: impl Fn() -> Result<Outcome<M, S>, Failure> + 'a,
-) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure>
-where
-    M: Clone + PartialEq + 'a,
-    S: Clone + PartialEq + 'a,
-{
+pub fn told<'a>(
+    answer: Outcome,
+    run: impl Fn() -> Result<Outcome, Failure> + 'a,
+) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
     let script = Script::of(&answer.events);
     let last = answer.clone();
     let mut told = ToldRun { run, script, answer, last };
@@ -58,19 +55,14 @@ where
 }
 
 /// An integrator's run that is told its events.
-struct ToldRun<M, S, F> {
+struct ToldRun<F> {
     run: F,
     script: Script,
-    answer: Outcome<M, S>,
-    last: Outcome<M, S>,
+    answer: Outcome,
+    last: Outcome,
 }
 
-impl<M, S, F> Benchmark for ToldRun<M, S, F>
-where
-    M: PartialEq,
-    S: PartialEq,
-    F: Fn() -> Result<Outcome<M, S>, Failure>,
-{
+impl<F: Fn() -> Result<Outcome, Failure>> Benchmark for ToldRun<F> {
     fn call(&mut self) -> Result<(), Failure> {
         let run = &self.run;
         self.last = self.script.follow(|| contain(run))?;
@@ -90,8 +82,8 @@ where
 /// The exact solver's steps to the horizon, without a table.
 struct ExactSteps<'a> {
     case: &'a TimedCase,
-    end: [f64; 4],
-    last: [f64; 4],
+    end: Values,
+    last: Values,
 }
 
 impl Benchmark for ExactSteps<'_> {
@@ -106,7 +98,7 @@ impl Benchmark for ExactSteps<'_> {
                 }
                 Step::Last(segment) => {
                     let end = segment.at_instant(&task.horizon);
-                    self.last = [end.state.p, end.state.y, end.state.q, end.v];
+                    self.last = Values::of(&[end.state.p, end.state.y, end.state.q, end.v]);
                     return Ok(());
                 }
             }

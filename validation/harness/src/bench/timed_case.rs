@@ -2,7 +2,7 @@
 //! held to.
 
 use crate::case::{Case, FileError, Given};
-use crate::engine::{Failure, OscillatorEvent, OscillatorOutcome, OscillatorTask, SampleGrid};
+use crate::engine::{Event, Failure, OscillatorTask, Outcome, SampleGrid, place};
 use crate::number::brief;
 use crate::score::{Matching, SCORED_ERROR, WINDOW, occurrences, worst};
 use crate::truth::{Library, Truth, TruthRow};
@@ -121,7 +121,7 @@ impl TimedCase {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn score(&self, answer: &OscillatorOutcome) -> Result<Score, Failure> {
+    pub fn score(&self, answer: &Outcome) -> Result<Score, Failure> {
         let truth = &self.truth.events;
         let window = WINDOW * self.task.problem.model.period();
         let same = truth.len() == answer.events.len()
@@ -153,11 +153,11 @@ impl TimedCase {
     }
 }
 
-fn is_same(row: &TruthRow, event: &OscillatorEvent, window: f64) -> bool {
-    row.phase == Some(event.mode) && off(row.elapsed, event.elapsed) <= window
+fn is_same(row: &TruthRow, event: &Event, window: f64) -> bool {
+    row.phase.map(place) == Some(event.mode) && off(row.elapsed, event.elapsed) <= window
 }
 
-fn state_error(row: &TruthRow, state: &[f64; 4]) -> f64 {
+fn state_error(row: &TruthRow, state: &[f64]) -> f64 {
     worst((0..3).map(|k| off(row.state[k], state[k])))
 }
 

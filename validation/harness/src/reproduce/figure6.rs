@@ -5,7 +5,7 @@ use super::integrated::{integrator, representatives};
 use super::item_work::{Findings, ItemWork};
 use super::paper::chaotic_model;
 use crate::case;
-use crate::engine::{Accuracy, Engine, Failure, Limits, answer_oscillator};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Task, answer};
 use crate::integrators;
 use crate::number::shortest;
 use crate::picture::{Figure, INK, Layer, Plot, caption, phase_colour};
@@ -42,7 +42,7 @@ fn section(engine: &dyn Engine, accuracy: Accuracy) -> Result<RunSection, Failur
     let refused = || Failure::new("the start is refused");
     let task = run_of(chaotic_model(), Start::default(), TRANSIENT + POINTS).ok_or_else(refused)?;
     let limits = Limits { calls: 1_000_000_000, events: 1_000_000, ..Limits::default() };
-    RunSection::of(&task, &answer_oscillator(engine, &task, accuracy, &limits)?, TRANSIENT)
+    RunSection::of(&task, &answer(engine, &Task::of_oscillator(&task)?, accuracy, &limits)?, TRANSIENT)
 }
 
 /// Each integrator's section against the reference, in units of the calibrated limits.

@@ -3,7 +3,7 @@
 use super::attractors::start;
 use super::paper::attractors_model;
 use crate::engine::{
-    Accuracy, Engine, Failure, Limits, Location, Role, Stepping, answer_oscillator,
+    Accuracy, Engine, Failure, Limits, Location, Role, Stepping, Task, answer,
 };
 use crate::integrators;
 use crate::score::attractor::run_of;
@@ -39,6 +39,8 @@ pub(super) fn strobes(
     let task = run_of(attractors_model(omega), start(point), periods);
     let task = task.ok_or_else(|| Failure::new("the start is refused"))?;
     let limits = Limits { calls: 1_000_000_000, ..Limits::default() };
-    let outcome = answer_oscillator(engine, &task, Accuracy::Tolerance(tolerance), &limits)?;
-    Ok((format!("{name}, tolerance {tolerance:e}"), outcome.samples))
+    let task = Task::of_oscillator(&task)?;
+    let outcome = answer(engine, &task, Accuracy::Tolerance(tolerance), &limits)?;
+    let strobes = outcome.samples.iter().map(|it| [it[0], it[1], it[2], it[3]]).collect();
+    Ok((format!("{name}, tolerance {tolerance:e}"), strobes))
 }

@@ -59,7 +59,7 @@ impl Matching {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::score::occurrence::number;
+    use crate::engine::place;
     use percuss::Phase;
     use percuss::Phase::{Contact, NoContact, Progression};
 
@@ -67,7 +67,7 @@ mod tests {
         let event = |(elapsed, phase): &(f64, Phase)| Occurrence {
             elapsed: *elapsed,
             event: 0,
-            mode: Some(number(*phase)),
+            mode: Some(place(*phase)),
         };
         events.iter().map(event).collect()
     }

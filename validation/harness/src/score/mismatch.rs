@@ -135,13 +135,13 @@ impl Mismatch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::score::occurrence::number;
+    use crate::engine::place;
     use percuss::Phase::{self, Contact, NoContact};
 
     const WINDOW: f64 = 0.1;
 
     fn event((elapsed, phase): (f64, Phase)) -> Occurrence {
-        Occurrence { elapsed, event: 0, mode: Some(number(phase)) }
+        Occurrence { elapsed, event: 0, mode: Some(place(phase)) }
     }
 
     fn graze(elapsed: f64, margin: f64, events: impl IntoIterator<Item = usize>) -> Graze {
@@ -150,7 +150,7 @@ mod tests {
             margin,
             growth: 1.0,
             events: events.into_iter().collect(),
-            mode: number(NoContact),
+            mode: place(NoContact),
             event: None,
             ends: true,
             makes: 2,

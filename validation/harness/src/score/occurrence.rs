@@ -1,8 +1,7 @@
 //! Events as matching sees them, of the oscillator and of any other system alike.
 
-use crate::engine::OscillatorEvent;
+use crate::engine::{Event, place};
 use crate::truth::TruthRow;
-use percuss::Phase;
 
 /// The time and the identity of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,19 +26,14 @@ impl Occurrence {
 
 impl From<&TruthRow> for Occurrence {
     fn from(row: &TruthRow) -> Self {
-        Self { elapsed: row.elapsed.value(), event: 0, mode: row.phase.map(number) }
+        Self { elapsed: row.elapsed.value(), event: 0, mode: row.phase.map(place) }
     }
 }
 
-impl From<&OscillatorEvent> for Occurrence {
-    fn from(event: &OscillatorEvent) -> Self {
-        Self { elapsed: event.elapsed, event: 0, mode: Some(number(event.mode)) }
+impl From<&Event> for Occurrence {
+    fn from(event: &Event) -> Self {
+        Self { elapsed: event.elapsed, event: 0, mode: Some(event.mode) }
     }
-}
-
-/// The number of a phase among the oscillator's modes.
-pub(super) const fn number(phase: Phase) -> usize {
-    phase as usize
 }
 
 /// Events as matching sees them.

@@ -2,10 +2,10 @@
 
 use super::probes::{Extent, Probes, may_probe};
 use super::scope::{Suite, SuiteScope};
-use crate::case::{Bound, Case, Defaults, FileError, Shortcoming};
+use crate::case::{Bound, Case, Defaults, FileError, Shortcoming, percussive_oscillator};
 use crate::engine::{
-    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, Outcome, Role,
-    SampleGrid, Task, Work, answer, least_work,
+    Accuracy, Ended, Engine, Failure, Limits, OscillatorTask, Outcome, Role, SampleGrid, Task, answer,
+    least_work,
 };
 use crate::number::brief;
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
@@ -13,9 +13,11 @@ use crate::score::{
     Expected, Graze, Measures, Occurrence, RowJudgement, RunGrowth, ScoredRun, Subject, Verdict,
     WINDOW, grazes, judge, measure, occurrences,
 };
+use crate::system::SystemProblem;
 use crate::truth::{Library, Truth};
 use percuss::Parameters;
 use rayon::prelude::*;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A case made ready: checked, with its truth and the growth along it.
@@ -29,6 +31,8 @@ pub struct Prepared {
     /// The places at which the case's guards come close to a threshold.
     pub grazes: Vec<Graze>,
     occurrences: Vec<Occurrence>,
+    /// The same run as one of the system `percussive-oscillator`, with exact coefficients.
+    pub exact: Arc<SystemProblem>,
     task: OscillatorTask,
     asked: Task,
     probes: Probes,
@@ -92,54 +96,16 @@ pub struct Measured {
     /// The measures of the run.
     pub measures: Measures,
     /// The engine's answer.
-    pub answered: Answered,
+    pub outcome: Outcome,
     /// Wall time.
     pub wall: Duration,
-}
-
-/// An engine's answer.
-#[derive(Clone, Debug)]
-pub enum Answered {
-    /// A run of the oscillator.
-    Oscillator(OscillatorOutcome),
-    /// A run of another system.
-    System(Outcome),
-}
-
-impl Answered {
-    /// The counted work of the run.
-    #[must_use]
-    pub const fn work(&self) -> Work {
-        match self {
-            Self::Oscillator(outcome) => outcome.work,
-            Self::System(outcome) => outcome.work,
-        }
-    }
-
-    /// The time that the integrator itself reports, where it runs in a program of its own.
-    #[must_use]
-    pub const fn own_time(&self) -> Option<Duration> {
-        match self {
-            Self::Oscillator(outcome) => outcome.own_time,
-            Self::System(outcome) => outcome.own_time,
-        }
-    }
-
-    /// The run of the oscillator, if it is one.
-    #[must_use]
-    pub const fn oscillator(&self) -> Option<&OscillatorOutcome> {
-        match self {
-            Self::Oscillator(outcome) => Some(outcome),
-            Self::System(_) => None,
-        }
-    }
 }
 
 /// The ending of a run.
 #[derive(Clone, Debug)]
 pub enum Status {
     /// The run has a result.
-    Ok(Box<Measures>, Box<Answered>),
+    Ok(Box<Measures>, Box<Outcome>),
     /// The run has no result; the reason.
     Failed(Failure),
     /// The engine is not installed.
@@ -204,7 +170,10 @@ fn prepare_one(
     let probes = probes.unwrap_or_default();
     let occurrences = occurrences(&truth.events);
     let asked = Task::of_oscillator(&task).map_err(|it| FileError::of(&case.file, it))?;
-    Ok(Prepared { case, truth, growth, grazes, occurrences, task, asked, probes })
+    let system = percussive_oscillator(&problem)?;
+    let exact = SystemProblem::new(system, false).map_err(|it| FileError::of(&case.file, it))?;
+    let exact = Arc::new(exact);
+    Ok(Prepared { case, truth, growth, grazes, occurrences, exact, task, asked, probes })
 }
 
 impl Prepared {
@@ -220,11 +189,13 @@ impl Prepared {
         unit: f64,
         limits: &Limits,
         extent: impl FnOnce(f64) -> Extent,
-    ) -> Result<(Measures, OscillatorOutcome, Duration), Failure> {
+    ) -> Result<(Measures, Outcome, Duration), Failure> {
         let began = Instant::now();
         let outcome = answer(engine, &self.asked, accuracy, limits)?;
         let wall = began.elapsed();
-        let outcome = OscillatorOutcome::of_system(outcome)?;
+        if outcome.ended != Ended::Horizon {
+            return Err(Failure::new(format!("the run ended early: {:?}", outcome.ended)));
+        }
         let mut measures = measure(&self.task, &self.truth, &self.growth, &outcome, unit);
         let periods = self.task.span / self.task.problem.model.period();
         let extent = extent(outcome.work.rhs_evaluations as f64 / periods.max(1.0));
@@ -271,7 +242,7 @@ impl CaseRun for Prepared {
         let role = engine.declaration().role;
         let extent = |work| self.probes.extent(suite, &self.case, role, asked, work);
         let (measures, outcome, wall) = self.measured(engine, asked.0, asked.1, limits, extent)?;
-        Ok(Measured { measures, answered: Answered::Oscillator(outcome), wall })
+        Ok(Measured { measures, outcome, wall })
     }
 
     fn as_run<'a>(&'a self, measures: &'a Measures) -> ScoredRun<'a> {
@@ -380,9 +351,9 @@ pub fn one(
     let shortcomings: Vec<_> = own_shortcomings.iter().chain(&defaults.shortcomings).collect();
     let expected = Expected { bounds: &bounds, of_classes, shortcomings: &shortcomings };
     match case.attempt(engine, (accuracy, unit), &case.limits(suite), suite) {
-        Ok(Measured { measures, answered, wall }) => {
+        Ok(Measured { measures, outcome, wall }) => {
             let judgement = judge(&subject, &case.as_run(&measures), &expected);
-            row(Status::Ok(Box::new(measures), Box::new(answered)), wall, judgement)
+            row(Status::Ok(Box::new(measures), Box::new(outcome)), wall, judgement)
         }
         Err(failure) if failure.is_beyond_limits => {
             without(Status::NotRun, Verdict::NotRun, failure.reason)

@@ -6,7 +6,7 @@ mod scope;
 mod system;
 
 pub use matrix::{
-    Answered, CaseRun, Measured, Prepared, Scored, Status, one, prepare, probes_any, run, size,
+    CaseRun, Measured, Prepared, Scored, Status, one, prepare, probes_any, run, size,
 };
 pub use probes::{Extent, is_shown};
 pub use scope::{Suite, SuiteScope};

@@ -3,7 +3,7 @@
 
 use super::scope::Suite;
 use crate::case::{Case, FileError, Problem};
-use crate::engine::{Accuracy, Engine, Limits, Role, answer_oscillator, contain};
+use crate::engine::{Accuracy, Engine, Limits, Role, answer, contain};
 use crate::score::attractor::{AttractorTest, Calibrated};
 use crate::score::{HorizonTest, ProbeResults, RestartTest};
 
@@ -87,7 +87,7 @@ impl Probes {
         limits: &Limits,
         extent: Extent,
     ) -> ProbeResults {
-        let run = |task: &_| answer_oscillator(engine, task, accuracy, limits);
+        let run = |task: &_| answer(engine, task, accuracy, limits);
         let restarts = self.restart.as_ref().filter(|_| extent.restarts > 0);
         let restart = restarts.map(|test| test.score_first(extent.restarts, unit, run));
         let asked = self.horizons.as_ref().filter(|_| extent.horizons > 0);

@@ -1,6 +1,6 @@
 //! A piecewise-affine system's case made ready.
 
-use super::matrix::{Answered, CaseRun, Measured};
+use super::matrix::{CaseRun, Measured};
 use super::probes::restarts_on_systems;
 use super::scope::Suite;
 use crate::case::{Bound, Defaults, FileError, Shortcoming, SystemCase};
@@ -77,7 +77,7 @@ impl PreparedSystem {
         let wall = began.elapsed();
         let scale = SystemScale::of((accuracy, unit), &self.grazes, &self.decisions);
         let measures = measure_system(&self.task, &self.truth, &self.names, &outcome, scale);
-        Ok(Measured { measures, answered: Answered::System(outcome), wall })
+        Ok(Measured { measures, outcome, wall })
     }
 
     /// How many restarts of a test a suite asks of an engine whose run of the case took so many
@@ -143,7 +143,7 @@ impl CaseRun for PreparedSystem {
         suite: Suite,
     ) -> Result<Measured, Failure> {
         let mut measured = self.measured(engine, (accuracy, unit), limits)?;
-        let work = measured.answered.work().rhs_evaluations;
+        let work = measured.outcome.work.rhs_evaluations;
         let asked = restarts_on_systems(suite, engine.declaration().role, accuracy);
         if let Some(test) = self.restart.as_ref().filter(|_| asked) {
             let most = self.restarts(test, suite, work);

@@ -8,7 +8,7 @@ use crate::case::{Case, Given};
 use crate::engine::{Engine, Limits, OscillatorTask, SampleGrid};
 use crate::integrators;
 use crate::score::Verdict;
-use crate::suite::{Answered, Prepared, PreparedSystem, Scored, Status, Suite};
+use crate::suite::{Prepared, PreparedSystem, Scored, Status, Suite};
 use crate::truth::Truth;
 use rayon::prelude::*;
 
@@ -58,30 +58,24 @@ fn candidate<'a>(
     (cases, systems): (&'a [Prepared], &'a [PreparedSystem]),
     row: &'a Scored,
 ) -> Option<RowChoice<'a>> {
-    let Status::Ok(measures, answered) = &row.status else { return None };
+    let Status::Ok(measures, outcome) = &row.status else { return None };
     let mismatch = &measures.mismatch;
     let wrong = !(mismatch.missed.is_empty() && mismatch.spurious.is_empty());
-    let affordable = answered.work().rhs_evaluations <= MOST_WORK;
+    let affordable = outcome.work.rhs_evaluations <= MOST_WORK;
     if !affordable || !(wrong || row.judgement.verdict == Verdict::Fail) {
         return None;
     }
     let engine = *integrators::all().iter().find(|it| it.declaration().name == row.engine)?;
-    let steps = answered.work().steps.max(1) as f64;
-    match &**answered {
-        Answered::Oscillator(_) => {
-            let prepared = cases.iter().find(|it| it.case.name == row.case)?;
-            of_oscillator(prepared, row, (engine, steps))
-        }
-        Answered::System(outcome) => {
-            let prepared = systems.iter().find(|it| it.case.name == row.case)?;
-            let it = system::SystemMismatch::first(prepared, measures, outcome, row)?;
-            let mean_step = prepared.task.span / steps;
-            let draw = move |limits: &Limits| {
-                system::picture(prepared, row, &it, (engine, mean_step, limits))
-            };
-            Some(RowChoice { row, draw: Box::new(draw) })
-        }
+    let steps = outcome.work.steps.max(1) as f64;
+    if let Some(prepared) = cases.iter().find(|it| it.case.name == row.case) {
+        return of_oscillator(prepared, row, (engine, steps));
     }
+    let prepared = systems.iter().find(|it| it.case.name == row.case)?;
+    let it = system::SystemMismatch::first(prepared, measures, outcome, row)?;
+    let mean_step = prepared.task.span / steps;
+    let draw =
+        move |limits: &Limits| system::picture(prepared, row, &it, (engine, mean_step, limits));
+    Some(RowChoice { row, draw: Box::new(draw) })
 }
 
 fn of_oscillator<'a>(

@@ -48,7 +48,8 @@ impl GuardCurve {
     }
 
     /// The guard's value at an engine's state.
-    pub(super) fn of_state(self, it: &Parameters, [p, y, q, _]: &[f64; 4]) -> f64 {
+    pub(super) fn of_state(self, it: &Parameters, state: &[f64]) -> f64 {
+        let [p, y, q] = [state[0], state[1], state[2]];
         match self {
             Self::Gap => p - q - it.g,
             Self::SlidingForce => 2.0 * it.xi * y + q - 1.0,
@@ -57,8 +58,8 @@ impl GuardCurve {
     }
 
     /// The guard's value where a search looked at it; `None` where it looked at other guards.
-    pub(super) fn of_look(self, look: &GuardSample<Phase>) -> Option<f64> {
-        match (self, look.mode, look.guard) {
+    pub(super) fn of_look(self, look: &GuardSample) -> Option<f64> {
+        match (self, Phase::ALL[look.mode], look.guard) {
             (Self::Gap, Phase::NoContact, 0) | (Self::SlidingForce, Phase::Contact, 0) => {
                 Some(look.value)
             }
@@ -72,7 +73,7 @@ impl GuardCurve {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::Equations;
+    use crate::engine::{Equations, place};
     use crate::integration::{GUARDS, Oscillator};
 
     /// A look at an engine's guard shows what the curve shows at the same state.
@@ -83,8 +84,10 @@ mod tests {
         let equations = Oscillator::of(&parameters, 0.3);
         let mut seen = 0;
         for phase in Phase::ALL {
-            for (guard, value) in equations.guards(phase, 0.7, &state).into_iter().enumerate() {
-                let look = GuardSample { t: 0.0, mode: phase, guard, value };
+            for (guard, value) in
+                equations.guards(place(phase), 0.7, &state).into_iter().enumerate()
+            {
+                let look = GuardSample { t: 0.0, mode: place(phase), guard, value };
                 for it in [GuardCurve::Gap, GuardCurve::SlidingForce, GuardCurve::PartingForce] {
                     let Some(shown) = it.of_look(&look) else { continue };
                     seen += 1;

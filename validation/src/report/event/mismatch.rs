@@ -1,7 +1,7 @@
 //! The first event of a run that is not as it should be.
 
 use super::guarded::GuardCurve;
-use crate::engine::{OscillatorEvent, OscillatorOutcome, OscillatorTask};
+use crate::engine::{Event, OscillatorTask, Outcome};
 use crate::score::{Matching, Measures, RunGrowth, Verdict, WINDOW, occurrences};
 use crate::suite::{Prepared, Scored, Status};
 use crate::truth::{Truth, TruthRow};
@@ -42,8 +42,7 @@ impl EventMismatch {
     /// The first missed or spurious event before the scored horizon; in a row that is out of bounds
     /// without one, the event that is farthest from its place.
     pub(super) fn first(prepared: &Prepared, task: &OscillatorTask, row: &Scored) -> Option<Self> {
-        let Status::Ok(measures, answered) = &row.status else { return None };
-        let outcome = answered.oscillator()?;
+        let Status::Ok(measures, outcome) = &row.status else { return None };
         let Sides { truth, engine, pairs } = Sides::of(&prepared.truth, task, measures, outcome);
         let missed = (0..truth.counted).find(|i| pairs.iter().all(|pair| pair.0 != *i));
         let missed = missed.map(|i| (truth.times[i], MismatchKind::Missed, i));
@@ -99,12 +98,7 @@ struct EventsOf {
 }
 
 impl Sides {
-    fn of(
-        truth: &Truth,
-        task: &OscillatorTask,
-        measures: &Measures,
-        outcome: &OscillatorOutcome,
-    ) -> Self {
+    fn of(truth: &Truth, task: &OscillatorTask, measures: &Measures, outcome: &Outcome) -> Self {
         let period = task.problem.model.period();
         let horizon = measures.horizon_periods * period * (1.0 + HORIZON_ROUNDING);
         let window = WINDOW * period;
@@ -112,7 +106,7 @@ impl Sides {
         let rows = truth.events.iter().take_while(|row| near(row.elapsed.value()));
         let rows: Vec<TruthRow> = rows.copied().collect();
         let found = outcome.events.iter().take_while(|event| near(event.elapsed));
-        let found: Vec<OscillatorEvent> = found.copied().collect();
+        let found: Vec<Event> = found.copied().collect();
         let pairs = Matching::of(&occurrences(&rows), &occurrences(&found), window).pairs;
         let phase = |row: &TruthRow| row.phase.unwrap_or(task.phase);
         let of = |times: Vec<f64>, phases| EventsOf {
@@ -128,7 +122,7 @@ impl Sides {
             ),
             engine: of(
                 found.iter().map(|event| event.elapsed).collect(),
-                found.iter().map(|event| event.mode).collect(),
+                found.iter().map(|event| Phase::ALL[event.mode]).collect(),
             ),
             pairs,
         }

@@ -4,10 +4,10 @@ use super::guarded::GuardCurve;
 use super::mismatch::EventMismatch;
 use super::scales::Scales;
 use super::{EventMark, EventPicture, View, ViewTrajectory};
-use crate::engine::{Engine, Limits, OscillatorOutcome, OscillatorTask, Task, Watched, contain};
+use crate::engine::{Engine, Limits, OscillatorTask, Outcome, Task, Watched, contain};
 use crate::suite::{Prepared, Scored};
 use crate::truth::Replay;
-use percuss::TwoWord;
+use percuss::{Phase, TwoWord};
 
 /// Marks of steps and looks nearer to each other than this share of a view are shown as one.
 const APART: f64 = 1.0 / 120.0;
@@ -31,8 +31,7 @@ pub(super) fn picture(
     let task = OscillatorTask { watched: Some(watched), ..task.clone() };
     // An engine that records nothing gives no states at the instants, and its events are drawn.
     let asked = Task::of_oscillator(&task).ok()?;
-    let outcome = contain(|| engine.run(&asked, row.accuracy, limits));
-    let outcome = outcome.and_then(OscillatorOutcome::of_system).ok()?;
+    let outcome = contain(|| engine.run(&asked, row.accuracy, limits)).ok()?;
     let trace = outcome.trace.as_ref();
     let looks = trace.map_or(&[][..], |trace| &trace.looks);
     let looks = looks.iter().filter_map(|look| Some([look.t, it.guarded.of_look(look)?]));
@@ -72,10 +71,12 @@ fn truth_events(prepared: &Prepared, it: &EventMismatch) -> Vec<(f64, String, bo
     prepared.truth.events.iter().enumerate().filter_map(mark).collect()
 }
 
-fn engine_events(outcome: &OscillatorOutcome, it: &EventMismatch) -> Vec<(f64, String, bool)> {
+fn engine_events(outcome: &Outcome, it: &EventMismatch) -> Vec<(f64, String, bool)> {
     let is_known = |j: usize| it.pairs.iter().any(|pair| pair.1 == j);
     let events = outcome.events.iter().enumerate();
-    events.map(|(j, event)| (event.elapsed, event.mode.as_str().to_owned(), is_known(j))).collect()
+    events
+        .map(|(j, event)| (event.elapsed, Phase::ALL[event.mode].as_str().to_owned(), is_known(j)))
+        .collect()
 }
 
 /// The true values, by the run made again in 106 bits.
@@ -101,7 +102,7 @@ fn truth_at(task: &OscillatorTask, guarded: GuardCurve, instants: &[f64]) -> Opt
 }
 
 /// The engine's values, where it records.
-fn engine_at(task: &OscillatorTask, guarded: GuardCurve, outcome: &OscillatorOutcome) -> Vec<f64> {
+fn engine_at(task: &OscillatorTask, guarded: GuardCurve, outcome: &Outcome) -> Vec<f64> {
     let states = outcome.samples.iter().filter(|_| outcome.trace.is_some());
     states.map(|state| guarded.of_state(&task.parameters, state)).collect()
 }

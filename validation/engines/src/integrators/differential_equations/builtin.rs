@@ -55,7 +55,7 @@ impl Engine for BuiltIn {
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
             let integration = Integration::<Oscillator>::of(own);
-            return run(&integration, accuracy, limits).map(Into::into);
+            return run(&integration, accuracy, limits);
         }
         let integration = Integration::of_system(task);
         of_size(integration.state.as_ref().len(), || run(&integration, accuracy, limits))
@@ -67,7 +67,7 @@ fn run<E: Equations<State: State<f64>>>(
     integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
-) -> Result<Outcome<E::Mode, E::State>, Failure> {
+) -> Result<Outcome, Failure> {
     let tolerance = accuracy.wanted_tolerance()?;
     let meter = Meter::new(limits);
     let Integration { equations, span, times, .. } = *integration;

@@ -114,7 +114,7 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
         E::describe(task).map_err(Failure::new)?;
         if let Some(own) = &task.oscillator {
             let integration = Integration::<E>::of(own);
-            return run::<M, _>(&integration, accuracy, limits).map(Into::into);
+            return run::<M, _>(&integration, accuracy, limits);
         }
         let integration = Integration::of_system(task);
         of_size(integration.state.as_ref().len(), || run::<M, _>(&integration, accuracy, limits))
@@ -126,7 +126,7 @@ fn run<M: LibraryMethod, E: Equations<State: State<f64>>>(
     integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
-) -> Result<Outcome<E::Mode, E::State>, Failure> {
+) -> Result<Outcome, Failure> {
     let tolerance = accuracy.wanted_tolerance()?;
     let meter = Meter::new(limits);
     let Integration { equations, span, times, .. } = *integration;
@@ -147,8 +147,8 @@ fn run<M: LibraryMethod, E: Equations<State: State<f64>>>(
 #[derive(Clone, Copy)]
 pub(super) struct ModeField<'a, E: Equations> {
     equations: E,
-    mode: E::Mode,
-    meter: &'a Meter<E::Mode>,
+    mode: usize,
+    meter: &'a Meter,
 }
 
 impl<E: Equations<State: State<f64>>> ODE<f64, E::State> for ModeField<'_, E> {

@@ -10,18 +10,17 @@ use crate::failure::Failure;
 use crate::integration::{Meter, Oscillator};
 use crate::system::Affine;
 use diffsol::{OdeBuilder, OdeSolverProblem};
-use percuss::Phase;
 use std::cell::Cell;
 
 /// The equations of the mode that is run, with who counts the calls.
 #[derive(Clone, Copy)]
-pub(super) struct DiffsolField<'a, E, M> {
+pub(super) struct DiffsolField<'a, E> {
     equations: E,
-    mode: &'a Cell<M>,
-    meter: &'a Meter<M>,
+    mode: &'a Cell<usize>,
+    meter: &'a Meter,
 }
 
-impl<M: Copy, E: Equations<Mode = M>> DiffsolField<'_, E, M> {
+impl<E: Equations> DiffsolField<'_, E> {
     fn rhs(&self, t: f64, u: &[f64], du: &mut [f64]) {
         self.equations.derivatives(self.mode.get(), t, u, du);
         self.meter.rhs(du);
@@ -43,20 +42,20 @@ impl<M: Copy, E: Equations<Mode = M>> DiffsolField<'_, E, M> {
 /// The oscillator, or any other system.
 #[derive(Clone, Copy)]
 pub(super) enum Field<'a> {
-    Oscillator(DiffsolField<'a, Oscillator, Phase>),
-    System(DiffsolField<'a, Affine<'a>, usize>),
+    Oscillator(DiffsolField<'a, Oscillator>),
+    System(DiffsolField<'a, Affine<'a>>),
 }
 
 /// The equations for which diffsol is compiled.
 pub(super) trait DiffsolEquations: Equations {
     /// These equations, with the mode that is run and who counts the calls.
-    fn field<'a>(&self, mode: &'a Cell<Self::Mode>, meter: &'a Meter<Self::Mode>) -> Field<'a>
+    fn field<'a>(&self, mode: &'a Cell<usize>, meter: &'a Meter) -> Field<'a>
     where
         Self: 'a;
 }
 
 impl DiffsolEquations for Oscillator {
-    fn field<'a>(&self, mode: &'a Cell<Phase>, meter: &'a Meter<Phase>) -> Field<'a>
+    fn field<'a>(&self, mode: &'a Cell<usize>, meter: &'a Meter) -> Field<'a>
     where
         Self: 'a,
     {
@@ -65,7 +64,7 @@ impl DiffsolEquations for Oscillator {
 }
 
 impl DiffsolEquations for Affine<'_> {
-    fn field<'a>(&self, mode: &'a Cell<usize>, meter: &'a Meter<usize>) -> Field<'a>
+    fn field<'a>(&self, mode: &'a Cell<usize>, meter: &'a Meter) -> Field<'a>
     where
         Self: 'a,
     {

@@ -74,7 +74,7 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
             let integration = Integration::<Oscillator>::of(own);
-            return run::<M, _>(&integration, accuracy, limits).map(Into::into);
+            return run::<M, _>(&integration, accuracy, limits);
         }
         run::<M, _>(&Integration::of_system(task), accuracy, limits)
     }
@@ -85,7 +85,7 @@ fn run<M: DiffsolMethod, E: DiffsolEquations>(
     integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
-) -> Result<Outcome<E::Mode, E::State>, Failure> {
+) -> Result<Outcome, Failure> {
     let tolerance = accuracy.wanted_tolerance()?;
     let meter = Meter::new(limits);
     let Integration { equations, span, times, .. } = *integration;

@@ -11,13 +11,13 @@ use diffsol::{OdeSolverMethod, OdeSolverProblem, OdeSolverStopReason, StateRefMu
 pub(super) struct DiffsolRun<'a, E: Equations> {
     pub(super) span: f64,
     pub(super) longest: f64,
-    pub(super) meter: &'a Meter<E::Mode>,
+    pub(super) meter: &'a Meter,
     pub(super) equations: E,
 }
 
 /// A root of a guard that does not end the mode.
 struct PassedRoot<E: Equations> {
-    mode: E::Mode,
+    mode: usize,
     guard: usize,
     t: f64,
     state: E::State,
@@ -117,7 +117,7 @@ impl<E: Equations> DiffsolRun<'_, E> {
     }
 
     /// The guards that rise at a root: the library names one, and others may have the same root.
-    fn rising(&self, mode: E::Mode, t: f64, state: &E::State, guard: usize) -> Vec<usize> {
+    fn rising(&self, mode: usize, t: f64, state: &E::State, guard: usize) -> Vec<usize> {
         let values = self.equations.guards(mode, t, state.as_ref());
         let rates = self.equations.rates(mode, t, state.as_ref());
         let rises = |other: &usize| {

@@ -2,8 +2,10 @@
 //! samples.
 
 use crate::case::Problem;
-use crate::engine::{Event, OscillatorOutcome, OscillatorTask, Work};
+use crate::engine::{Event, OscillatorTask, Outcome, Work, place};
+use crate::equations::Numbers;
 use crate::integration::event_between;
+use crate::system::Values;
 use percuss::dynamics::ensemble::{Member, Watcher, follow_by};
 use percuss::lanes::Instructions;
 use percuss::{Endless, Entry, Instant, Phase};
@@ -11,7 +13,7 @@ use std::ops::ControlFlow;
 
 /// The events and the end of one run in lanes.
 struct LaneRecord {
-    outcome: OscillatorOutcome,
+    outcome: Outcome,
     start: Instant,
     omega: f64,
     phase: Phase,
@@ -20,7 +22,7 @@ struct LaneRecord {
 impl Watcher for LaneRecord {
     fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
         let [p, y, q] = strobe.point();
-        self.outcome.end = [p, y, q, strobe.v()];
+        self.outcome.end = Values::of(&[p, y, q, strobe.v()]);
         ControlFlow::Break(())
     }
 
@@ -29,9 +31,9 @@ impl Watcher for LaneRecord {
         let before = std::mem::replace(&mut self.phase, phase.phase());
         self.outcome.events.push(Event {
             event: event_between(before, self.phase),
-            mode: self.phase,
+            mode: place(self.phase),
             elapsed: phase.instant.since(&self.start, self.omega).value(),
-            state: [p, y, q, phase.v()],
+            state: Values::of(&[p, y, q, phase.v()]),
             before: None,
         });
     }
@@ -43,12 +45,12 @@ pub fn run_in_lanes(
     by: Instructions,
     task: &OscillatorTask,
     times: usize,
-) -> Vec<OscillatorOutcome> {
+) -> Vec<Outcome> {
     let Problem { model, entry, .. } = &task.problem;
     let (done, _) = follow_by(by, times, |_| {
         let (start, omega) = (entry.instant, task.parameters.omega);
         let watcher =
-            LaneRecord { outcome: OscillatorOutcome::default(), start, omega, phase: task.phase };
+            LaneRecord { outcome: Outcome::default(), start, omega, phase: task.phase };
         let (first, horizon) = (task.horizon, Some(task.horizon));
         Member { model, entry: *entry, first, horizon, watcher }
     });

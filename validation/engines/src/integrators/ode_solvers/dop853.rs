@@ -87,9 +87,9 @@ impl Engine for Dop853 {
         if let Some(own) = &task.oscillator {
             let integration = Integration::<Oscillator>::of(own);
             return if self.clock {
-                run::<_, U5>(&integration, [true, false], accuracy, limits).map(Into::into)
+                run::<_, U5>(&integration, [true, false], accuracy, limits)
             } else {
-                run::<_, U4>(&integration, [false; 2], accuracy, limits).map(Into::into)
+                run::<_, U4>(&integration, [false; 2], accuracy, limits)
             };
         }
         let integration = Integration::of_system(task);
@@ -104,7 +104,7 @@ fn run<E: Equations, D: Dim>(
     [clock, heun]: [bool; 2],
     accuracy: Accuracy,
     limits: &Limits,
-) -> Result<Outcome<E::Mode, E::State>, Failure>
+) -> Result<Outcome, Failure>
 where
     DefaultAllocator: Allocator<D>,
 {
@@ -132,7 +132,7 @@ struct Dop853Run<'a, E: Equations, D> {
     heun: bool,
     tolerance: f64,
     longest: f64,
-    meter: &'a Meter<E::Mode>,
+    meter: &'a Meter,
     vectors: PhantomData<fn() -> D>,
 }
 
@@ -160,7 +160,7 @@ where
     }
 
     /// The state at `t` by another integration from a point before it, in one step if that will do.
-    fn again(&self, mode: E::Mode, left: &CubicEnd<E::State>, t: f64) -> Result<E::State, Failure> {
+    fn again(&self, mode: usize, left: &CubicEnd<E::State>, t: f64) -> Result<E::State, Failure> {
         let (begin, state) = *left;
         let length = t - begin;
         if length <= TINY * self.longest {
@@ -176,7 +176,7 @@ where
         points.last().map(|last| last.1).ok_or_else(|| Failure::new("took no step"))
     }
 
-    fn rates(&self, mode: E::Mode, t: f64, state: &E::State) -> E::State {
+    fn rates(&self, mode: usize, t: f64, state: &E::State) -> E::State {
         let mut rates = *state;
         self.integration.equations.derivatives(mode, t, state.as_ref(), rates.as_mut());
         self.meter.rhs(rates.as_ref());
@@ -186,7 +186,7 @@ where
     /// The ends of steps up to `until`, or to the first that is outside the mode.
     fn integrate(
         &self,
-        mode: E::Mode,
+        mode: usize,
         from: CubicEnd<E::State>,
         until: f64,
         longest: f64,

@@ -61,7 +61,7 @@ impl<E: Coordinates> Engine for Dopri5<E> {
         E::describe(task).map_err(Failure::new)?;
         if let Some(own) = &task.oscillator {
             let integration = Integration::<E>::of(own);
-            return run::<_, U4>(&integration, accuracy, limits).map(Into::into);
+            return run::<_, U4>(&integration, accuracy, limits);
         }
         let integration = Integration::of_system(task);
         let states = task.system.system().states.len();
@@ -74,7 +74,7 @@ fn run<E: Equations, D: Dim>(
     integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
-) -> Result<Outcome<E::Mode, E::State>, Failure>
+) -> Result<Outcome, Failure>
 where
     DefaultAllocator: Allocator<D>,
 {
@@ -99,11 +99,11 @@ where
 pub(in crate::integrators) struct Dopri5Run<'a, E: Equations, D> {
     integration: &'a Integration<'a, E>,
     tolerance: f64,
-    meter: &'a Meter<E::Mode>,
+    meter: &'a Meter,
     /// The step to begin the next stretch with; zero: the library chooses.
     pub(in crate::integrators) step: f64,
     /// A mode whose derivative is taken at a stretch's begin instead of its own; a fault.
-    pub(in crate::integrators) stale: Option<E::Mode>,
+    pub(in crate::integrators) stale: Option<usize>,
     vectors: PhantomData<fn() -> D>,
 }
 
@@ -141,7 +141,7 @@ where
     pub(in crate::integrators) fn new(
         integration: &'a Integration<'a, E>,
         tolerance: f64,
-        meter: &'a Meter<E::Mode>,
+        meter: &'a Meter,
     ) -> Self {
         Self { integration, tolerance, meter, step: 0.0, stale: None, vectors: PhantomData }
     }

@@ -61,13 +61,13 @@ pub(in crate::integrators) use on_vectors_of;
 #[derive(Clone, Copy)]
 struct TimedField<'a, E: Equations> {
     equations: E,
-    mode: E::Mode,
-    meter: &'a Meter<E::Mode>,
+    mode: usize,
+    meter: &'a Meter,
     /// The state at the mode's beginning: on the surface, and no way out of the mode.
     from: E::State,
     /// A time at which another mode's derivative is taken: the fault of a restart that keeps the
     /// old one. No engine that is scored has it.
-    stale: Option<(f64, E::Mode)>,
+    stale: Option<(f64, usize)>,
 }
 
 impl<E: Equations, D: Dim> System<f64, OVector<f64, D>> for TimedField<'_, E>

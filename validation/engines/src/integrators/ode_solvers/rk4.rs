@@ -52,7 +52,7 @@ impl Engine for Rk4 {
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
             let integration = Integration::<Oscillator>::of(own);
-            return run::<_, U4>(&integration, accuracy, limits).map(Into::into);
+            return run::<_, U4>(&integration, accuracy, limits);
         }
         let integration = Integration::of_system(task);
         let states = task.system.system().states.len();
@@ -65,7 +65,7 @@ fn run<E: Equations, D: Dim>(
     integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
-) -> Result<Outcome<E::Mode, E::State>, Failure>
+) -> Result<Outcome, Failure>
 where
     DefaultAllocator: Allocator<D>,
 {
@@ -78,7 +78,7 @@ where
 struct Rk4Run<'a, E: Equations, D> {
     integration: &'a Integration<'a, E>,
     step: f64,
-    meter: &'a Meter<E::Mode>,
+    meter: &'a Meter,
     vectors: PhantomData<fn() -> D>,
 }
 

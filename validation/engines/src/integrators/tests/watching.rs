@@ -2,23 +2,27 @@
 
 use crate::case::Given;
 use crate::engine::{
-    Accuracy, Engine, Limits, OscillatorEvent, OscillatorOutcome, OscillatorTask, SampleGrid,
-    Stepping, Watched, answer_oscillator,
+    Accuracy, Engine, Event, Limits, OscillatorTask, Outcome, SampleGrid, Stepping, Task, Watched,
+    answer,
 };
 use crate::integrators::all;
 use percuss::Start;
 
 /// Four forcing periods of the default model from rest.
-fn task() -> Option<OscillatorTask> {
+fn task() -> Option<Task> {
     let given = Given { start: Start::default(), ..Given::default() };
     let problem = given.check().ok()?;
     let horizon = problem.entry.instant.after_periods(4, 1);
-    Some(OscillatorTask::until(
-        given.parameters,
-        problem,
-        horizon,
-        SampleGrid { per_period: 4, count: 17 },
-    ))
+    let grid = SampleGrid { per_period: 4, count: 17 };
+    Task::of_oscillator(&OscillatorTask::until(given.parameters, problem, horizon, grid)).ok()
+}
+
+/// The same run, watched.
+fn watching(task: &Task, watched: Watched) -> Task {
+    let own = task.oscillator.as_deref().cloned();
+    let own = own.map(|it| OscillatorTask { watched: Some(watched), ..it });
+    let again = own.and_then(|it| Task::of_oscillator(&it).ok());
+    again.unwrap_or_else(|| unreachable!("it is a task of the oscillator"))
 }
 
 fn accuracy(engine: &dyn Engine) -> Option<Accuracy> {
@@ -36,14 +40,14 @@ fn watching_changes_no_event_and_sees_every_integrator_at_work() {
     let instants: Vec<f64> =
         (0..=60).map(|k| window[0] + 0.005 * f64::from(k) * task.span).collect();
     let watched = Watched { window, instants: instants.clone() };
-    let again = OscillatorTask { watched: Some(watched), ..task.clone() };
+    let again = watching(&task, watched);
     let mut seen = 0;
     for engine in all() {
         let name = engine.declaration().name;
         let Some(accuracy) = accuracy(*engine) else { continue };
-        let run = |task| answer_oscillator(*engine, task, accuracy, &Limits::default());
+        let run = |task| answer(*engine, task, accuracy, &Limits::default());
         let (Ok(plain), Ok(watched)) = (run(&task), run(&again)) else { unreachable!("{name}") };
-        let before = |outcome: &OscillatorOutcome| -> Vec<OscillatorEvent> {
+        let before = |outcome: &Outcome| -> Vec<Event> {
             outcome.events.iter().copied().filter(|it| it.elapsed <= window[1]).collect()
         };
         assert_eq!(before(&plain), before(&watched), "{name}");

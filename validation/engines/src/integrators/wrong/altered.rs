@@ -3,8 +3,7 @@
 use crate::accuracy::Accuracy;
 use crate::case::Problem;
 use crate::engine::{
-    Declaration, Engine, Limits, OscillatorOutcome, OscillatorTask, Outcome, Role, Task,
-    answer_oscillator,
+    Declaration, Engine, Limits, OscillatorTask, Outcome, Role, Task, answer,
 };
 use crate::failure::Failure;
 use crate::integrators::exact::Exact;
@@ -35,10 +34,10 @@ impl Engine for Altered {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let task = task.of_the_oscillator()?;
         if self.change == Alteration::Drift {
-            return drifting(task, limits).map(Into::into);
+            return drifting(task, limits);
         }
+        let task = task.of_the_oscillator()?;
         let (parameters, start) = self.altered(task);
         let refused = |error| Failure::new(format!("the altered problem: {error}"));
         let model = Model::new(parameters).map_err(refused)?;
@@ -87,8 +86,9 @@ fn periods(task: &OscillatorTask) -> (u64, u64) {
 
 /// The right motion with the drift of Eq. (20) as printed: at the start of each progression v jumps
 /// by 2 (q0 - 1), of which 2 (q0 - 1) exp(-d/(2 xi)) is left after d.
-fn drifting(task: &OscillatorTask, limits: &Limits) -> Result<OscillatorOutcome, Failure> {
-    let mut outcome = answer_oscillator(&Exact, task, Accuracy::Exact, limits)?;
+fn drifting(asked: &Task, limits: &Limits) -> Result<Outcome, Failure> {
+    let task = asked.of_the_oscillator()?;
+    let mut outcome = answer(&Exact, asked, Accuracy::Exact, limits)?;
     let start = task.problem.entry.instant;
     let omega = task.parameters.omega;
     let times = task.sample_times();

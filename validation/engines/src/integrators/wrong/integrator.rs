@@ -13,7 +13,7 @@ use crate::integration::{
 use crate::integrators::ode_solvers::DOPRI5;
 use crate::integrators::ode_solvers::dopri5::{self, Dopri5Run};
 use nalgebra::U4;
-use percuss::{Parameters, Phase};
+use percuss::Parameters;
 
 type OscillatorStretch = dopri5::DenseStretch<Oscillator, U4>;
 
@@ -93,7 +93,7 @@ impl Engine for Faulty {
             let state = detection.state_at(&stretch, from.mode, t)?;
             Ok(StretchEnd::Event { t, guard, state })
         })?;
-        Ok(outcome.into())
+        Ok(outcome)
     }
 }
 
@@ -117,13 +117,13 @@ struct FaultyDetection {
     /// The phase goes on past an event that was not noticed.
     overlooking: bool,
     /// The phase before this one.
-    before: Option<Phase>,
+    before: Option<usize>,
 }
 
 impl FaultyDetection {
     /// The phase whose derivative begins a stretch: that before the last event, if that is the
     /// fault.
-    fn stale(&self, from: &Moment<Oscillator>) -> Option<Phase> {
+    fn stale(&self, from: &Moment<Oscillator>) -> Option<usize> {
         self.before.filter(|_| self.slip == IntegratorFault::OldDerivative && from.t == from.began)
     }
 
@@ -169,18 +169,18 @@ impl FaultyDetection {
     fn by_sign(
         &self,
         stretch: &OscillatorStretch,
-        phase: Phase,
+        mode: usize,
         any_direction: bool,
     ) -> Result<Option<GuardRise>, Failure> {
         let mut left = stretch.begin;
         for right in stretch.ends.iter().copied().filter(|end| *end > stretch.begin) {
             let [before, after] =
-                [self.guards(stretch, phase, left)?, self.guards(stretch, phase, right)?];
+                [self.guards(stretch, mode, left)?, self.guards(stretch, mode, right)?];
             for guard in 0..GUARDS {
                 let rises = before[guard] < 0.0 && after[guard] >= 0.0;
                 let falls = before[guard] > 0.0 && after[guard] <= 0.0;
                 if rises || (any_direction && falls) {
-                    let t = self.bisect(stretch, phase, guard, (left, right))?;
+                    let t = self.bisect(stretch, mode, guard, (left, right))?;
                     return Ok(Some(GuardRise { t, guard }));
                 }
             }
@@ -192,14 +192,14 @@ impl FaultyDetection {
     fn bisect(
         &self,
         stretch: &OscillatorStretch,
-        phase: Phase,
+        mode: usize,
         guard: usize,
         (mut left, mut right): (f64, f64),
     ) -> Result<f64, Failure> {
-        let side = self.guards(stretch, phase, left)?[guard] < 0.0;
+        let side = self.guards(stretch, mode, left)?[guard] < 0.0;
         for _ in 0..HALVINGS {
             let middle = 0.5 * (left + right);
-            let same = (self.guards(stretch, phase, middle)?[guard] < 0.0) == side;
+            let same = (self.guards(stretch, mode, middle)?[guard] < 0.0) == side;
             if same { left = middle } else { right = middle }
         }
         Ok(right)
@@ -208,17 +208,17 @@ impl FaultyDetection {
     fn guards(
         &self,
         stretch: &OscillatorStretch,
-        phase: Phase,
+        mode: usize,
         t: f64,
     ) -> Result<[f64; GUARDS], Failure> {
-        Ok(self.equations.guards(phase, t, &self.state_at(stretch, phase, t)?))
+        Ok(self.equations.guards(mode, t, &self.state_at(stretch, mode, t)?))
     }
 
     /// The state inside a stretch, by the interpolant that this integrator has.
     fn state_at(
         &self,
         stretch: &OscillatorStretch,
-        phase: Phase,
+        mode: usize,
         t: f64,
     ) -> Result<[f64; 4], Failure> {
         if self.slip != IntegratorFault::LowOrder {
@@ -232,7 +232,7 @@ impl FaultyDetection {
         }
         let point = |t: f64| -> Result<CubicEnd<[f64; 4]>, Failure> { Ok((t, stretch.at(t)?)) };
         let cubic = Cubic::between([point(begin)?, point(end)?], |(t, state), rates| {
-            self.equations.derivatives(phase, t, &state, rates);
+            self.equations.derivatives(mode, t, &state, rates);
         });
         Ok(cubic.at(t))
     }

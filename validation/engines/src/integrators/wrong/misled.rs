@@ -88,7 +88,6 @@ pub(super) struct Misled<'a> {
 }
 
 impl Equations for Misled<'_> {
-    type Mode = usize;
     type State = Values;
     type Guards = <Affine<'static> as Equations>::Guards;
 

@@ -7,13 +7,14 @@
 use super::closed::Closed;
 use crate::accuracy::Accuracy;
 use crate::engine::{
-    Declaration, Engine, Event, Limits, Location, OscillatorOutcome, OscillatorTask, Outcome, Role,
-    Task, Work,
+    Declaration, Engine, Event, Limits, Location, OscillatorTask, Outcome, Role, Task, Work,
+    place,
 };
-use crate::equations::Equations;
+use crate::equations::{Equations, Numbers};
 use crate::failure::Failure;
 use crate::integration::{GUARDS, Oscillator, Sampler};
 use crate::integrators::exact::Exact;
+use crate::system::Values;
 use percuss::Phase;
 
 /// The fault of a [`ClosedFormStepper`].
@@ -62,7 +63,7 @@ impl Engine for ClosedFormStepper {
             events: task.events_before,
             evaluations: 0,
         };
-        run.all(limits).map(Into::into)
+        run.all(limits)
     }
 }
 
@@ -77,9 +78,10 @@ struct StepperRun<'a> {
 }
 
 impl StepperRun<'_> {
-    fn all(&mut self, limits: &Limits) -> Result<OscillatorOutcome, Failure> {
-        let mut outcome = OscillatorOutcome::default();
+    fn all(&mut self, limits: &Limits) -> Result<Outcome, Failure> {
+        let mut outcome = Outcome::default();
         let mut sampler = Sampler::new(self.task.sample_times());
+        let end;
         let (mut t, mut phase, mut state) = (0.0, self.task.phase, self.task.state);
         loop {
             let closed = self.closed(phase, t, state);
@@ -88,18 +90,20 @@ impl StepperRun<'_> {
             sampler.take(until, |time| Ok::<_, Failure>(closed.at(time - t)))?;
             let there = closed.at(until - t);
             let Some((at, guard)) = found else {
-                outcome.end = there;
+                end = there;
                 break;
             };
             let (next, on_surface) = self.after_event(phase, guard, at, &there);
             (t, phase, state) = (at, next, on_surface);
-            let (mode, before) = (phase, Some(there));
+            let (mode, before) = (place(phase), Some(Values::of(&there)));
+            let state = Values::of(&state);
             outcome.events.push(Event { event: guard, mode, elapsed: t, state, before });
             if outcome.events.len() > limits.events {
                 return Err(Failure::new(format!("gave up after {} events", limits.events)));
             }
         }
-        outcome.samples = sampler.finish(outcome.end);
+        outcome.end = Values::of(&end);
+        outcome.samples = sampler.finish(end).iter().map(|it| Values::of(it)).collect();
         let steps = outcome.events.len() as u64 + 1;
         outcome.work = Work { rhs_evaluations: self.evaluations, steps, ..Work::default() };
         Ok(outcome)
@@ -118,9 +122,9 @@ impl StepperRun<'_> {
         t: f64,
         there: &[f64; 4],
     ) -> (Phase, [f64; 4]) {
-        let (next, state) = self.oscillator.after_event(phase, guard, t, there);
+        let (next, state) = self.oscillator.after_event(place(phase), guard, t, there);
         let impact = phase == Phase::NoContact && self.fault == StepperFault::ContactAtImpact;
-        (if impact { Phase::Contact } else { next }, state)
+        (if impact { Phase::Contact } else { Phase::ALL[next] }, state)
     }
 
     /// The first event that is not dropped.
@@ -162,9 +166,9 @@ impl StepperRun<'_> {
     fn is_out(&mut self, closed: &Closed, phase: Phase, guard: usize, from: f64, t: f64) -> bool {
         self.evaluations += 1;
         let state = closed.at(t - from);
-        let positive = self.oscillator.guards(phase, t, &state)[guard] > 0.0;
+        let positive = self.oscillator.guards(place(phase), t, &state)[guard] > 0.0;
         let blind = self.fault == StepperFault::SignChange;
-        positive && (blind || self.oscillator.rates(phase, t, &state)[guard] > 0.0)
+        positive && (blind || self.oscillator.rates(place(phase), t, &state)[guard] > 0.0)
     }
 
     fn bisect(

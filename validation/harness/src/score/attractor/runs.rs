@@ -3,7 +3,7 @@
 use super::limits::ComparisonPlan;
 use super::section::{RunSection, run_of};
 use crate::case::Case;
-use crate::engine::{Accuracy, Engine, Failure, Limits, answer_oscillator};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Task, answer};
 use crate::integrators;
 use percuss::{Parameters, Start};
 
@@ -71,7 +71,7 @@ fn nth_section(
     let task = run_of(parameters, start, periods).ok_or_else(refused)?;
     let truth = run_of(case.parameters, start, periods).ok_or_else(refused)?;
     let outcome =
-        answer_oscillator(integrators::exact(), &task, Accuracy::Exact, &Limits::default())?;
+        answer(integrators::exact(), &Task::of_oscillator(&task)?, Accuracy::Exact, &Limits::default())?;
     RunSection::judged(&task, &outcome, plan.transient, &truth.problem)
 }
 
@@ -85,6 +85,6 @@ pub(super) fn section(
 ) -> Result<RunSection, Failure> {
     let task = run_of(case.parameters, case.start, plan.transient + plan.periods)
         .ok_or_else(|| Failure::new("the start is refused"))?;
-    let outcome = answer_oscillator(engine, &task, accuracy, limits)?;
+    let outcome = answer(engine, &Task::of_oscillator(&task)?, accuracy, limits)?;
     RunSection::of(&task, &outcome, plan.transient)
 }

@@ -2,7 +2,7 @@
 //! its periods are from the exact map's.
 
 use crate::case::{Given, Problem};
-use crate::engine::{Failure, OscillatorEvent, OscillatorOutcome, OscillatorTask, SampleGrid};
+use crate::engine::{Event, Failure, OscillatorTask, Outcome, SampleGrid};
 use percuss::dynamics::linear::apply;
 use percuss::dynamics::strobe::{Passage, StrobeMap};
 use percuss::{Parameters, Phase, Start};
@@ -45,7 +45,7 @@ impl RunSection {
     /// A run that lacks samples or holds a number that is not finite.
     pub fn of(
         task: &OscillatorTask,
-        outcome: &OscillatorOutcome,
+        outcome: &Outcome,
         transient: u32,
     ) -> Result<Self, Failure> {
         Self::judged(task, outcome, transient, &task.problem)
@@ -55,16 +55,16 @@ impl RunSection {
     /// that the run should have solved.
     pub(super) fn judged(
         task: &OscillatorTask,
-        outcome: &OscillatorOutcome,
+        outcome: &Outcome,
         transient: u32,
         truth: &Problem,
     ) -> Result<Self, Failure> {
         let states = outcome.samples.get(transient as usize..).unwrap_or_default();
-        let finite = states.iter().flatten().all(|value| value.is_finite());
+        let finite = states.iter().flat_map(|it| it.iter()).all(|value| value.is_finite());
         if states.len() + transient as usize != task.grid.count || states.len() < 3 || !finite {
             return Err(Failure::new("its section is not complete"));
         }
-        let points: Vec<_> = states.iter().map(|[p, y, q, _]| [*p, *y, *q]).collect();
+        let points: Vec<_> = states.iter().map(|it| [it[0], it[1], it[2]]).collect();
         let periods = (points.len() - 1) as f64;
         let drift = (states[states.len() - 1][3] - states[0][3]) / periods;
         let period = task.problem.model.period();
@@ -92,7 +92,7 @@ fn series(points: &[[f64; 3]]) -> [Vec<f64>; SERIES] {
 
 /// Shares of the sequences of phases that begin within one period.
 fn phase_sequences(
-    events: &[OscillatorEvent],
+    events: &[Event],
     period: f64,
     transient: u32,
     periods: usize,
@@ -102,7 +102,7 @@ fn phase_sequences(
         let number = event.elapsed / period - f64::from(transient);
         if let Some(sequence) = (number >= 0.0).then(|| spelled.get_mut(number as usize)).flatten()
         {
-            sequence.push(match event.mode {
+            sequence.push(match Phase::ALL[event.mode] {
                 Phase::NoContact => 'n',
                 Phase::Contact => 'c',
                 Phase::Progression => 'p',
@@ -151,17 +151,19 @@ fn apart(found: &[f64; 3], image: &[f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::place;
+    use crate::system::Values;
     use std::f64::consts::PI;
 
     /// An event belongs to the period in which it lies; one at the section's first strobe begins
     /// the first sequence, and one before it belongs to none.
     #[test]
     fn sequences_are_spelled_by_the_events_of_each_period() {
-        let event = |elapsed: f64, phase| OscillatorEvent {
+        let event = |elapsed: f64, phase| Event {
             event: 0,
-            mode: phase,
+            mode: place(phase),
             elapsed,
-            state: [0.0; 4],
+            state: Values::default(),
             before: None,
         };
         let events = [

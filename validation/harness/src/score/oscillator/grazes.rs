@@ -10,7 +10,7 @@ use crate::engine::{Equations, OscillatorTask};
 use crate::integration::{GUARDS, Oscillator};
 use crate::integrators::Closed;
 use crate::score::graze::Graze;
-use crate::score::occurrence::number;
+use crate::engine::place;
 use crate::truth::{Truth, TruthRow};
 use percuss::{Parameters, Phase};
 use std::f64::consts::PI;
@@ -49,11 +49,11 @@ struct ScannedSegment {
 
 impl ScannedSegment {
     fn guards(&self, d: f64) -> [f64; GUARDS] {
-        self.oscillator.guards(self.phase, self.began + d, &self.closed.at(d))
+        self.oscillator.guards(place(self.phase), self.began + d, &self.closed.at(d))
     }
 
     fn rates(&self, d: f64) -> [f64; GUARDS] {
-        self.oscillator.rates(self.phase, self.began + d, &self.closed.at(d))
+        self.oscillator.rates(place(self.phase), self.began + d, &self.closed.at(d))
     }
 
     /// The first maximum of a guard between two times, if its rate changes sign from above.
@@ -163,7 +163,7 @@ impl Scan<'_> {
             margin: segment.guards(at)[guard],
             growth: growth * n.max(1) as f64,
             events,
-            mode: number(segment.phase),
+            mode: place(segment.phase),
             event: None,
             ends: true,
             makes: 2,

@@ -10,10 +10,11 @@ use super::growth::RunGrowth;
 use super::restart::task;
 use super::starts::far_apart;
 use crate::case::Problem;
-use crate::engine::{Failure, OscillatorOutcome, OscillatorTask, SampleGrid};
+use crate::engine::{Failure, OscillatorTask, Outcome, SampleGrid, Task};
 use crate::score::SCORED_ERROR;
 use crate::score::horizons::{Horizons, ValidHorizon};
 use crate::score::statistics::Spread;
+use crate::system::Values;
 use crate::truth::{DoubleDouble, Truth};
 use percuss::TwoWord;
 use rayon::prelude::*;
@@ -86,7 +87,7 @@ impl HorizonTest {
     pub fn score(
         &self,
         unit: f64,
-        run: impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync,
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
     ) -> Horizons {
         self.score_first(usize::MAX, unit, run)
     }
@@ -96,7 +97,7 @@ impl HorizonTest {
         &self,
         most: usize,
         unit: f64,
-        run: impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync,
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
     ) -> Horizons {
         let asked = &self.runs[..most.min(self.runs.len())];
         let results: Vec<_> = asked.par_iter().map(|it| it.horizon(unit, &run)).collect();
@@ -151,7 +152,7 @@ impl HorizonRun {
     fn horizon(
         &self,
         unit: f64,
-        run: &impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure>,
+        run: &impl Fn(&Task) -> Result<Outcome, Failure>,
     ) -> (ValidHorizon, bool) {
         let predicted = self.grows_to(SCORED_ERROR / unit);
         let usual = self.last(unit);
@@ -168,18 +169,19 @@ impl HorizonRun {
     fn followed(
         &self,
         periods: u32,
-        run: &impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure>,
+        run: &impl Fn(&Task) -> Result<Outcome, Failure>,
     ) -> Result<u32, Failure> {
         let horizon = self.problem.entry.instant.after_periods(u64::from(periods), 1);
         let grid = SampleGrid { per_period: 1, count: periods as usize + 1 };
         let events_before = self.events_before;
-        let outcome = run(&OscillatorTask { grid, events_before, ..task(self.problem, horizon) })?;
+        let own = OscillatorTask { grid, events_before, ..task(self.problem, horizon) };
+        let outcome = run(&Task::of_oscillator(&own)?)?;
         Ok(self.valid(&outcome, periods))
     }
 
-    fn valid(&self, outcome: &OscillatorOutcome, last: u32) -> u32 {
+    fn valid(&self, outcome: &Outcome, last: u32) -> u32 {
         // Written so that a NaN is off.
-        let right = |(truth, found): (&crate::truth::TruthRow, &[f64; 4])| {
+        let right = |(truth, found): (&crate::truth::TruthRow, &Values)| {
             let off = |k: usize| truth.state[k].minus(TwoWord::new(found[k])).value().abs();
             (0..3).all(|k| off(k) <= SCORED_ERROR)
         };

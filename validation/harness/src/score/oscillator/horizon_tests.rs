@@ -1,5 +1,6 @@
 use super::*;
 use crate::case::Given;
+use crate::engine::Numbers;
 use percuss::Start;
 
 const PERIODS: u32 = 12;
@@ -16,10 +17,11 @@ fn run() -> HorizonRun {
 }
 
 /// An answer that is right up to a period and off by `error` in one co-ordinate from there on.
-fn answer(run: &HorizonRun, wrong_from: usize, k: usize, error: f64) -> OscillatorOutcome {
-    let mut samples: Vec<[f64; 4]> = run.truth.samples.iter().map(|row| row.rounded()).collect();
+fn answer(run: &HorizonRun, wrong_from: usize, k: usize, error: f64) -> Outcome {
+    let rows = run.truth.samples.iter();
+    let mut samples: Vec<_> = rows.map(|row| Values::of(&row.rounded())).collect();
     samples.iter_mut().skip(wrong_from).for_each(|state| state[k] += error);
-    OscillatorOutcome { samples, ..OscillatorOutcome::default() }
+    Outcome { samples, ..Outcome::default() }
 }
 
 #[test]
@@ -61,9 +63,9 @@ fn a_run_that_is_still_right_is_made_again_for_as_long_as_the_truth_lasts() {
     let asked = std::sync::Mutex::new(Vec::new());
     let make = |wrong_from: usize| {
         let (run, asked) = (&run, &asked);
-        move |task: &OscillatorTask| {
+        move |task: &Task| {
             if let Ok(mut asked) = asked.lock() {
-                asked.push(task.grid.count - 1);
+                asked.push(task.samples.len() - 1);
             }
             Ok(answer(run, wrong_from, 0, 1.0))
         }
@@ -77,7 +79,7 @@ fn a_run_that_is_still_right_is_made_again_for_as_long_as_the_truth_lasts() {
     assert_eq!(taken(), [3, trusted as usize]);
     let (whole, _) = run.horizon(unit, &make(100));
     assert_eq!(whole, ValidHorizon { valid: trusted, predicted: 2, outlasts: true });
-    let none = |_: &OscillatorTask| Err(Failure::new("on purpose"));
+    let none = |_: &Task| Err(Failure::new("on purpose"));
     let (gone, failed) = run.horizon(unit, &none);
     assert_eq!((gone.valid, gone.outlasts, failed), (0, false, true));
 }
@@ -92,7 +94,7 @@ fn a_score_counts_what_failed_and_what_was_gained() {
     let second = test.runs[0].truth.events.len() as u64;
     assert_eq!((test.runs[0].events_before, test.runs[1].events_before), (0, second));
     let found = test.score(1e-15, |task| {
-        let run = test.runs.iter().find(|it| it.events_before == task.events_before);
+        let run = test.runs.iter().find(|it| Some(it.events_before) == task.oscillator.as_ref().map(|own| own.events_before));
         match run {
             Some(run) if run.events_before > 0 => Ok(answer(run, 7, 1, 1.0)),
             _ => Err(Failure::new("on purpose")),

@@ -1,7 +1,7 @@
 //! The figures of one run.
 
 use super::growth::RunGrowth;
-use crate::engine::{OscillatorEvent, OscillatorOutcome, OscillatorTask};
+use crate::engine::{Event, OscillatorTask, Outcome};
 use crate::score::SCORED_ERROR;
 use crate::score::matching::{Matching, WINDOW};
 use crate::score::measures::Measures;
@@ -19,7 +19,7 @@ pub fn measure(
     task: &OscillatorTask,
     truth: &Truth,
     growth: &RunGrowth,
-    outcome: &OscillatorOutcome,
+    outcome: &Outcome,
     unit: f64,
 ) -> Measures {
     let period = task.problem.model.period();
@@ -76,15 +76,15 @@ fn off(truth: TwoWord, value: f64) -> f64 {
     truth.minus(TwoWord::new(value)).value().abs()
 }
 
-fn time_error(row: &TruthRow, event: &OscillatorEvent) -> f64 {
+fn time_error(row: &TruthRow, event: &Event) -> f64 {
     off(row.elapsed, event.elapsed)
 }
 
 /// max(|dp|, |dy|, |dq|) at each sample of the truth; NaN at one that the engine did not deliver.
 #[must_use]
-pub fn sample_errors(truth: &Truth, outcome: &OscillatorOutcome) -> Vec<f64> {
+pub fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
     let error = |(k, row): (usize, &TruthRow)| {
-        let state = outcome.samples.get(k).copied().unwrap_or([f64::NAN; 4]);
+        let Some(state) = outcome.samples.get(k) else { return f64::NAN };
         worst((0..3).map(|i| off(row.state[i], state[i])))
     };
     truth.samples.iter().enumerate().map(error).collect()
@@ -95,7 +95,7 @@ pub fn sample_errors(truth: &Truth, outcome: &OscillatorOutcome) -> Vec<f64> {
 fn drift_by_times(
     task: &OscillatorTask,
     rows: &[TruthRow],
-    found: &[OscillatorEvent],
+    found: &[Event],
     pairs: &[(usize, usize)],
 ) -> f64 {
     let lost = |(i, j): &(usize, usize)| {
@@ -114,14 +114,14 @@ fn valid_periods(task: &OscillatorTask, truth: &Truth, errors: &[f64], period: f
 }
 
 /// The error of an event's time in units of error x (1 + |value|) x growth x events so far.
-fn time_units(row: &TruthRow, event: &OscillatorEvent, growth: f64, unit: f64, n: usize) -> f64 {
+fn time_units(row: &TruthRow, event: &Event, growth: f64, unit: f64, n: usize) -> f64 {
     let scale = (1.0 + row.elapsed.value().abs()) * growth * unit * (n + 1) as f64;
     time_error(row, event) / scale
 }
 
 fn event_constant(
     rows: &[TruthRow],
-    found: &[OscillatorEvent],
+    found: &[Event],
     pairs: &[(usize, usize)],
     growth: &RunGrowth,
     unit: f64,
@@ -141,7 +141,7 @@ fn event_constant(
 
 fn state_constant(
     truth: &Truth,
-    outcome: &OscillatorOutcome,
+    outcome: &Outcome,
     growth: &RunGrowth,
     scored: usize,
     unit: f64,
@@ -153,9 +153,9 @@ fn state_constant(
     let mut events = 0;
     worst((1..scored).map(|n| {
         let (row, growth) = (&truth.samples[n], &growth.samples[n]);
-        let state = outcome.samples.get(n).copied().unwrap_or([f64::NAN; 4]);
         let passed = |event: &&TruthRow| event.elapsed.minus(row.elapsed).value() <= 0.0;
         events += truth.events[events..].iter().take_while(passed).count();
+        let Some(state) = outcome.samples.get(n) else { return f64::NAN };
         let largest = worst((0..4).map(|k| relative(row.state[k], state[k]) / growth[k]));
         largest / (unit * (events.max(1)) as f64)
     }))

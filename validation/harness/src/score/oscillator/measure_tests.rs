@@ -1,7 +1,8 @@
 use super::*;
 use crate::case::Quantity;
 use crate::case::{Given, Problem};
-use crate::engine::SampleGrid;
+use crate::engine::{Numbers, SampleGrid, place};
+use crate::system::Values;
 use percuss::Phase::{Contact, NoContact, Progression};
 use percuss::{Parameters, Start};
 
@@ -24,7 +25,7 @@ struct Planted {
     task: OscillatorTask,
     truth: Truth,
     growth: RunGrowth,
-    outcome: OscillatorOutcome,
+    outcome: Outcome,
 }
 
 impl Planted {
@@ -50,18 +51,18 @@ impl Planted {
             samples: vec![[1.0, 2.0, 4.0, 8.0]; 17],
             end: [1.0; 4],
         };
-        let event = |row: &TruthRow| crate::engine::Event {
+        let event = |row: &TruthRow| Event {
             event: 0,
-            mode: row.phase.unwrap_or(NoContact),
+            mode: place(row.phase.unwrap_or(NoContact)),
             elapsed: row.elapsed.value(),
-            state: row.rounded(),
+            state: Values::of(&row.rounded()),
             before: None,
         };
-        let outcome = OscillatorOutcome {
+        let outcome = Outcome {
             events: truth.events.iter().map(event).collect(),
-            samples: truth.samples.iter().map(TruthRow::rounded).collect(),
-            end: truth.end.rounded(),
-            ..OscillatorOutcome::default()
+            samples: truth.samples.iter().map(|it| Values::of(&it.rounded())).collect(),
+            end: Values::of(&truth.end.rounded()),
+            ..Outcome::default()
         };
         Self { task, truth, growth, outcome }
     }

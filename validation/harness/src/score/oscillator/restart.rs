@@ -9,13 +9,14 @@
 use super::growth::RunGrowth;
 use super::starts::on_attractor;
 use crate::case::Problem;
-use crate::engine::{Failure, OscillatorOutcome, OscillatorTask, SampleGrid};
+use crate::engine::{Failure, OscillatorTask, Outcome, SampleGrid, Task, place};
 use crate::score::restart_figures::{Restart, RestartError, RestartResult};
 use crate::score::statistics::worst;
 use crate::truth::{Truth, TruthRow};
 use percuss::TwoWord;
 use percuss::{Instant, Phase};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// A run ends at the latest at this strobe.
 pub const MOST_PERIODS: u64 = 8;
@@ -23,7 +24,7 @@ pub const MOST_PERIODS: u64 = 8;
 /// A run with its truth.
 pub struct RestartRun {
     /// The task that an engine is given.
-    pub task: OscillatorTask,
+    pub task: Task,
     /// The true run.
     pub truth: Truth,
     /// The growth of errors along the true run.
@@ -49,7 +50,7 @@ impl RestartTest {
         let mut runs: Vec<RestartRun> = made.into_iter().flatten().collect();
         let mut events = 0;
         for run in &mut runs {
-            run.task.events_before = events;
+            run.set_events_before(events);
             events += run.truth.events.len() as u64;
         }
         Self { undecided: count - runs.len(), runs }
@@ -60,7 +61,7 @@ impl RestartTest {
     pub fn score(
         &self,
         unit: f64,
-        run: impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync,
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
     ) -> Restart {
         self.score_first(usize::MAX, unit, run)
     }
@@ -70,7 +71,7 @@ impl RestartTest {
         &self,
         most: usize,
         unit: f64,
-        run: impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync,
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
     ) -> Restart {
         let runs = &self.runs[..most.min(self.runs.len())];
         let measured = |it: &RestartRun| RestartResult {
@@ -103,10 +104,16 @@ impl RestartRun {
         let truth = if periods == MOST_PERIODS { whole } else { replayed(periods)? };
         let task = task(problem, strobe(periods));
         let growth = RunGrowth::along(&truth, &parameters, task.forcing_angle);
+        let task = Task::of_oscillator(&task).ok()?;
         Some(Self { task, truth, growth, impact })
     }
 
-    fn error(&self, outcome: &OscillatorOutcome, unit: f64) -> RestartError {
+    /// The number of events that the engine had before this run.
+    fn set_events_before(&mut self, events: u64) {
+        self.task.oscillator.as_mut().into_iter().for_each(|it| Arc::make_mut(it).events_before = events);
+    }
+
+    fn error(&self, outcome: &Outcome, unit: f64) -> RestartError {
         let truth = &self.truth.end.state;
         let off = |k: usize| off(truth[k], outcome.end[k]);
         let units = |k: usize| off(k) / scale(unit, truth[k], self.growth.end[k]);
@@ -124,8 +131,8 @@ impl RestartRun {
         }
     }
 
-    fn same_phases(&self, outcome: &OscillatorOutcome) -> bool {
-        let truth = self.truth.events.iter().map(|event| event.phase);
+    fn same_phases(&self, outcome: &Outcome) -> bool {
+        let truth = self.truth.events.iter().map(|event| event.phase.map(place));
         truth.eq(outcome.events.iter().map(|event| Some(event.mode)))
     }
 }

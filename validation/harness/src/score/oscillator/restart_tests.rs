@@ -1,5 +1,7 @@
 use super::*;
 use crate::case::Given;
+use crate::engine::Numbers;
+use crate::system::Values;
 use percuss::Phase::{Contact, NoContact, Progression};
 use percuss::Start;
 
@@ -16,18 +18,18 @@ fn run() -> RestartRun {
     run
 }
 
-fn perfect(run: &RestartRun) -> OscillatorOutcome {
+fn perfect(run: &RestartRun) -> Outcome {
     let event = |row: &TruthRow| crate::engine::Event {
         event: 0,
-        mode: row.phase.unwrap_or(NoContact),
+        mode: place(row.phase.unwrap_or(NoContact)),
         elapsed: row.elapsed.value(),
-        state: row.rounded(),
+        state: Values::of(&row.rounded()),
         before: None,
     };
-    OscillatorOutcome {
+    Outcome {
         events: run.truth.events.iter().map(event).collect(),
-        end: run.truth.end.rounded(),
-        ..OscillatorOutcome::default()
+        end: Values::of(&run.truth.end.rounded()),
+        ..Outcome::default()
     }
 }
 
@@ -105,9 +107,9 @@ fn runs_that_fail_or_go_another_way_are_counted() {
     let test = RestartTest::new(&problem(), 12);
     let with_impact = test.runs.iter().filter(|run| run.impact).count();
     assert!(with_impact >= 4 && test.runs.len() == 12 && test.undecided == 0);
-    let at = |task: &OscillatorTask| test.runs.iter().position(|run| run.task.state == task.state);
+    let at = |task: &Task| test.runs.iter().position(|run| run.task.state == task.state);
     let impacts: Vec<usize> = (0..12).filter(|k| test.runs[*k].impact).collect();
-    let answer = |task: &OscillatorTask| {
+    let answer = |task: &Task| {
         let number = at(task).unwrap_or(0);
         let mut outcome = perfect(&test.runs[number]);
         if number == impacts[0] {
@@ -128,5 +130,6 @@ fn runs_that_fail_or_go_another_way_are_counted() {
     assert_eq!(test.score_first(3, UNIT, answer).runs, 3);
     // A run counts its events after those of the runs before it.
     let before: u64 = test.runs[..5].iter().map(|run| run.truth.events.len() as u64).sum();
-    assert_eq!(test.runs[5].task.events_before, before);
+    let own = test.runs[5].task.oscillator.as_ref();
+    assert_eq!(own.map(|it| it.events_before), Some(before));
 }
