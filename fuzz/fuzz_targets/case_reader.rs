@@ -8,7 +8,7 @@ use percuss_engines::case::{parse_case, parse_problem};
 fuzz_target!(|bytes: &[u8]| {
     let text = String::from_utf8_lossy(bytes);
     for error in [
-        parse_case("fuzz.toml", &text).err().map(|error| error.to_string()),
+        parse_case("fuzz.toml", &text, None).err().map(|error| error.to_string()),
         parse_problem("fuzz.toml", &text).err().map(|error| error.to_string()),
     ]
     .into_iter()

@@ -6,7 +6,7 @@
 //! Without a page it prints the blocks. The picture lies beside the page, as `attractor-power.png`.
 
 use anyhow::{Context, Result};
-use percuss_validation::case::{Case, embedded};
+use percuss_validation::case::{OscillatorCase, embedded};
 use percuss_validation::number::brief;
 use percuss_validation::picture::{
     Axis, AxisScale, Curve, Curves, Marker, Stroke, basin_colours, png,
@@ -51,10 +51,11 @@ fn fill(text: &str, name: &str, block: &str) -> Result<String> {
 }
 
 /// Every case that has limits, with its test.
-fn ready() -> Result<Vec<(Case, AttractorTest)>> {
+fn ready() -> Result<Vec<(OscillatorCase, AttractorTest)>> {
     let cases = embedded()?;
     let of = |it: Calibrated| {
         let case = cases.iter().find(|case| case.name == it.case).context("no such case")?;
+        let case = case.of_oscillator()?;
         Ok((case.clone(), AttractorTest::new(case, it)?))
     };
     calibrated()?.into_iter().map(of).collect()
@@ -64,7 +65,7 @@ fn percent(share: f64) -> String {
     format!("{} %", brief(100.0 * share))
 }
 
-fn false_alarms(cases: &[(Case, AttractorTest)]) -> Result<String> {
+fn false_alarms(cases: &[(OscillatorCase, AttractorTest)]) -> Result<String> {
     let mut table = String::from(
         "| case | fresh runs | false alarms | rate, with its exact 95 % interval | distances that alarmed |\n\
          |---|---|---|---|---|\n",
@@ -74,7 +75,7 @@ fn false_alarms(cases: &[(Case, AttractorTest)]) -> Result<String> {
         let [low, high] = interval(found.raised, found.runs).map(percent);
         let names: Vec<_> = found.by.iter().map(|(name, n)| format!("`{name}` {n}")).collect();
         let rate = percent(f64::from(found.raised) / f64::from(found.runs));
-        let (name, names) = (&case.name, names.join(", "));
+        let (name, names) = (&test.calibrated.case, names.join(", "));
         writeln!(
             table,
             "| `{name}` | {} | {} | {rate} ({low} to {high}) | {names} |",
@@ -92,14 +93,14 @@ struct PowerCurve {
     steps: Vec<Alarms>,
 }
 
-fn power(cases: &[(Case, AttractorTest)]) -> Result<Vec<PowerCurve>> {
+fn power(cases: &[(OscillatorCase, AttractorTest)]) -> Result<Vec<PowerCurve>> {
     let mut curves = Vec::new();
     for (case, test) in cases {
         for (changed, sign) in Changed::ALL.into_iter().flat_map(|it| [(it, 1.0), (it, -1.0)]) {
             let step =
                 |size: &f64| test.alarms_of_changed(case, changed, sign * size, CHANGED_RUNS);
             let steps = SIZES.iter().map(step).collect::<Result<_, _>>()?;
-            curves.push(PowerCurve { case: case.name.clone(), changed, sign, steps });
+            curves.push(PowerCurve { case: test.calibrated.case.clone(), changed, sign, steps });
         }
     }
     Ok(curves)

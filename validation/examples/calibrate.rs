@@ -19,7 +19,7 @@ fn main() -> anyhow::Result<()> {
         NULL_RUNS + 1
     );
     for case in embedded()?.into_iter().filter(|case| CASES.contains(&case.name.as_str())) {
-        let found = calibrate(&case, PLAN, NULL_RUNS)?;
+        let found = calibrate((&case.name, case.of_oscillator()?), PLAN, NULL_RUNS)?;
         println!(
             "\n# The largest of {NULL_RUNS} runs: {}, {:.2} standard deviations above its mean.\n\
              [[attractors]]\n{}",

@@ -8,8 +8,8 @@
 //! ```
 
 use anyhow::{Context, Result};
-use percuss_validation::case::Cases;
-use percuss_validation::report::OSCILLATOR;
+use percuss_validation::case::embedded;
+use percuss_validation::report::CaseNote;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -35,10 +35,8 @@ pub(crate) fn spliced(old: &str, table: &str) -> Result<String> {
 
 /// The system of each case inside the binary.
 pub(crate) fn systems() -> Result<BTreeMap<String, String>> {
-    let cases = Cases::embedded()?;
-    let oscillator = cases.oscillator.iter().map(|it| (it.name.clone(), OSCILLATOR.to_owned()));
-    let others = cases.systems.iter().map(|it| (it.name.clone(), it.system.name.clone()));
-    Ok(oscillator.chain(others).collect())
+    let notes = embedded()?.into_iter().map(|it| CaseNote::of(&it, true));
+    Ok(notes.map(|it| (it.name, it.system)).collect())
 }
 
 /// How the rows of an engine on the cases of a system came out.

@@ -4,13 +4,11 @@
 use crate::exact;
 use crate::support::{refused, run, stdout, text};
 use percuss_validation::bench::cases::{SYSTEMS, USUAL};
-use percuss_validation::bench::contest::{contest_at, most_accurate, system_contest};
+use percuss_validation::bench::contest::{contest, contest_at, most_accurate};
 use percuss_validation::bench::contestant::{Contestant, EnteredEngine, settings};
 use percuss_validation::bench::library_part::library_part;
 use percuss_validation::bench::timed_case::TimedCase;
-use percuss_validation::bench::timed_system_case::TimedSystemCase;
-use percuss_validation::case::Cases;
-use percuss_validation::engine::{Accuracy, Engine, Limits, Location, Outcome, Task, answer};
+use percuss_validation::engine::{Accuracy, Engine, Limits, Location, Outcome, answer};
 use percuss_validation::integration::Script;
 use percuss_validation::integrators::{CONTROL, all, wrong};
 use percuss_validation::truth::Library;
@@ -64,11 +62,11 @@ fn the_usual_cases_are_there_and_the_exact_solver_is_right_on_them() {
     }
 }
 
-fn system_cases() -> Vec<TimedSystemCase> {
+fn system_cases() -> Vec<TimedCase> {
     let library = Library::embedded().expect("the tables are read");
-    let cases = Cases::embedded().expect("the cases are read").systems;
+    let cases = exact::of_systems();
     let named = |name: &&str| cases.iter().find(|it| it.name == **name).expect("a case");
-    SYSTEMS.iter().map(|it| TimedSystemCase::of(named(it), &library).expect("a case")).collect()
+    SYSTEMS.iter().map(|it| TimedCase::of(named(it), &library).expect("a case")).collect()
 }
 
 /// Every system is timed, and the exact solver's answers are right: its own part is the same run.
@@ -81,7 +79,7 @@ fn the_exact_solver_is_right_on_every_system() {
     let all: Vec<_> = percuss_validation::systems::SYSTEMS.iter().map(|it| it.0).collect();
     assert_eq!(timed, all);
     for case in &timed_cases {
-        let found = system_contest(case, &[&EnteredEngine(exact_solver())], 1, &|| ());
+        let found = contest(case, &[&EnteredEngine(exact_solver())], 1, &|| ());
         let timed = found[0].result.as_ref().unwrap_or_else(|it| panic!("{}: {it}", case.name));
         assert!(timed.score.state_error < 1e-9, "{}: {:?}", case.name, timed.score);
         assert_eq!(timed.series.0.len(), 1);
@@ -133,11 +131,10 @@ fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let case = case("impact-into-progression");
     let none = Script::of(&[]);
     let limits = Limits::default();
-    let task = Task::of_oscillator(&case.task).expect("it is a system");
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {
         let accuracy = settings(engine.declaration().stepping)[2];
-        let found = none.follow(|| answer(*engine, &task, accuracy, &limits));
+        let found = none.follow(|| answer(*engine, &case.task, accuracy, &limits));
         let (name, by) = (engine.declaration().name, engine.declaration().events);
         let found = found.map(|it| it.events.len()).unwrap_or_default();
         assert_eq!(found == 0, by == Location::Harness, "{name}: {found} events");

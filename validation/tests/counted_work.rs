@@ -5,12 +5,13 @@ use percuss_validation::engine::{
     Accuracy, Engine, Limits, OscillatorTask, Outcome, SampleGrid, Stepping, Task, answer,
 };
 use percuss_validation::integrators::all;
-use percuss_validation::suite::CaseRun;
 
 fn outcome(engine: &dyn Engine) -> Outcome {
     let case = exact::case("chaos-from-rest");
-    let task =
-        OscillatorTask::of(&case, exact::problem(&case), SampleGrid { per_period: 4, count: 161 });
+    let task = OscillatorTask::of(
+        case.of_oscillator().expect("it is one"),
+        SampleGrid { per_period: 4, count: 161 },
+    );
     let task = Task::of_oscillator(&task).expect("it is a system");
     answer(engine, &task, loose(engine), &Limits::default()).expect("it runs")
 }
@@ -41,7 +42,7 @@ fn the_least_work_is_a_lower_bound() {
             };
             let share = least / found.work.rhs_evaluations as f64;
             let name = engine.declaration().name;
-            assert!(share <= 1.0, "{name} on {}: {least}, {:?}", case.name(), found.work);
+            assert!(share <= 1.0, "{name} on {}: {least}, {:?}", case.case.name, found.work);
             largest = largest.max(share);
         }
     }

@@ -4,7 +4,7 @@
 #[path = "../examples/systems_by_engine.rs"]
 mod systems_by_engine;
 
-use percuss_validation::case::Cases;
+use percuss_validation::case::embedded;
 use percuss_validation::integrators::all;
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -40,8 +40,8 @@ fn commands(page: &str) -> Vec<(String, String)> {
 fn every_command_chooses_rows_that_exist() {
     let commands = commands(&read("docs/FINDINGS.md"));
     let engines: BTreeSet<_> = all().iter().map(|it| it.declaration().name.to_owned()).collect();
-    let cases = Cases::embedded().unwrap();
-    let cases: BTreeSet<String> = cases.names().map(str::to_owned).collect();
+    let cases = embedded().unwrap();
+    let cases: BTreeSet<String> = cases.into_iter().map(|it| it.name).collect();
     for (engine, case) in &commands {
         assert!(engines.contains(engine), "no engine {engine}");
         assert!(cases.contains(case), "no case {case}");

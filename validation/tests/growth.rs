@@ -7,11 +7,10 @@ use crate::exact;
 use percuss::TwoWord;
 use percuss::number::Number;
 use percuss::variation::{ANGLE, IDENTITY, Matrix, P, Q, V, Y, product, times};
-use percuss::{Entry, Exit, GrowthRecorder, Instant, Segment};
-use percuss_validation::case::Case;
+use percuss::{Entry, Exit, GrowthRecorder, Instant, Parameters, Segment};
+use percuss_validation::case::{Case, SAMPLES_PER_PERIOD};
 use percuss_validation::engine::{OscillatorTask, SampleGrid};
-use percuss_validation::score::RunGrowth;
-use percuss_validation::truth::{DoubleDouble, Library, Replay, Truth};
+use percuss_validation::truth::{DoubleDouble, Library, Replay, Truth, TruthRow};
 
 /// Allowed difference, as a share of the largest growth so far: both are products of matrices in
 /// f64 (4e-12 is the most in regular motion; where a growth passes through a minimum, less of its
@@ -36,11 +35,16 @@ const CASES: [&str; 12] = [
     "table1-from-rest",
 ];
 
+/// The growth of p, y, q and v.
+fn four(row: &TruthRow) -> [f64; 4] {
+    row.growth.as_slice().try_into().expect("four states")
+}
+
 fn run(case: &Case) -> (OscillatorTask, Truth) {
     let library = Library::embedded().expect("the manifest is read");
     let truth = library.truth(case).expect("the tables are there");
-    let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
-    (OscillatorTask::of(case, exact::problem(case), grid), truth)
+    let grid = SampleGrid { per_period: SAMPLES_PER_PERIOD, count: truth.samples.len() };
+    (OscillatorTask::of(case.of_oscillator().expect("it is one"), grid), truth)
 }
 
 #[test]
@@ -49,7 +53,6 @@ fn products_of_the_solver_agree_with_matrix_exponentials() {
     for name in CASES {
         let case = exact::case(name);
         let (task, truth) = run(&case);
-        let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
         let mut recorder = GrowthRecorder::new();
         let mut largest = 1.0;
         let mut compare = |ours: [f64; 5], theirs: [f64; 5], what: &str| {
@@ -75,15 +78,17 @@ fn products_of_the_solver_agree_with_matrix_exponentials() {
                     break;
                 }
                 let elapsed =
-                    instant.since(&segment.entry().instant, case.parameters.omega).value();
-                let [p, y, q, v] = growth.samples[sample];
+                    instant.since(&segment.entry().instant, task.parameters.omega).value();
+                let [p, y, q, v] = four(&truth.samples[sample]);
                 let what = format!("sample {sample}");
                 compare(values(recorder.at(&segment, elapsed)), [1.0, p, y, q, v], &what);
                 sample += 1;
             }
             if let Some(found) = recorder.pass(&segment) {
                 let what = format!("switch {}", switch + 1);
-                compare(values(found), growth.events[switch], &what);
+                let row = &truth.events[switch];
+                let [p, y, q, v] = four(row);
+                compare(values(found), [row.growth_time, p, y, q, v], &what);
                 switch += 1;
             }
         }
@@ -100,15 +105,15 @@ const DIFFERENCE: f64 = 1e-10;
 
 /// tau, p, y, q and v of every event of a run in 106 bits.
 fn events(
-    case: &Case,
+    parameters: &Parameters,
     entry: &Entry,
     state: [DoubleDouble; 3],
     end: Instant,
 ) -> Vec<[DoubleDouble; 5]> {
-    let passages = Replay::varied(&case.parameters, entry, state, end);
+    let passages = Replay::varied(parameters, entry, state, end);
     let rows = passages.map_while(|passage| {
         let next = passage.expect("it is decided").next?;
-        let elapsed = next.instant.since(&entry.instant, case.parameters.omega);
+        let elapsed = next.instant.since(&entry.instant, parameters.omega);
         let [p, y, q, v] = next.values();
         Some([elapsed.into(), p, y, q, v])
     });
@@ -136,7 +141,7 @@ fn derivatives(segments: impl Iterator<Item = Segment>) -> Vec<Matrix> {
 fn the_solvers_products_are_what_differences_in_106_bits_say() {
     let case = exact::case("chaos-mid-flight");
     let (task, _) = run(&case);
-    let OscillatorTask { problem, .. } = task;
+    let problem = task.problem;
     let start = problem.entry;
     let end = start.instant.after_periods(20, 1);
     let found = derivatives(problem.model.trajectory(start).until(end));
@@ -146,14 +151,14 @@ fn the_solvers_products_are_what_differences_in_106_bits_say() {
         let mut state = state;
         match column {
             ANGLE => {
-                let time = TwoWord::new(step).over(case.parameters.omega);
-                entry.instant = start.instant.after(time, case.parameters.omega);
+                let time = TwoWord::new(step).over(task.parameters.omega);
+                entry.instant = start.instant.after(time, task.parameters.omega);
             }
             P => state[0] = state[0] + DoubleDouble::exact(step),
             Y => state[1] = state[1] + DoubleDouble::exact(step),
             _ => state[2] = state[2] + DoubleDouble::exact(step),
         }
-        events(&case, &entry, state, end)
+        events(&task.parameters, &entry, state, end)
     };
     let mut worst = 0.0_f64;
     for column in [ANGLE, P, Y, Q] {

@@ -4,7 +4,7 @@
 
 use crate::exact;
 use percuss::number::Number;
-use percuss_validation::case::Problem;
+use percuss_validation::case::{Case, Problem};
 use percuss_validation::engine::{OscillatorTask, Task};
 use percuss_validation::score::{HorizonTest, far_apart};
 use percuss_validation::truth::{DoubleDouble, Replay};
@@ -21,13 +21,13 @@ const SHORT: f64 = 8.0;
 /// Errors are seldom along the direction that grows most: the median run gains two periods.
 const MEDIAN_GAIN: std::ops::RangeInclusive<f64> = 0.0..=4.0;
 
-fn chaos() -> Problem {
-    exact::problem(&exact::case("chaos-from-rest"))
+fn chaos() -> Case {
+    exact::case("chaos-from-rest")
 }
 
 #[test]
 fn the_exact_solver_lasts_as_long_as_the_truths_growth_lets_it() {
-    let test = HorizonTest::new(&chaos(), STARTS, PERIODS);
+    let test = HorizonTest::new(&chaos(), STARTS, PERIODS).expect("it is made");
     let found = test.score(f64::EPSILON, exact::run);
     println!("valid from {} periods: {:?}", found.valid_q01, found.valid);
     println!("predicted: {:?}, gained: {:?}", found.predicted, found.gained);
@@ -52,8 +52,8 @@ fn the_exact_solver_lasts_as_long_as_the_truths_growth_lets_it() {
 #[test]
 fn the_truth_lasts_as_long_as_it_says() {
     const ROOM: f64 = 20.0 * 1e-5;
-    let problem = chaos();
-    let trusted = HorizonTest::new(&problem, 20, 250).trusted();
+    let test = HorizonTest::new(&chaos(), 20, 250).expect("it is made");
+    let (problem, trusted) = (exact::problem(&chaos()), test.trusted());
     let mut sorted = trusted.clone();
     sorted.sort_unstable();
     println!("the truth lasts {sorted:?} periods");
@@ -82,7 +82,7 @@ fn apart_after(start: &Problem, periods: u64) -> f64 {
 #[test]
 fn a_coarser_solver_lasts_as_long_as_its_own_unit_lets_it() {
     const UNIT: f64 = 1e-9;
-    let test = HorizonTest::new(&chaos(), 40, 60);
+    let test = HorizonTest::new(&chaos(), 40, 60).expect("it is made");
     let coarse = test.score(UNIT, |task| {
         let task = exact::own(task);
         let mut start = task.problem.start;

@@ -2,16 +2,13 @@
 
 use crate::exact;
 use percuss::{Model, Parameters, Start};
-use percuss_validation::case::{Case, defaults, embedded};
+use percuss_validation::case::{Case, Given, defaults, embedded};
 use percuss_validation::engine::Accuracy;
 use percuss_validation::integrators::{
-    CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, WrongEngine, WrongWay, faulty, wrong,
-    wrong_on_systems,
+    CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, WrongEngine, faulty, wrong,
 };
-use percuss_validation::power::{
-    AS_EXACT, Finding, Gate, Standard, all_on_systems, examine, examine_on_systems, is_run,
-};
-use percuss_validation::suite::{Prepared, PreparedSystem, Suite, prepare};
+use percuss_validation::power::{AS_EXACT, Finding, Gate, Standard, all, examine, is_run};
+use percuss_validation::suite::{PreparedCase, Suite, prepare};
 use percuss_validation::truth::Library;
 
 /// A few cases serve: chaos with all probes, the grazes, late cycles and impacts into progression.
@@ -24,7 +21,7 @@ const CASES: [&str; 6] = [
     "stiff-xi-0-03",
 ];
 
-fn prepared() -> Vec<Prepared> {
+fn prepared() -> Vec<PreparedCase> {
     let library = Library::embedded().expect("the tables are read");
     let cases = embedded().expect("the cases are read").into_iter();
     let chosen = cases.filter(|case| CASES.contains(&case.name.as_str())).collect();
@@ -34,34 +31,47 @@ fn prepared() -> Vec<Prepared> {
 /// A touch that the control's steps find and an integrator's longest pass by, wherever chaos leads:
 /// that of the case with an overlap of 1e-3, made 1e-4 by a wider gap, from a start so much later
 /// that two steps of a 24th period end half a step before its middle and half a step after it.
-fn light_touch() -> Vec<Prepared> {
+fn light_touch() -> Vec<PreparedCase> {
     let mut cases = embedded().expect("the cases are read").into_iter();
     let case = cases.find(|case| case.name == "graze-overlap-1e-3").expect("the case is there");
-    let parameters = Parameters { g: case.parameters.g + 9e-4, ..case.parameters };
+    let own = exact::problem(&case);
+    let old = *own.model.parameters();
+    let parameters = Parameters { g: old.g + 9e-4, ..old };
     let model = Model::new(parameters).expect("the case is checked");
-    let entry = model.start(&case.start).expect("the case is checked");
+    let entry = model.start(&own.start).expect("the case is checked");
     let [flight, touch] = [0, 1].map(|k| model.trajectory(entry).nth(k).expect("it touches"));
     let step = model.period() / 24.0;
     assert!(touch.duration() < 0.5 * step && touch.duration() > 4.0 * model.period() / 512.0);
     let later = (flight.duration() + 0.5 * (touch.duration() - step)) % step;
     let state = flight.at(later).state;
-    let tau = case.start.tau + later;
+    let tau = own.start.tau + later;
     let start = Start { tau, p: state.p, y: state.y, q: Some(state.q), ..Start::default() };
-    let case = Case { name: "light-touch".into(), parameters, start, ..case };
+    let given = Given { parameters, start, ..Given::default() };
+    let case = exact::with_problem(&case, given.check().expect("the start is in range"));
+    let case = Case { name: "light-touch".into(), ..case };
     let library = Library::embedded().expect("the tables are read").replaying();
     prepare(vec![case], &library, Some(Suite::Quick)).expect("the case is made ready")
 }
 
-fn findings(wrong: &[WrongEngine], cases: &[Prepared], standard: Standard) -> Vec<Finding> {
-    let bounds = defaults().expect("the bounds are read").bounds;
-    wrong.iter().map(|it| examine(it, cases, standard, &bounds)).collect()
+/// The wrong engines whose faults show in no one way of running a case, and those that do.
+fn anywhere(all: &[WrongEngine]) -> Vec<WrongEngine> {
+    all.iter().copied().filter(|it| it.way.is_none()).collect()
+}
+
+fn in_ways(all: &[WrongEngine]) -> Vec<WrongEngine> {
+    all.iter().copied().filter(|it| it.way.is_some()).collect()
+}
+
+fn findings(wrong: &[WrongEngine], cases: &[PreparedCase], standard: Standard) -> Vec<Finding> {
+    let defaults = defaults().expect("the bounds are read");
+    wrong.iter().map(|it| examine(it, cases, standard, &defaults)).collect()
 }
 
 #[test]
 fn every_fault_is_caught_and_every_gate_catches_one() {
     let cases = prepared();
     assert_eq!(cases.len(), CASES.len());
-    let found = findings(wrong(), &cases, AS_EXACT);
+    let found = findings(&anywhere(wrong()), &cases, AS_EXACT);
     for finding in &found {
         println!("{} ({}): {:?}", finding.engine, finding.fault, finding.gates);
         assert!(finding.gates.values().any(|trip| trip.failed > 0), "{} passes", finding.engine);
@@ -82,7 +92,7 @@ fn the_control_passes_where_the_faults_do_not() {
     let cases = prepared().into_iter().chain(light_touch());
     let (grazes, others): (Vec<_>, Vec<_>) =
         cases.partition(|it| it.case.name.starts_with("graze"));
-    let control = WrongEngine { engine: CONTROL, fault: "none" };
+    let control = WrongEngine { engine: CONTROL, fault: "none", way: None };
     for finding in findings(&[control], &others, standard) {
         assert!(!finding.caught(), "the control fails: {:?}", finding.gates);
     }
@@ -121,7 +131,7 @@ fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
     let chosen = cases.filter(|case| INTEGRATED.contains(&case.name.as_str())).collect();
     let cases = prepare(chosen, &library, Some(Suite::Quick)).expect("the cases are made ready");
     for standard in Standard::of_faulty() {
-        let found = findings(faulty(), &cases, standard);
+        let found = findings(&anywhere(faulty()), &cases, standard);
         for finding in &found {
             println!("{} ({}): {:?}", finding.engine, finding.fault, finding.gates);
             let caught = finding.gates.values().any(|trip| trip.failed > 0);
@@ -131,14 +141,14 @@ fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
             let trips = found.iter().any(|finding| finding.gates[&gate].failed > 0);
             assert!(trips, "no fault of an integrator trips {}", gate.name());
         }
-        let control = WrongEngine { engine: FAULTY_CONTROL, fault: "none" };
+        let control = WrongEngine { engine: FAULTY_CONTROL, fault: "none", way: None };
         for finding in findings(&[control], &cases, standard) {
             assert!(!finding.caught(), "{} {:?}", finding.engine, finding.gates);
         }
     }
 }
 
-fn all_systems() -> Vec<PreparedSystem> {
+fn all_systems() -> Vec<PreparedCase> {
     exact::prepared_systems(|_| true)
 }
 
@@ -146,24 +156,24 @@ fn all_systems() -> Vec<PreparedSystem> {
 #[test]
 fn faults_in_ways_of_running_are_caught_there_and_nowhere_else() {
     let cases = all_systems();
-    let bounds = defaults().expect("the bounds are read").of_systems;
-    for (it, standard) in all_on_systems() {
-        let finding = examine_on_systems(&it, &cases, standard, &bounds);
+    let defaults = defaults().expect("the bounds are read");
+    for (it, standard) in all().into_iter().filter(|(it, _)| it.way.is_some()) {
+        let finding = examine(&it, &cases, standard, &defaults);
         let Finding { engine, fault, gates, failed_on, elsewhere, .. } = &finding;
         println!("{engine} ({fault}): {gates:?}, {failed_on:?}, elsewhere {elsewhere:?}");
         assert!(finding.caught(), "{engine}: {fault}");
         assert!(elsewhere.0 > 0 && elsewhere.1.is_empty(), "{engine} {elsewhere:?}");
         // States between events are measured at no event.
         let at_events = gates[&Gate::Events].failed + gates[&Gate::EventErrors].failed;
-        if it.way == Way::OutputBetweenEvents {
+        if it.way == Some(Way::OutputBetweenEvents) {
             assert!(at_events == 0 && gates[&Gate::StateErrors].failed > 0, "{engine} {gates:?}");
         }
     }
     for standard in Standard::of_faulty() {
-        let wrong = WrongEngine { engine: FAULTY_ON_SYSTEMS_CONTROL, fault: "none" };
-        let control = WrongWay { wrong, way: Way::Simultaneous };
+        let way = Some(Way::Simultaneous);
+        let control = WrongEngine { engine: FAULTY_ON_SYSTEMS_CONTROL, fault: "none", way };
         let Finding { failed_on, elsewhere, without_result, .. } =
-            examine_on_systems(&control, &cases, standard, &bounds);
+            examine(&control, &cases, standard, &defaults);
         assert!(failed_on.is_empty() && elsewhere.1.is_empty(), "{failed_on:?} {elsewhere:?}");
         assert_eq!(without_result, 0);
     }
@@ -174,9 +184,9 @@ fn faults_in_ways_of_running_are_caught_there_and_nowhere_else() {
 #[test]
 fn events_of_one_instant_are_a_set_where_their_order_is_free() {
     let cases = all_systems();
-    let bounds = defaults().expect("the bounds are read").of_systems;
-    let [last_first] = wrong_on_systems() else { panic!("one of them turns the order") };
-    let finding = examine_on_systems(last_first, &cases, AS_EXACT, &bounds);
+    let defaults = defaults().expect("the bounds are read");
+    let [last_first] = in_ways(wrong())[..] else { panic!("one of them turns the order") };
+    let finding = examine(&last_first, &cases, AS_EXACT, &defaults);
     let tied: Vec<_> = cases.iter().filter(|it| is_run(it, Way::Simultaneous)).collect();
     let [matters, free] = [true, false].map(|ordered| {
         let alike = tied.iter().filter(|it| it.truth.ordered == ordered);

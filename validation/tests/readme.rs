@@ -6,7 +6,7 @@
 
 use crate::support::transcripts::{self, is_splicing, is_the_pages_platform};
 use crate::support::{percuss, text};
-use percuss_validation::case::Cases;
+use percuss_validation::case::embedded;
 use percuss_validation::cli::command;
 use percuss_validation::integrators::all;
 use std::path::PathBuf;
@@ -98,7 +98,7 @@ fn its_figures_are_those_of_the_results_and_its_transcript_of_the_program() {
         exact.contains(" | 0 | 0 | 0 | ") && readme.contains(&said.expect("events")),
         "{exact}"
     );
-    let cases = Cases::embedded().expect("the cases are read").names().count();
+    let cases = embedded().expect("the cases are read").len();
     let of = format!(
         "Five of the {} engines that `percuss validate` runs on {cases} cases",
         all().len()

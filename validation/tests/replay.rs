@@ -5,9 +5,8 @@
 use crate::exact;
 use percuss::Start;
 use percuss::TwoWord;
-use percuss_validation::case::{Case, Given, embedded};
+use percuss_validation::case::{Case, Given, SAMPLES_PER_PERIOD};
 use percuss_validation::engine::{OscillatorTask, SampleGrid};
-use percuss_validation::score::RunGrowth;
 use percuss_validation::truth::{DoubleDouble, Library, Truth, TruthRow, Undecided};
 
 /// The tables hold 25 significant digits, rounded to nearest, and at most 60 decimals.
@@ -28,9 +27,8 @@ struct Worst {
 fn prepared(case: &Case) -> (OscillatorTask, Truth) {
     let library = Library::embedded().expect("the manifest is read");
     let truth = library.truth(case).expect("the tables are there");
-    let problem = exact::problem(case);
-    let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
-    (OscillatorTask::of(case, problem, grid), truth)
+    let grid = SampleGrid { per_period: SAMPLES_PER_PERIOD, count: truth.samples.len() };
+    (OscillatorTask::of(case.of_oscillator().expect("it is one"), grid), truth)
 }
 
 /// What is left of an error beyond the table's own digits, in units of 2^-106 (1 + |value| + time):
@@ -51,6 +49,12 @@ struct Place {
     time: f64,
 }
 
+/// The growth of tau, p, y, q and v.
+fn grown(row: &TruthRow, time: f64) -> [f64; 5] {
+    let [p, y, q, v] = row.growth[..] else { panic!("four states") };
+    [time, p, y, q, v]
+}
+
 fn compare(
     (found, proved): (&TruthRow, &TruthRow),
     growth: &[f64; 5],
@@ -58,10 +62,10 @@ fn compare(
     what: &str,
     worst: &mut Worst,
 ) {
-    assert_eq!(found.phase, proved.phase, "{what}");
+    assert_eq!(found.mode, proved.mode, "{what}");
     let names = ["tau", "p", "y", "q", "v"];
     let values = |row: &TruthRow| {
-        let [p, y, q, v] = row.state;
+        let [p, y, q, v] = row.state[..] else { panic!("four states") };
         [row.elapsed, p, y, q, v]
     };
     for (i, (found, proved)) in values(found).into_iter().zip(values(proved)).enumerate() {
@@ -76,11 +80,10 @@ fn compare(
 fn every_proved_digit_of_every_case_is_met() {
     let mut worst = Worst { units: 0.0, place: "none".into() };
     let (mut events, mut samples) = (0, 0);
-    for case in embedded().expect("the cases are read") {
+    for case in exact::of_oscillator() {
         let (task, truth) = prepared(&case);
-        let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
         let grid = (task.grid.count, task.grid.per_period);
-        let replayed = Truth::replayed(&case.parameters, &task.problem.entry, task.horizon, grid);
+        let replayed = Truth::replayed(&task.parameters, &task.problem.entry, task.horizon, grid);
         let replayed = replayed.unwrap_or_else(|undecided| panic!("{}: {undecided}", case.name));
         let name = &case.name;
         let mut here = Worst { units: 0.0, place: "none".into() };
@@ -90,9 +93,8 @@ fn every_proved_digit_of_every_case_is_met() {
             let what = format!("switch {} of {name}", n + 1);
             let place = Place { events: n + 1, time: proved.elapsed.value() - begins };
             begins = proved.elapsed.value();
-            compare((found, proved), &growth.events[n], place, &what, &mut here);
+            compare((found, proved), &grown(proved, proved.growth_time), place, &what, &mut here);
         }
-        let plain = |growth: [f64; 4]| [1.0, growth[0], growth[1], growth[2], growth[3]];
         let place = |row: &TruthRow| {
             let since = |switch: &TruthRow| row.elapsed.minus(switch.elapsed).value();
             let passed = truth.events.iter().take_while(|switch| since(switch) >= 0.0).count();
@@ -101,11 +103,11 @@ fn every_proved_digit_of_every_case_is_met() {
         };
         for (k, rows) in replayed.samples.iter().zip(&truth.samples).enumerate() {
             let what = format!("sample {k} of {name}");
-            compare(rows, &plain(growth.samples[k]), place(rows.1), &what, &mut here);
+            compare(rows, &grown(rows.1, 1.0), place(rows.1), &what, &mut here);
         }
         let what = format!("end of {name}");
         let ends = (&replayed.end, &truth.end);
-        compare(ends, &plain(growth.end), place(&truth.end), &what, &mut here);
+        compare(ends, &grown(&truth.end, 1.0), place(&truth.end), &what, &mut here);
         assert_eq!(replayed.samples.len(), truth.samples.len(), "{name}");
         (events, samples) = (events + truth.events.len(), samples + truth.samples.len());
         println!("{name}: {:.2} at {}", here.units, here.place);
@@ -120,11 +122,12 @@ fn every_proved_digit_of_every_case_is_met() {
 /// The first flight of a graze with its start moved by `shift`, which moves the margin as far.
 fn graze(shift: f64) -> Result<usize, Undecided> {
     let case = exact::case("graze-miss-1e-12");
-    let start = Start { p: case.start.p + shift, ..case.start };
-    let given = Given { parameters: case.parameters, start, ..Given::default() };
+    let own = exact::problem(&case);
+    let start = Start { p: own.start.p + shift, ..own.start };
+    let given = Given { parameters: *own.model.parameters(), start, ..Given::default() };
     let entry = given.check().expect("the start is accepted").entry;
     let horizon = entry.instant.after_periods(5, 1);
-    Truth::replayed(&case.parameters, &entry, horizon, (0, 1)).map(|truth| truth.events.len())
+    Truth::replayed(&given.parameters, &entry, horizon, (0, 1)).map(|truth| truth.events.len())
 }
 
 /// A graze that f64 cannot tell from a miss with room to spare has no truth here, and says so; one

@@ -3,14 +3,13 @@
 //! `cargo test --release --test harness restart_systems:: -- --nocapture` prints the figures of
 //! every case.
 
-use crate::exact::probed_systems;
-use percuss_validation::case::Cases;
+use crate::exact::{self, probed_systems};
 use percuss_validation::engine::{
     Accuracy, Engine, Failure, Limits, Outcome, REFERENCE, Task, answer,
 };
 use percuss_validation::integrators::all;
-use percuss_validation::score::{Restart, SystemRestartRun, SystemRestartTest};
-use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
+use percuss_validation::score::{Restart, RestartRun, RestartTest};
+use percuss_validation::suite::{PreparedCase, Suite, prepare};
 use percuss_validation::truth::Library;
 
 /// The bound of the oscillator's restarts, in eps (1 + |value|) x growth; 1.4 is the largest median
@@ -19,16 +18,16 @@ const MEDIAN: f64 = 2.0;
 /// The promise of ten roundings; 8.0 is the largest of all.
 const LARGEST: f64 = 10.0;
 
-fn one(name: &str) -> PreparedSystem {
+fn one(name: &str) -> PreparedCase {
     probed_systems(|it| it == name).pop().expect("the case")
 }
 
-fn test(case: &PreparedSystem) -> &SystemRestartTest {
-    case.restart.as_ref().expect("the case is probed")
+fn test(case: &PreparedCase) -> &RestartTest {
+    case.probes.restart.as_ref().expect("the case is probed")
 }
 
 fn scored(
-    case: &PreparedSystem,
+    case: &PreparedCase,
     (accuracy, unit): (Accuracy, f64),
     run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
 ) -> Restart {
@@ -120,11 +119,11 @@ fn named(name: &str) -> &'static dyn Engine {
 #[test]
 fn starts_that_rounding_puts_beside_a_guard_are_not_asked_for() {
     let library = Library::embedded().expect("the tables are read");
-    let cases = Cases::embedded().expect("the cases are read").systems.into_iter();
+    let cases = exact::of_systems().into_iter();
     let chosen = cases.filter(|case| case.name == "percussive-chaos").collect();
-    let prepared = prepare_systems(chosen, &library, Some(Suite::Full)).expect("made ready");
+    let prepared = prepare(chosen, &library, Some(Suite::Full)).expect("made ready");
     let test = test(&prepared[0]);
-    let failing = |run: &&SystemRestartRun| exactly(&run.task).is_err();
+    let failing = |run: &&RestartRun| exactly(&run.task).is_err();
     assert_eq!(test.runs.iter().filter(failing).count(), 1);
     let restart = test.score_first(usize::MAX, AS_EXACT, exactly);
     assert_eq!((restart.failed, restart.wrong_sequences), (0, 0));

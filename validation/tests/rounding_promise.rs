@@ -5,6 +5,7 @@
 
 use percuss::{Entry, Exit, GrowthRecorder, Instant, Start, TwoWord};
 use percuss_validation::case::{Given, Problem};
+use percuss_validation::engine::place;
 use percuss_validation::truth::{Truth, TruthRow};
 
 /// Runs that are drawn.
@@ -91,7 +92,7 @@ impl Errors {
 }
 
 fn values(row: &TruthRow) -> [TwoWord; 5] {
-    let [p, y, q, v] = row.state;
+    let [p, y, q, v] = row.state[..] else { panic!("four states") };
     [row.elapsed, p, y, q, v]
 }
 
@@ -128,7 +129,7 @@ fn errors(given: &Given) -> Option<Errors> {
         if grown.iter().any(|it| it * f64::EPSILON * (1.0 + far) * count > LINEAR) {
             break;
         }
-        assert_eq!(Some(next.phase()), row.phase, "{given:?}");
+        assert_eq!(place(next.phase()), row.mode, "{given:?}");
         let found = found(next, &entry.instant, given.parameters.omega);
         for (i, (found, proved)) in found.iter().zip(values(row)).enumerate() {
             let error = TwoWord::new(*found).minus(proved).value().abs() / (grown[i] * count);

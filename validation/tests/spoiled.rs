@@ -7,7 +7,7 @@ use percuss_validation::engine::{
 };
 use percuss_validation::integrators::exact;
 use percuss_validation::score::Verdict;
-use percuss_validation::suite::{CaseRun, Suite, prepare, run};
+use percuss_validation::suite::{Suite, prepare, run};
 use percuss_validation::system::Values;
 use percuss_validation::truth::Library;
 
@@ -79,8 +79,7 @@ fn no_spoiled_answer_passes() {
     let cases = prepare(chosen, &library, Some(Suite::Quick)).expect("the case is made ready");
     let defaults = defaults().expect("the bounds are read");
     let verdict = |engine: &'static Spoiled| {
-        let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
-        let rows = run(&runs, &[engine], &Suite::Quick.into(), &defaults, &|| ());
+        let rows = run(&cases, &[engine], &Suite::Quick.into(), &defaults, &|| ());
         assert_eq!(rows.len(), 1);
         rows[0].judgement.verdict
     };

@@ -1,10 +1,10 @@
 //! `validate` on cases of piecewise-affine systems: those inside the program, and a user's own.
 
 use crate::support::{refused, run, stdout, text};
-use percuss_validation::case::{Cases, TROUBLE};
+use percuss_validation::case::TROUBLE;
 use percuss_validation::engine::{Accuracy, Limits, Task, answer};
 use percuss_validation::integrators::exact;
-use percuss_validation::truth::{Library, SystemTruth};
+use percuss_validation::truth::{Library, Truth};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -69,7 +69,7 @@ fn the_exact_solver_has_no_missed_and_no_spurious_events() {
 
 #[test]
 fn every_kind_of_trouble_has_two_cases_and_every_system_three() {
-    let cases = Cases::embedded().expect("the cases are read").systems;
+    let cases = crate::exact::of_systems();
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     let mut systems: BTreeMap<&str, usize> = BTreeMap::new();
     for case in &cases {
@@ -97,7 +97,7 @@ fn a_case_of_ones_own_system_is_held_against_a_run_in_106_bits() {
 /// The truth of a case without tables is what the proved table says, where there is one.
 #[test]
 fn a_run_in_106_bits_is_the_table() {
-    let cases = Cases::embedded().expect("the cases are read").systems;
+    let cases = crate::exact::of_systems();
     let library = Library::embedded().expect("the manifest is read");
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("manifest.json"), "{\"files\": {}}").expect("written");
@@ -105,8 +105,8 @@ fn a_run_in_106_bits_is_the_table() {
     let chosen =
         ["ball-forty-impacts", "buck-periodic", "percussive-chaos", "watched-backward-to-stop"];
     for case in cases.iter().filter(|case| chosen.contains(&case.name.as_str())) {
-        let proved = library.system_truth(case).expect("its table");
-        let own = none.system_truth(case).expect("its run");
+        let proved = library.truth(case).expect("its table");
+        let own = none.truth(case).expect("its run");
         assert_eq!(own.ended, proved.ended, "{}", case.name);
         assert_eq!(own.events.len(), proved.events.len(), "{}", case.name);
         for (own, proved) in own.events.iter().zip(&proved.events) {
@@ -255,7 +255,7 @@ fn no_horizon_and_no_sample_is_beside_an_event() {
 /// Where the order of events in one instant matters, nothing is scored from there on.
 #[test]
 fn a_run_in_106_bits_tells_whether_an_order_matters() {
-    let cases = Cases::embedded().expect("the cases are read").systems;
+    let cases = crate::exact::of_systems();
     let library = Library::embedded().expect("the manifest is read");
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("manifest.json"), "{\"files\": {}}").expect("written");
@@ -263,8 +263,8 @@ fn a_run_in_106_bits_tells_whether_an_order_matters() {
     let chosen = ["spheres-meet", "spheres-meet-inelastic", "cradle-three-guards", "relay-1e-2"];
     let mut matters = Vec::new();
     for case in cases.iter().filter(|case| chosen.contains(&case.name.as_str())) {
-        let proved = library.system_truth(case).expect("its table");
-        let own = none.system_truth(case).expect("its run");
+        let proved = library.truth(case).expect("its table");
+        let own = none.truth(case).expect("its run");
         assert_eq!(own.ordered, proved.ordered, "{}", case.name);
         matters.push(own.ordered);
     }
@@ -289,11 +289,11 @@ fn a_table_of_another_case_is_refused() {
 #[test]
 fn the_exact_solver_is_sampled_between_events() {
     let library = Library::embedded().expect("the manifest is read");
-    for case in Cases::embedded().expect("the cases are read").systems {
+    for case in crate::exact::of_systems() {
         if !["watched-backward", "buck-dense-output"].contains(&case.name.as_str()) {
             continue;
         }
-        let truth: SystemTruth = library.system_truth(&case).expect("its table");
+        let truth: Truth = library.truth(&case).expect("its table");
         let problem = Arc::new(case.problem().expect("it is taken"));
         let task = Task::of(&problem, truth.span, truth.sample_times()).expect("a task");
         let run = answer(exact(), &task, Accuracy::Exact, &Limits::default());

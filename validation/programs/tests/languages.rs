@@ -7,8 +7,7 @@
 use percuss::{Parameters, Start};
 use percuss_engines::case::Given;
 use percuss_engines::engine::{
-    Accuracy, Engine, Event, Limits, OscillatorTask, Outcome, SampleGrid,
-    Stepping, Task, answer,
+    Accuracy, Engine, Event, Limits, OscillatorTask, Outcome, SampleGrid, Stepping, Task, answer,
 };
 use percuss_engines::integrators::exact;
 use percuss_engines::system::{CheckedSystem, Direction, Mode, System, Until, Watch};
@@ -130,11 +129,7 @@ fn oscillator() -> Task {
     Task::of_oscillator(&own).expect("it is a system")
 }
 
-fn check_oscillator(
-    outcome: &Outcome,
-    truth: &Outcome,
-    unit: f64,
-) -> Result<(), String> {
+fn check_oscillator(outcome: &Outcome, truth: &Outcome, unit: f64) -> Result<(), String> {
     let word = |outcome: &Outcome| -> Vec<_> {
         outcome.events.iter().map(|it| (it.event, it.mode)).collect()
     };

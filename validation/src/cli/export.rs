@@ -4,7 +4,7 @@ use super::help;
 use super::shared::compact;
 use super::shared::judged::CaseFlags;
 use super::shared::output::{Destination, make_folder, write_whole};
-use crate::suite::CaseRun;
+use crate::suite::PreparedCase;
 use anyhow::{Context, Result};
 use clap::Args;
 use percuss_programs::files::CaseFile;
@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     make_folder(&arguments.out)?;
     let cases = cases.prepare(None)?;
     let mut lines = Vec::new();
-    for case in cases.all() {
+    for case in &cases.all {
         lines.push(write(case, &arguments.out)?);
     }
     let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
@@ -44,8 +44,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// Writes the files of a case, and says what it asks.
-fn write(case: &dyn CaseRun, folder: &Path) -> Result<(String, String)> {
-    let (name, task) = (case.name(), case.asked());
+fn write(case: &PreparedCase, folder: &Path) -> Result<(String, String)> {
+    let (name, task) = (case.case.name.as_str(), &case.task);
     let asked = CaseFile::new(name, task, case.parameters());
     write_whole(&folder.join(format!("{name}.json")), |out| {
         compact::write(&asked, &mut *out).map_err(io::Error::from)?;

@@ -9,7 +9,7 @@ use super::{note, say};
 use crate::engine::{Accuracy, Class, REFERENCE, Stepping};
 use crate::number::shortest;
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
-use crate::suite::{self, CaseRun, Scored, Status, Suite};
+use crate::suite::{self, PreparedCase, Scored, Status, Suite};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 use percuss_programs::files::{Answerer, EVENTS, FileEngine, SAMPLES};
@@ -119,15 +119,15 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let answered = answered(&arguments.answers)?;
     // What probes ask needs an engine that is there.
     let cases = cases.prepare(None)?;
-    let all = cases.all();
-    check_names(arguments, &all, &answered)?;
+    let all = &cases.all;
+    check_names(arguments, all, &answered)?;
     let defaults = judged.defaults()?;
     let pool = long_work::pool(threads)?;
     let bar = long_work::bar(all.len() as u64, "cases");
-    let row = |case: &&dyn CaseRun| {
-        let engine = arguments.engine(case.name(), stepping);
+    let row = |case: &PreparedCase| {
+        let engine = arguments.engine(&case.case.name, stepping);
         let accuracy = Accuracy::Tolerance(arguments.tolerance);
-        let row = suite::one(*case, &engine, accuracy, SUITE, &defaults);
+        let row = suite::one(case, &engine, accuracy, SUITE, &defaults);
         bar.inc(1);
         // What it took to read the files says nothing of who answered.
         Scored { wall: Duration::ZERO, ..row }
@@ -135,17 +135,11 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let rows: Vec<Scored> = pool.install(|| all.par_iter().with_max_len(1).map(row).collect());
     bar.finish_and_clear();
     rows.iter().for_each(say_what_is_wrong);
-    let mut evidence = ReportEvidence::gather(
-        (&cases.oscillator, &cases.systems),
-        &rows,
-        &[],
-        judged.chosen.cases.is_none(),
-    );
+    let mut evidence = ReportEvidence::gather(all, &rows, &[], judged.chosen.cases.is_none());
     evidence.replayed.clone_from(&cases.replayed);
     evidence.folders = [arguments.flags(), judged.folders()].concat();
     if judged.out.is_some() {
-        evidence.events =
-            pool.install(|| event_pictures((&cases.oscillator, &cases.systems), &rows, SUITE));
+        evidence.events = pool.install(|| event_pictures(all, &rows, SUITE));
     }
     let report = Report::new(SUITE, &[&arguments.engine("", stepping)], &rows);
     let asked = |it: &RowPlace<'_>| {
@@ -236,10 +230,10 @@ fn answered(folder: &Path) -> Result<BTreeSet<String>> {
 /// Refuses answers to no case that is asked for, and names those to cases that there are not.
 fn check_names(
     arguments: &Arguments,
-    all: &[&dyn CaseRun],
+    all: &[PreparedCase],
     answered: &BTreeSet<String>,
 ) -> Result<()> {
-    let asked = |name: &String| all.iter().any(|case| case.name() == name);
+    let asked = |name: &String| all.iter().any(|it| it.case.name == *name);
     if !answered.iter().any(asked) {
         let folder = arguments.answers.display();
         bail!(
@@ -248,7 +242,9 @@ fn check_names(
         );
     }
     let listed = match &arguments.judged.chosen.cases {
-        Some(folder) => held_by(folder, &all.iter().map(|it| it.name()).collect::<Vec<_>>()),
+        Some(folder) => {
+            held_by(folder, &all.iter().map(|it| it.case.name.as_str()).collect::<Vec<_>>())
+        }
         None => CASES.listed.to_owned(),
     };
     for name in answered.iter().filter(|name| !asked(name) && arguments.judged.chosen.accepts(name))

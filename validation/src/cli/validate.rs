@@ -9,7 +9,7 @@ use super::{OUT_OF_BOUNDS, say};
 use crate::case::Defaults;
 use crate::engine::{Engine, hush_contained_panics};
 use crate::integrators;
-use crate::integrators::{WrongEngine, WrongWay};
+use crate::integrators::WrongEngine;
 use crate::power::{self, Finding, Standard};
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, Scored, Suite, SuiteScope};
@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let wrong = WrongEngines::of(arguments)?;
     let probed = wrong.count() > 0 || suite::probes_any(&engines, &scope);
     let cases = judged.open()?.prepare(probed.then_some(arguments.suite))?;
-    let all = cases.all();
+    let all = &cases.all;
     let mut defaults = judged.defaults()?;
     if judged.chosen.cases.is_none() {
         defaults.shortcomings.extend(arguments.programs.shortcomings()?);
@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     // Together, so that no thread is idle while the last rows run.
     let (rows, findings) = pool.install(|| {
         rayon::join(
-            || suite::run(&all, &engines, &scope, &defaults, &|| bar.inc(1)),
+            || suite::run(all, &engines, &scope, &defaults, &|| bar.inc(1)),
             || wrong.examine(&cases, &defaults, &|| bar.inc(1)),
         )
     });
@@ -97,11 +97,10 @@ fn evidence(
     findings: &[Finding],
 ) -> ReportEvidence {
     let judged = &arguments.judged;
-    let prepared = (&cases.oscillator[..], &cases.systems[..]);
     let embedded = judged.chosen.cases.is_none();
-    let evidence = ReportEvidence::gather(prepared, rows, findings, embedded);
+    let evidence = ReportEvidence::gather(&cases.all, rows, findings, embedded);
     let events = match judged.out {
-        Some(_) => event_pictures(prepared, rows, arguments.suite),
+        Some(_) => event_pictures(&cases.all, rows, arguments.suite),
         None => evidence.events,
     };
     let (folders, replayed) = (judged.folders(), cases.replayed.clone());
@@ -121,10 +120,7 @@ fn scope(arguments: &Arguments) -> Result<SuiteScope> {
 
 /// Engines that are wrong on purpose, for the power of the gates; none where that is not asked.
 #[derive(Default)]
-struct WrongEngines {
-    anywhere: Vec<(WrongEngine, Standard)>,
-    on_systems: Vec<(WrongWay, Standard)>,
-}
+struct WrongEngines(Vec<(WrongEngine, Standard)>);
 
 impl WrongEngines {
     fn of(arguments: &Arguments) -> Result<Self> {
@@ -137,11 +133,11 @@ impl WrongEngines {
                 "--power: accepted is all cases, without --case and --cases: each gate needs its own"
             );
         }
-        Ok(Self { anywhere: power::all(), on_systems: power::all_on_systems() })
+        Ok(Self(power::all()))
     }
 
     fn count(&self) -> usize {
-        self.anywhere.len() + self.on_systems.len()
+        self.0.len()
     }
 
     /// Runs the wrong engines against all gates.
@@ -151,16 +147,12 @@ impl WrongEngines {
         defaults: &Defaults,
         done: &(impl Fn() + Sync),
     ) -> Vec<Finding> {
-        let PreparedCases { oscillator, systems, .. } = cases;
-        let anywhere = self
-            .anywhere
-            .par_iter()
-            .map(|(it, held)| power::examine(it, oscillator, *held, &defaults.bounds));
-        let on_systems = self
-            .on_systems
-            .par_iter()
-            .map(|(it, held)| power::examine_on_systems(it, systems, *held, &defaults.of_systems));
-        anywhere.chain(on_systems).inspect(|_| done()).collect()
+        let one = |(it, held): &(WrongEngine, Standard)| {
+            let finding = power::examine(it, &cases.all, *held, defaults);
+            done();
+            finding
+        };
+        self.0.par_iter().map(one).collect()
     }
 }
 

@@ -4,7 +4,7 @@
 //! Any part may be empty; the report then says that it was not run.
 
 use super::EventPicture;
-use crate::case::{Case, SystemCase};
+use crate::case::Case;
 use serde::Serialize;
 
 /// The model of the paper, which is no system of a file.
@@ -151,32 +151,16 @@ impl CaseNote {
     #[must_use]
     pub fn of(case: &Case, embedded: bool) -> Self {
         let folder = if embedded { "validation/" } else { "" };
+        let system = if case.oscillator.is_some() { OSCILLATOR } else { &case.system.name };
         Self {
             name: case.name.clone(),
             file: format!("{folder}{}", case.file),
             toml: case.text.clone(),
-            system: OSCILLATOR.to_owned(),
-            states: ["p", "y", "q", "v"].map(str::to_owned).to_vec(),
-            regime: case.regime.to_string(),
-            why: case.why.clone(),
-            margin: case.margin,
-            trouble: Vec::new(),
-        }
-    }
-
-    /// What this case of a system says of itself; `embedded`: it stands inside the binary.
-    #[must_use]
-    pub fn of_system(case: &SystemCase, embedded: bool) -> Self {
-        let folder = if embedded { "validation/" } else { "" };
-        Self {
-            name: case.name.clone(),
-            file: format!("{folder}{}", case.file),
-            toml: case.text.clone(),
-            system: case.system.name.clone(),
+            system: system.to_owned(),
             states: case.system.states.clone(),
-            regime: case.trouble.join(", "),
+            regime: case.kind(", "),
             why: case.why.clone(),
-            margin: None,
+            margin: case.oscillator.as_ref().and_then(|it| it.margin),
             trouble: case.trouble.clone(),
         }
     }

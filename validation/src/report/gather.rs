@@ -3,39 +3,39 @@
 use super::evidence::{
     CaseNote, ErrorGrowth, FaultRow, ReportEvidence, RestartHistogram, SectionPair,
 };
+use crate::case::{OscillatorCase, SAMPLES_PER_PERIOD};
 use crate::power::{Finding, Gate};
 use crate::score::attractor::{AttractorTest, Comparison};
 use crate::score::{Histogram, Measures, sample_errors};
-use crate::suite::{Prepared, PreparedSystem, Scored, Status, is_shown};
+use crate::suite::{PreparedCase, Scored, Status, is_shown};
 
 impl ReportEvidence {
     /// Collects it; `embedded`: the cases stand inside the binary.
     #[must_use]
     pub fn gather(
-        (cases, systems): (&[Prepared], &[PreparedSystem]),
+        cases: &[PreparedCase],
         rows: &[Scored],
         findings: &[Finding],
         embedded: bool,
     ) -> Self {
-        let of_systems = systems.iter().map(|it| CaseNote::of_system(&it.case, embedded));
-        let notes = cases.iter().map(|it| CaseNote::of(&it.case, embedded)).chain(of_systems);
         let mut evidence = Self {
-            cases: notes.collect(),
+            cases: cases.iter().map(|it| CaseNote::of(&it.case, embedded)).collect(),
             faults: findings.iter().map(fault).collect(),
             ..Self::default()
         };
         for row in rows {
             let Status::Ok(measures, _) = &row.status else { continue };
             let Some(prepared) = cases.iter().find(|it| it.case.name == row.case) else { continue };
+            let Some(own) = &prepared.case.oscillator else { continue };
             // Fifty curves in one picture say nothing.
             let shown = is_shown(row.role, row.accuracy);
-            if prepared.case.regime.is_chaotic() && shown {
+            if own.regime.is_chaotic() && shown {
                 evidence.growth.extend(growth(prepared, row));
             }
             evidence.restarts.extend(restarts(row, measures));
             // A section beyond its limits is shown whosever it is.
             if shown || measures.probed.share() > 1.0 {
-                evidence.sections.extend(sections(prepared, row, measures));
+                evidence.sections.extend(sections((prepared, own), row, measures));
             }
         }
         evidence
@@ -70,17 +70,17 @@ fn shows(finding: &Finding) -> String {
     format!(" (held against the cases with {}; {on_others})", way.words())
 }
 
-fn growth(prepared: &Prepared, row: &Scored) -> Option<ErrorGrowth> {
+fn growth(prepared: &PreparedCase, row: &Scored) -> Option<ErrorGrowth> {
     let Status::Ok(_, outcome) = &row.status else { return None };
-    let per_period = f64::from(crate::truth::Truth::SAMPLES_PER_PERIOD);
-    let largest = |growth: &[f64; 4]| growth[..3].iter().fold(1.0_f64, |a, b| a.max(*b));
-    let error = sample_errors(&prepared.truth, outcome);
+    let per_period = f64::from(SAMPLES_PER_PERIOD);
+    let PreparedCase { truth, rule, .. } = prepared;
+    let error = sample_errors(truth, rule, outcome);
     Some(ErrorGrowth {
         case: row.case.clone(),
         engine: row.engine.to_owned(),
         tolerance: row.accuracy.tolerance(),
         periods: (0..error.len()).map(|k| k as f64 / per_period).collect(),
-        truth_growth: prepared.growth.samples.iter().map(|it| row.unit * largest(it)).collect(),
+        truth_growth: truth.samples.iter().map(|it| row.unit * rule.largest_growth(it)).collect(),
         error,
         lambda_per_period: prepared.attractor().map(|it| it.reference.lyapunov),
     })
@@ -128,15 +128,19 @@ fn in_words(name: &str) -> String {
 }
 
 /// An integrator's section beside the exact solver's.
-fn sections(prepared: &Prepared, row: &Scored, measures: &Measures) -> Option<SectionPair> {
+fn sections(
+    (prepared, own): (&PreparedCase, &OscillatorCase),
+    row: &Scored,
+    measures: &Measures,
+) -> Option<SectionPair> {
     let AttractorTest { reference, calibrated } = prepared.attractor()?;
     let Comparison { points, distances } = measures.probed.attractor.as_ref()?.as_ref().ok()?;
     row.accuracy.tolerance()?;
     let shown = calibrated.plan.periods as usize;
     let named = distances.iter().map(|(name, value, limit)| (in_words(name), *value, *limit));
     Some(SectionPair {
-        omega: prepared.case.parameters.omega,
-        xi: prepared.case.parameters.xi,
+        omega: own.parameters().omega,
+        xi: own.parameters().xi,
         exact: reference.points.iter().take(shown).map(|[p, y, _]| [*p, *y]).collect(),
         direct: points.clone(),
         direct_engine: row.engine.to_owned(),

@@ -125,10 +125,10 @@ fn events_of_a_system() {
 fn cases() {
     let value = json(&stdout(&["cases", "--format", "json"]));
     assert_valid("cases.schema.json", &value);
-    let all = percuss_validation::case::Cases::embedded().expect("the cases are read");
+    let all = percuss_validation::case::embedded().expect("the cases are read");
     let listed = value["cases"].as_array().cloned().unwrap_or_default();
     let names: Vec<_> = listed.iter().map(|it| it["name"].as_str().unwrap_or_default()).collect();
-    let mut embedded: Vec<_> = all.names().collect();
+    let mut embedded: Vec<_> = all.iter().map(|it| it.name.as_str()).collect();
     embedded.sort_unstable();
     assert_eq!(names, embedded, "every case once, in the order of names");
     let of = |name: &str| listed.iter().find(|it| it["name"] == name).cloned().expect("listed");

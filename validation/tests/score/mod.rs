@@ -1,11 +1,11 @@
 //! `score`: the same verdicts for the same answers.
 
 use crate::support::{refused, run, text};
-use percuss_validation::case::{Cases, defaults};
+use percuss_validation::case::{defaults, embedded};
 use percuss_validation::engine::{Accuracy, Ended, Outcome, Task};
 use percuss_validation::integrators::all;
 use percuss_validation::number::shortest;
-use percuss_validation::suite::{CaseRun, Status, Suite, one, prepare, prepare_systems};
+use percuss_validation::suite::{Status, Suite, one, prepare};
 use percuss_validation::truth::Library;
 use serde_json::Value;
 use std::fs;
@@ -88,19 +88,17 @@ impl Files {
 fn answers(engine: &str, accuracy: Accuracy, pattern: &str, folder: &Path) -> Vec<String> {
     let engine = all().iter().find(|it| it.declaration().name == engine).expect("an engine");
     let pattern = regex::Regex::new(pattern).expect("a pattern");
-    let mut cases = Cases::embedded().expect("read");
-    cases.retain(|name| pattern.is_match(name));
+    let mut cases = embedded().expect("read");
+    cases.retain(|it| pattern.is_match(&it.name));
     let library = Library::embedded().expect("read");
-    let oscillator = prepare(cases.oscillator, &library, None).expect("made ready");
-    let systems = prepare_systems(cases.systems, &library, None).expect("made ready");
-    let oscillator = oscillator.iter().map(|it| it as &dyn CaseRun);
+    let cases = prepare(cases, &library, None).expect("made ready");
     let defaults = defaults().expect("read");
     let mut answered = Vec::new();
-    for case in oscillator.chain(systems.iter().map(|it| it as &dyn CaseRun)) {
+    for case in &cases {
         let row = one(case, *engine, accuracy, Suite::Quick, &defaults);
         let Status::Ok(_, run) = row.status else { continue };
-        Files::of(&run, case.asked()).write(folder, case.name());
-        answered.push(case.name().to_owned());
+        Files::of(&run, &case.task).write(folder, &case.case.name);
+        answered.push(case.case.name.clone());
     }
     answered
 }

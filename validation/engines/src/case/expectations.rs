@@ -1,5 +1,6 @@
 //! The bounds and expected failures in a case file.
 
+use super::Case;
 use super::bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
 use super::located::{FileError, FileText};
 use crate::accuracy::Accuracy;
@@ -22,6 +23,14 @@ pub struct Defaults {
     pub of_systems: Vec<Bound>,
     /// Expected failures on many cases.
     pub shortcomings: Vec<Shortcoming>,
+}
+
+impl Defaults {
+    /// The bounds that come after a case's own.
+    #[must_use]
+    pub fn on(&self, case: &Case) -> &[Bound] {
+        if case.oscillator.is_some() { &self.bounds } else { &self.of_systems }
+    }
 }
 
 /// A key's value that is one number or a list of numbers.

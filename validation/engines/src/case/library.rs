@@ -5,8 +5,8 @@ use super::bound::Shortcoming;
 use super::expectations::{Defaults, read_bounds};
 use super::located::{FileError, read_text};
 use super::shortcomings::read_shortcomings;
-use super::system_case::{SystemCase, is_of_a_system, parse_system_case};
-use super::wire::parse_case;
+use super::system_case::{is_of_a_system, parse_system_case};
+use super::wire::parse_oscillator_case;
 use include_dir::{Dir, include_dir};
 use std::path::{Path, PathBuf};
 
@@ -14,104 +14,63 @@ static CASES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/cases");
 const BOUNDS: &str = include_str!("../../bounds.toml");
 const SHORTCOMINGS: &str = include_str!("../../shortcomings.toml");
 
-/// Cases of the oscillator and of other systems, each by name.
-#[derive(Clone, Debug, Default)]
-pub struct Cases {
-    /// The cases of the oscillator.
-    pub oscillator: Vec<Case>,
-    /// The cases of other systems.
-    pub systems: Vec<SystemCase>,
-}
-
-impl Cases {
-    /// The cases inside the binary.
-    ///
-    /// # Errors
-    /// [`FileError`]; a test shows that there is none.
-    pub fn embedded() -> Result<Self, FileError> {
-        let mut cases = Self::default();
-        cases.collect(&CASES)?;
-        cases.ordered()
-    }
-
-    /// The cases of a folder and the folders in it; the systems' files are beside their cases, or
-    /// inside the binary.
-    ///
-    /// # Errors
-    /// [`FileError`] for the first file that cannot be read or understood, or a folder without
-    /// cases.
-    pub fn from_directory(folder: &Path) -> Result<Self, FileError> {
-        let mut cases = Self::default();
-        for path in case_files(folder)? {
-            let text = read_text(&path)?;
-            cases.read(&path.display().to_string(), &text, path.parent())?;
-        }
-        if cases.names().next().is_none() {
-            return Err(FileError::of(&folder.display().to_string(), "holds no case (*.toml)"));
-        }
-        cases.ordered()
-    }
-
-    /// The names of all cases.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        let systems = self.systems.iter().map(|it| it.name.as_str());
-        self.oscillator.iter().map(|it| it.name.as_str()).chain(systems)
-    }
-
-    /// Keeps the cases whose names are wanted.
-    pub fn retain(&mut self, wanted: impl Fn(&str) -> bool) {
-        self.oscillator.retain(|it| wanted(&it.name));
-        self.systems.retain(|it| wanted(&it.name));
-    }
-
-    fn collect(&mut self, folder: &Dir<'_>) -> Result<(), FileError> {
-        for file in folder.files().filter(|file| is_case(file.path())) {
-            let name = format!("cases/{}", file.path().display());
-            let text = file.contents_utf8().ok_or_else(|| FileError::of(&name, "not UTF-8"))?;
-            self.read(&name, text, None)?;
-        }
-        folder.dirs().try_for_each(|inner| self.collect(inner))
-    }
-
-    fn read(&mut self, name: &str, text: &str, folder: Option<&Path>) -> Result<(), FileError> {
-        if is_of_a_system(text) {
-            self.systems.push(parse_system_case(name, text, folder)?);
-        } else {
-            self.oscillator.push(parse_case(name, text)?);
-        }
-        Ok(())
-    }
-
-    fn ordered(mut self) -> Result<Self, FileError> {
-        self.oscillator.sort_by(|a, b| a.name.cmp(&b.name));
-        self.systems.sort_by(|a, b| a.name.cmp(&b.name));
-        let mut names: Vec<_> = self.names().collect();
-        names.sort_unstable();
-        match names.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(FileError(format!("two cases are called {:?}", pair[0]))),
-            None => Ok(self),
-        }
-    }
-}
-
-/// The oscillator's cases inside the binary, by name.
+/// The cases inside the binary: those in the oscillator's own words, then those of systems, each by
+/// name.
 ///
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
 pub fn embedded() -> Result<Vec<Case>, FileError> {
-    Ok(Cases::embedded()?.oscillator)
+    let mut cases = Vec::new();
+    collect(&CASES, &mut cases)?;
+    ordered(cases)
 }
 
-/// The oscillator's cases of a folder and the folders in it, by name.
+/// The cases of a folder and the folders in it, in the order of [`embedded`]; the systems' files
+/// are beside their cases, or inside the binary.
 ///
 /// # Errors
-/// Fails as [`Cases::from_directory`] does, and where no case is of the oscillator.
+/// [`FileError`] for the first file that cannot be read or understood, or a folder without cases.
 pub fn from_directory(folder: &Path) -> Result<Vec<Case>, FileError> {
-    let cases = Cases::from_directory(folder)?.oscillator;
+    let read =
+        |path: PathBuf| parse_case(&path.display().to_string(), &read_text(&path)?, path.parent());
+    let cases = case_files(folder)?.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
     if cases.is_empty() {
-        let what = "holds no case of the oscillator (*.toml)";
-        return Err(FileError::of(&folder.display().to_string(), what));
+        return Err(FileError::of(&folder.display().to_string(), "holds no case (*.toml)"));
     }
+    ordered(cases)
+}
+
+fn collect(folder: &Dir<'_>, cases: &mut Vec<Case>) -> Result<(), FileError> {
+    for file in folder.files().filter(|file| is_case(file.path())) {
+        let name = format!("cases/{}", file.path().display());
+        let text = file.contents_utf8().ok_or_else(|| FileError::of(&name, "not UTF-8"))?;
+        cases.push(parse_case(&name, text, None)?);
+    }
+    folder.dirs().try_for_each(|inner| collect(inner, cases))
+}
+
+/// Reads one case; `file` is what errors call it, and `folder` holds the systems' files that are
+/// not inside the binary.
+///
+/// # Errors
+/// [`FileError`] names the file's line, the field, its value and what is accepted.
+pub fn parse_case(file: &str, text: &str, folder: Option<&Path>) -> Result<Case, FileError> {
+    if is_of_a_system(text) {
+        parse_system_case(file, text, folder)
+    } else {
+        parse_oscillator_case(file, text)
+    }
+}
+
+fn ordered(mut cases: Vec<Case>) -> Result<Vec<Case>, FileError> {
+    let mut names: Vec<_> = cases.iter().map(|it| it.name.as_str()).collect();
+    names.sort_unstable();
+    if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+        return Err(FileError(format!("two cases are called {:?}", pair[0])));
+    }
+    cases.sort_by(|a, b| {
+        a.oscillator.is_none().cmp(&b.oscillator.is_none()).then(a.name.cmp(&b.name))
+    });
     Ok(cases)
 }
 

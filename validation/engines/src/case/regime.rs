@@ -101,8 +101,8 @@ mod tests {
     fn percuss_has_a_word_for_every_regime_of_its_cases() {
         let cases = embedded().unwrap_or_default();
         assert!(!cases.is_empty());
-        for case in cases {
-            assert!(!matches!(case.regime, Regime::Other(_)), "{}: {}", case.name, case.regime);
+        for case in cases.iter().filter_map(|it| it.oscillator.as_ref()) {
+            assert!(!matches!(case.regime, Regime::Other(_)), "{}", case.regime);
         }
     }
 

@@ -1,10 +1,9 @@
 //! A case of a piecewise-affine system.
 
+use super::Case;
 use super::expectations::{BoundTable, ShortcomingTable};
 use super::located::{FileError, FileText, read_text};
 use super::systems::named;
-use super::{Bound, Shortcoming};
-use crate::system::SystemProblem;
 use percuss::affine::{System, SystemFile, TROUBLE};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -14,33 +13,6 @@ use toml::Spanned;
 /// At how many instants a state is tabulated where a case does not say it, and at most.
 const SAMPLES: i64 = 100;
 const MOST_SAMPLES: i64 = 100_000;
-
-/// A case of a piecewise-affine system, as `docs/SYSTEM_FORMAT.md` has it.
-#[derive(Clone, Debug)]
-pub struct SystemCase {
-    /// Name, as in `-c` and in the reference data's file names.
-    pub name: String,
-    /// The path of the case's file; it begins with `cases/` for a case inside the binary.
-    pub file: String,
-    /// The text of the case's file.
-    pub text: String,
-    /// The reason for the case.
-    pub why: String,
-    /// The kinds of trouble that the case makes for integrators.
-    pub trouble: Vec<String>,
-    /// The system with the case's parameters and start.
-    pub system: System,
-    /// The clock's time at the horizon.
-    pub until: f64,
-    /// Whether the run goes back in time.
-    pub backward: bool,
-    /// The number of instants after the start at which the state is tabulated.
-    pub samples: u32,
-    /// The bounds of this case, which come before the default bounds.
-    pub bounds: Vec<Bound>,
-    /// Expected failures of engines, with their reasons.
-    pub shortcomings: Vec<Shortcoming>,
-}
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the tables of a case of a system")]
@@ -89,11 +61,7 @@ pub(super) fn is_of_a_system(text: &str) -> bool {
 ///
 /// # Errors
 /// [`FileError`] names the file's line, the field, its value and what is accepted.
-pub fn parse_system_case(
-    file: &str,
-    text: &str,
-    folder: Option<&Path>,
-) -> Result<SystemCase, FileError> {
+pub fn parse_system_case(file: &str, text: &str, folder: Option<&Path>) -> Result<Case, FileError> {
     let source = FileText { file, text };
     let wire: SystemCaseFile = source.parse()?;
     let SystemCaseTable { name, system, why, trouble } = wire.case;
@@ -119,7 +87,7 @@ pub fn parse_system_case(
     }
     let each_bound = wire.bounds.into_iter().map(|it| source.bound(it));
     let each_shortcoming = wire.shortcomings.into_iter().map(|it| source.shortcoming(it));
-    Ok(SystemCase {
+    Ok(Case {
         name: name.into_inner(),
         file: file.to_owned(),
         text: text.to_owned(),
@@ -129,6 +97,7 @@ pub fn parse_system_case(
         until,
         backward,
         samples: source.samples(wire.horizon.samples)?,
+        oscillator: None,
         bounds: each_bound.collect::<Result<_, _>>()?,
         shortcomings: each_shortcoming.collect::<Result<_, _>>()?,
     })
@@ -137,30 +106,6 @@ pub fn parse_system_case(
 /// The clock's time at the start, rounded.
 fn begin(system: &System) -> Option<f64> {
     Some(system.start.as_ref()?.time.to_f64())
-}
-
-impl SystemCase {
-    /// Time from the start to the horizon.
-    #[must_use]
-    pub fn span(&self) -> f64 {
-        (self.until - begin(&self.system).unwrap_or_default()).abs()
-    }
-
-    /// The system made ready to be run from the case's start.
-    ///
-    /// # Errors
-    /// [`FileError`] for a system that the solver or the engines do not take.
-    pub fn problem(&self) -> Result<SystemProblem, FileError> {
-        SystemProblem::new(self.system.clone(), self.backward)
-            .map_err(|failure| FileError::of(&self.file, failure))
-    }
-
-    /// The times since the start at which the state is tabulated, as far as `end`.
-    #[must_use]
-    pub fn sample_times(&self, end: f64) -> Vec<f64> {
-        let time = |k: u32| self.span() * f64::from(k) / f64::from(self.samples);
-        (0..self.samples).map(time).take_while(|time| *time <= end).collect()
-    }
 }
 
 impl FileText<'_> {

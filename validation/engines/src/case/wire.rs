@@ -4,7 +4,7 @@ use super::expectations::{BoundTable, ShortcomingTable};
 use super::located::{FileError, FileText, read_text};
 use super::probed::ProbesTable;
 use super::problem::Given;
-use super::{Case, Horizon, Regime};
+use super::{Case, Horizon, OscillatorCase, Regime};
 use percuss::{Instant, Phase};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -157,11 +157,11 @@ impl FileText<'_> {
     }
 }
 
-/// Reads one case; `file` is what errors call it.
+/// Reads one case in the oscillator's own words; `file` is what errors call it.
 ///
 /// # Errors
 /// [`FileError`] names the file's line, the field, its value and what is accepted.
-pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
+pub(super) fn parse_oscillator_case(file: &str, text: &str) -> Result<Case, FileError> {
     let source = FileText { file, text };
     let wire: CaseToml = source.parse()?;
     let given = source.given(wire.parameters, wire.start)?;
@@ -177,19 +177,18 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
         }
         margin => margin.as_ref().map(|margin| *margin.get_ref()),
     };
+    let run = Case::of_run(problem, horizon).map_err(|it| FileError::of(file, it))?;
+    let probed = source.probed(&wire.probes)?;
+    let own = |own| OscillatorCase { regime: wire.case.regime, margin, probed, ..own };
     Ok(Case {
         name: name.into_inner(),
         file: source.file.to_owned(),
         text: source.text.to_owned(),
-        regime: wire.case.regime,
         why: wire.case.why,
-        margin,
-        parameters: given.parameters,
-        start: given.start,
-        horizon,
-        probed: source.probed(&wire.probes)?,
+        oscillator: run.oscillator.map(own),
         bounds: each(wire.bounds, |it| source.bound(it))?,
         shortcomings: each(wire.shortcomings, |it| source.shortcoming(it))?,
+        ..run
     })
 }
 

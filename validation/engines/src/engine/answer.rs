@@ -46,7 +46,7 @@ fn least_work_of_short_steps(engine: &dyn Engine, task: &Task) -> f64 {
 /// Checks that there is a sample for each instant asked for, that events follow each other, and
 /// that modes and states are the system's.
 fn complete(outcome: &Outcome, task: &Task) -> Result<(), Failure> {
-    let (given, asked) = (outcome.samples.len(), task.samples.len());
+    let (given, asked) = (outcome.samples.len(), task.instants().len());
     if given != asked {
         return Err(Failure::new(format!("gave {given} samples where {asked} were asked for")));
     }
@@ -74,7 +74,7 @@ fn complete(outcome: &Outcome, task: &Task) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::{Case, Given, embedded};
+    use crate::case::embedded;
     use crate::engine::{Event, OscillatorTask, SampleGrid};
     use crate::equations::Numbers;
     use crate::integrators::exact;
@@ -85,11 +85,8 @@ mod tests {
     fn task() -> Task {
         let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == "small-b");
         let Some(case) = case else { unreachable!("small-b is embedded") };
-        let Case { parameters, start, .. } = case;
-        let given = Given { parameters, start, ..Given::default() };
-        let Ok(problem) = given.check() else { unreachable!("small-b is checked") };
-        let task =
-            OscillatorTask::of(&case, problem, SampleGrid { per_period: 8, count: COUNT });
+        let Some(own) = &case.oscillator else { unreachable!("it is of the oscillator") };
+        let task = OscillatorTask::of(own, SampleGrid { per_period: 8, count: COUNT });
         let Ok(task) = Task::of_oscillator(&task) else { unreachable!("it is a system") };
         task
     }
@@ -105,8 +102,7 @@ mod tests {
         let mut outcome = whole(&task);
         assert_eq!(complete(&outcome, &task), Ok(()));
         outcome.samples.push(Values::of(&[0.0; 4]));
-        let refused =
-            |outcome: &Outcome| complete(outcome, &task).map_err(|it| it.reason);
+        let refused = |outcome: &Outcome| complete(outcome, &task).map_err(|it| it.reason);
         let said = |count| Err(format!("gave {count} samples where {COUNT} were asked for"));
         assert_eq!(refused(&outcome), said(COUNT + 1));
         outcome.samples.truncate(2);

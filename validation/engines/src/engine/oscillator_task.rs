@@ -1,7 +1,6 @@
 //! A run of the oscillator as the harness asks for it: by parameters, a start and forcing periods.
 
-use super::Watched;
-use crate::case::{Case, Horizon, Problem};
+use crate::case::{Horizon, OscillatorCase, Problem};
 use percuss::insides::angle;
 use percuss::{Instant, Parameters, Phase, TwoWord};
 
@@ -36,20 +35,18 @@ pub struct OscillatorTask {
     pub grid: SampleGrid,
     /// Events in the engine's life before this run: a fault may drop every hundredth event.
     pub events_before: u64,
-    /// The recording that is wanted beside the result; such a run ends when the recording is
-    /// complete.
-    pub watched: Option<Watched>,
 }
 
 impl OscillatorTask {
     /// The run that a case asks for.
     #[must_use]
-    pub fn of(case: &Case, problem: Problem, grid: SampleGrid) -> Self {
+    pub fn of(case: &OscillatorCase, grid: SampleGrid) -> Self {
+        let (problem, parameters) = (case.problem, *case.parameters());
         let horizon = match case.horizon {
             Horizon::Periods(periods) => problem.entry.instant.after_periods(u64::from(periods), 1),
-            Horizon::Until(tau) => Instant::at(case.parameters.omega, tau, 0),
+            Horizon::Until(tau) => Instant::at(parameters.omega, tau, 0),
         };
-        Self::until(case.parameters, problem, horizon, grid)
+        Self::until(parameters, problem, horizon, grid)
     }
 
     /// A run from a start to a horizon.
@@ -72,16 +69,12 @@ impl OscillatorTask {
             span: horizon.since(&entry.instant, parameters.omega).value(),
             grid,
             events_before: 0,
-            watched: None,
         }
     }
 
-    /// The grid's instants, or those that are watched, as times since the start.
+    /// The grid's instants, as times since the start.
     #[must_use]
     pub fn sample_times(&self) -> Vec<f64> {
-        if let Some(watched) = &self.watched {
-            return watched.instants.iter().map(|time| time.min(self.span)).collect();
-        }
         let start = self.problem.entry.instant;
         let instant = |k: usize| start.after_periods(k as u64, u64::from(self.grid.per_period));
         let since = |k: usize| instant(k).since(&start, self.parameters.omega).value();

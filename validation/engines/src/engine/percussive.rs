@@ -94,6 +94,6 @@ impl Task {
         let samples = task.sample_times();
         let run = Self::new(system, place(task.phase), &task.state, task.span, samples)?;
         let oscillator = Some(Arc::new(task.clone()));
-        Ok(Self { watched: task.watched.clone(), oscillator, ..run })
+        Ok(Self { oscillator, ..run })
     }
 }

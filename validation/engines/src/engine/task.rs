@@ -69,6 +69,12 @@ impl Task {
         Ok(Self { exact: Some(Arc::clone(problem)), ..task })
     }
 
+    /// The instants at which the state is taken: those that are watched, or those of the task.
+    #[must_use]
+    pub fn instants(&self) -> &[f64] {
+        self.watched.as_ref().map_or(&self.samples, |watched| &watched.instants)
+    }
+
     /// The run in the words of the oscillator, for engines that run nothing else.
     ///
     /// # Errors

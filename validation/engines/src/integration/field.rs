@@ -19,9 +19,7 @@ pub const GUARDS: usize = 2;
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// The oscillator in some co-ordinates.
-pub(crate) trait Coordinates:
-    Equations<State = [f64; 4], Guards = [f64; GUARDS]>
-{
+pub(crate) trait Coordinates: Equations<State = [f64; 4], Guards = [f64; GUARDS]> {
     /// Whether a task's system has these co-ordinates: the paper's bounded ones are a system's own
     /// states, others are defined for the oscillator alone.
     ///

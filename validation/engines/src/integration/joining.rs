@@ -35,21 +35,21 @@ pub(crate) struct Integration<'a, E: Equations> {
 }
 
 impl<'a, E: Coordinates> Integration<'a, E> {
-    /// The integration of the oscillator that a task asks for.
-    pub(crate) fn of(task: &'a OscillatorTask) -> Self {
-        Self::by(task, E::of(&task.parameters, task.forcing_angle))
+    /// The integration of the oscillator that a task asks for, in the oscillator's own words too.
+    pub(crate) fn of(task: &'a Task, own: &OscillatorTask) -> Self {
+        Self::by(task, own, E::of(&own.parameters, own.forcing_angle))
     }
 
-    /// The integration of a task by these equations.
-    pub(crate) fn by(task: &'a OscillatorTask, equations: E) -> Self {
-        let period = task.problem.model.period();
+    /// The integration of a task of the oscillator by these equations.
+    pub(crate) fn by(task: &'a Task, own: &OscillatorTask, equations: E) -> Self {
+        let period = own.problem.model.period();
         Self {
             equations,
-            mode: place(task.phase),
-            state: equations.of_bounded(&task.state),
-            span: task.span,
-            samples: task.sample_times(),
-            times: Times { period, turn: TAU, shortest: shortest_time(&task.parameters) },
+            mode: place(own.phase),
+            state: equations.of_bounded(&own.state),
+            span: own.span,
+            samples: instants(task),
+            times: Times { period, turn: TAU, shortest: shortest_time(&own.parameters) },
             watched: task.watched.as_ref(),
         }
     }
@@ -59,13 +59,12 @@ impl<'a> Integration<'a, Affine<'a>> {
     /// The integration of the system that a task asks for.
     pub(crate) fn of_system(task: &'a Task) -> Self {
         let system = &*task.system;
-        let instants = task.watched.as_ref().map_or(&task.samples, |watched| &watched.instants);
         Self {
             equations: Affine::of(system),
             mode: task.mode,
             state: task.state,
             span: task.span,
-            samples: instants.iter().map(|time| time.min(task.span)).collect(),
+            samples: instants(task),
             times: Times {
                 period: system.period(),
                 turn: system.turn(),
@@ -74,6 +73,11 @@ impl<'a> Integration<'a, Affine<'a>> {
             watched: task.watched.as_ref(),
         }
     }
+}
+
+/// The instants at which the state is taken, none beyond the run's end.
+fn instants(task: &Task) -> Vec<f64> {
+    task.instants().iter().map(|time| time.min(task.span)).collect()
 }
 
 /// A state of a run, in the co-ordinates of its equations.

@@ -126,9 +126,8 @@ mod tests {
         for tolerance in [1e-6, 1e-9, 1e-12] {
             let [one, other] = ["ode_solvers-dop853-time", "differential-equations-dop853"]
                 .map(|name| run(name, tolerance).unwrap_or_default());
-            let phases = |it: &Outcome| {
-                it.events.iter().map(|event| event.mode).collect::<Vec<_>>()
-            };
+            let phases =
+                |it: &Outcome| it.events.iter().map(|event| event.mode).collect::<Vec<_>>();
             assert!(one.events.len() >= 6 && phases(&one) == phases(&other));
             let [one, other] = [one, other].map(|it| it.work.rhs_evaluations as f64);
             assert!(one.max(other) <= SAME_WORK * one.min(other), "{tolerance}: {one}, {other}");

@@ -13,7 +13,7 @@ pub use exact::{end_of_exact_run, run_in_lanes};
 pub use registry::{add, all, exact, select};
 pub use wrong::{
     CONTROL, COOLDOWN, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, SOUND, Way, WrongEngine,
-    WrongWay, faulty, faulty_on_systems, wrong, wrong_on_systems,
+    faulty, wrong,
 };
 
 #[cfg(test)]

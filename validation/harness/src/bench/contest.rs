@@ -4,7 +4,6 @@ use super::contestant::{Contestant, settings as settings_of};
 use super::rounds::{Benchmark, PACE, RoundTimes, time_interleaved};
 use super::timed::ContestEntry;
 use super::timed_case::{Score, TimedCase};
-use super::timed_system_case::TimedSystemCase;
 use crate::engine::{Accuracy, Declaration, Failure, REFERENCE, Stepping, Work};
 
 /// A contestant at one setting, with its score and its times.
@@ -37,15 +36,18 @@ pub struct Timed {
     pub harness_share: Option<f64>,
 }
 
-/// Times all contestants at all their settings in interleaved rounds.
+/// Times the contestants that run the case's system, at all their settings, in interleaved rounds.
 pub fn contest(
     case: &TimedCase,
     contestants: &[&dyn Contestant],
     rounds: usize,
     done: &dyn Fn(),
 ) -> Vec<SettingResult> {
+    let (able, others): (Vec<&dyn Contestant>, Vec<&dyn Contestant>) =
+        contestants.iter().copied().partition(|it| it.takes(case));
+    (0..size(&others, rounds)).for_each(|_| done());
     let settings = |it: &&dyn Contestant| settings_of(it.declaration().stepping);
-    let asked = contestants.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
+    let asked = able.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
     contest_at(case, &asked.collect::<Vec<_>>(), rounds, done)
 }
 
@@ -57,29 +59,9 @@ pub fn contest_at(
     done: &dyn Fn(),
 ) -> Vec<SettingResult> {
     let entered = asked.iter().map(|(contestant, setting)| {
-        let entry = prepared(*contestant, case, *setting);
+        let entry = contestant.enter(case, *setting);
         done();
         PreparedRun { declaration: contestant.declaration(), setting: *setting, entry }
-    });
-    timed_runs(entered.collect(), case.periods(), rounds, done)
-}
-
-/// Times the contestants that run the case's system, at all their settings, in interleaved rounds.
-pub fn system_contest(
-    case: &TimedSystemCase,
-    contestants: &[&dyn Contestant],
-    rounds: usize,
-    done: &dyn Fn(),
-) -> Vec<SettingResult> {
-    let (able, others): (Vec<&dyn Contestant>, Vec<&dyn Contestant>) =
-        contestants.iter().copied().partition(|it| it.takes(case));
-    (0..size(&others, rounds)).for_each(|_| done());
-    let settings = |it: &&dyn Contestant| settings_of(it.declaration().stepping);
-    let asked = able.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
-    let entered = asked.map(|(contestant, setting)| {
-        let entry = contestant.enter_system(case, setting).and_then(right);
-        done();
-        PreparedRun { declaration: contestant.declaration(), setting, entry }
     });
     timed_runs(entered.collect(), case.periods(), rounds, done)
 }
@@ -127,24 +109,6 @@ struct PreparedRun<'a> {
     declaration: Declaration,
     setting: Accuracy,
     entry: Result<ContestEntry<'a>, Failure>,
-}
-
-/// A contestant made ready to be timed: only one whose answer is right is.
-fn prepared<'a>(
-    contestant: &'a dyn Contestant,
-    case: &'a TimedCase,
-    setting: Accuracy,
-) -> Result<ContestEntry<'a>, Failure> {
-    let timed = contestant.enter(case, setting)?;
-    let entry = right(ContestEntry { timed, library_part: None })?;
-    Ok(ContestEntry { library_part: contestant.library_part(case, setting)?, ..entry })
-}
-
-/// The entry itself, if its answer is right.
-fn right(mut entry: ContestEntry<'_>) -> Result<ContestEntry<'_>, Failure> {
-    entry.timed.call()?;
-    entry.timed.score()?;
-    Ok(entry)
 }
 
 /// The number of progress steps of a contest.

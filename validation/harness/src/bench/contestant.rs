@@ -6,13 +6,10 @@
 
 use super::library_part::library_part;
 use super::rounds::Benchmark;
-use super::system_run::system_entry;
 use super::timed::{ContestEntry, TimedRun};
 use super::timed_case::{Score, TimedCase};
-use super::timed_system_case::TimedSystemCase;
 use crate::engine::{
-    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Task,
-    Work, contain, least_work,
+    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Work, contain, least_work,
 };
 use crate::number::brief;
 
@@ -24,7 +21,11 @@ pub trait Contestant: Sync {
     /// The contestant's declaration: its name, its library, and how its accuracy is chosen.
     fn declaration(&self) -> Declaration;
 
-    /// Made ready for a case; nothing of this is timed.
+    /// Whether it runs the system of a case.
+    fn takes(&self, case: &TimedCase) -> bool;
+
+    /// Made ready for a case, with its own part of a run alone where that can be told apart from
+    /// the harness's; nothing of this is timed.
     ///
     /// # Errors
     /// Why it does not run there.
@@ -32,38 +33,7 @@ pub trait Contestant: Sync {
         &'a self,
         case: &'a TimedCase,
         setting: Accuracy,
-    ) -> Result<Box<dyn TimedRun + 'a>, Failure>;
-
-    /// The contestant's own part of a run, without the harness's; nothing where that cannot be told
-    /// apart.
-    ///
-    /// # Errors
-    /// Why it does not run there, or is not the same run then.
-    fn library_part<'a>(
-        &'a self,
-        _case: &'a TimedCase,
-        _setting: Accuracy,
-    ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
-        Ok(None)
-    }
-
-    /// Whether it runs the system of a case.
-    fn takes(&self, _case: &TimedSystemCase) -> bool {
-        false
-    }
-
-    /// Made ready for a run of any other system, with its own part alone where that can be told
-    /// apart; nothing of this is timed.
-    ///
-    /// # Errors
-    /// Why it does not run there.
-    fn enter_system<'a>(
-        &'a self,
-        _case: &'a TimedSystemCase,
-        _setting: Accuracy,
-    ) -> Result<ContestEntry<'a>, Failure> {
-        Err(Failure::new("it runs the oscillator alone"))
-    }
+    ) -> Result<ContestEntry<'a>, Failure>;
 }
 
 /// An engine as a contestant.
@@ -74,34 +44,22 @@ impl Contestant for EnteredEngine {
         self.0.declaration()
     }
 
+    fn takes(&self, case: &TimedCase) -> bool {
+        self.0.takes(&case.task).is_ok()
+    }
+
     fn enter<'a>(
         &'a self,
         case: &'a TimedCase,
         setting: Accuracy,
-    ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
-        enter(self.0, case, setting)
-    }
-
-    fn library_part<'a>(
-        &'a self,
-        case: &'a TimedCase,
-        setting: Accuracy,
-    ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
-        library_part(self.0, case, setting, limits())
-    }
-
-    fn takes(&self, case: &TimedSystemCase) -> bool {
-        self.0.takes(&case.task).is_ok()
-    }
-
-    fn enter_system<'a>(
-        &'a self,
-        case: &'a TimedSystemCase,
-        setting: Accuracy,
     ) -> Result<ContestEntry<'a>, Failure> {
-        self.0.available().map_err(Failure::new)?;
-        within_budget(least_work(self.0, &case.task, setting))?;
-        system_entry(self.0, case, setting, limits())
+        let mut timed = enter(self.0, case, setting)?;
+        // Only one whose answer is right is timed.
+        timed.call()?;
+        timed.score()?;
+        // Events at the entry of a mode are not located, so that not every run can be told.
+        let library_part = library_part(self.0, case, setting, limits()).ok().flatten();
+        Ok(ContestEntry { timed, library_part })
     }
 }
 
@@ -119,9 +77,8 @@ pub fn enter<'a>(
     setting: Accuracy,
 ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
     engine.available().map_err(Failure::new)?;
-    let task = Task::of_oscillator(&case.task)?;
-    within_budget(least_work(engine, &task, setting))?;
-    Ok(Box::new(EngineBenchmark { engine, case, task, setting, answer: Outcome::default() }))
+    within_budget(least_work(engine, &case.task, setting))?;
+    Ok(Box::new(EngineBenchmark { engine, case, setting, answer: Outcome::default() }))
 }
 
 /// Refuses a run that takes more right-hand sides than it may.
@@ -138,15 +95,14 @@ fn within_budget(least: f64) -> Result<(), Failure> {
 struct EngineBenchmark<'a> {
     engine: &'a dyn Engine,
     case: &'a TimedCase,
-    task: Task,
     setting: Accuracy,
     answer: Outcome,
 }
 
 impl Benchmark for EngineBenchmark<'_> {
     fn call(&mut self) -> Result<(), Failure> {
-        let Self { engine, task, setting, .. } = self;
-        self.answer = contain(|| engine.run(task, *setting, &limits()))?;
+        let Self { engine, case, setting, .. } = self;
+        self.answer = contain(|| engine.run(&case.task, *setting, &limits()))?;
         Ok(())
     }
 

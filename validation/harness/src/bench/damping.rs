@@ -11,7 +11,7 @@ use percuss::Parameters;
 const XI: [f64; 9] = [1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4];
 /// The forcing frequency of the cases with falling damping ratios.
 const OMEGA: f64 = 1.2;
-const PERIODS: u64 = 20;
+const PERIODS: u32 = 20;
 /// A tolerance at which most engines are right to the end, and stability limits their steps.
 const TOLERANCE: f64 = 1e-9;
 

@@ -8,15 +8,15 @@
 
 use super::rounds::Benchmark;
 use super::timed_case::TimedCase;
-use crate::engine::{Accuracy, Engine, Failure, Limits, Numbers, Outcome, Task, contain};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Numbers, Outcome, contain};
 use crate::integration::Script;
-use crate::integrators::exact;
+use crate::integrators::{end_of_exact_run, exact};
 use crate::system::Values;
 use percuss::Step;
 use std::hint::black_box;
 
 /// Rounds in which the run alone is timed: as many as a long call takes part in.
-pub(super) const ROUNDS: usize = 3;
+const ROUNDS: usize = 3;
 
 /// The library's part of an engine's run on a case; nothing for an engine of which nothing is
 /// left out.
@@ -29,20 +29,20 @@ pub fn library_part<'a>(
     setting: Accuracy,
     limits: Limits,
 ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
-    let task = Task::of_oscillator(&case.task)?;
-    let answer = contain(|| engine.run(&task, setting, &limits))?;
+    let run = move || engine.run(&case.task, setting, &limits);
+    let answer = contain(run)?;
     if engine.declaration().name == exact().declaration().name {
         let end = answer.end;
         return Ok(Some(Box::new(ExactSteps { case, end, last: end })));
     }
-    told(answer, move || engine.run(&task, setting, &limits))
+    told(answer, run)
 }
 
 /// A run that gave this answer, told its events; nothing where nothing is left out then.
 ///
 /// # Errors
 /// Why it is not the same run.
-pub fn told<'a>(
+fn told<'a>(
     answer: Outcome,
     run: impl Fn() -> Result<Outcome, Failure> + 'a,
 ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
@@ -86,9 +86,12 @@ struct ExactSteps<'a> {
     last: Values,
 }
 
-impl Benchmark for ExactSteps<'_> {
-    fn call(&mut self) -> Result<(), Failure> {
-        let task = &self.case.task;
+impl ExactSteps<'_> {
+    /// The end of a run by the solver of any system, or by the oscillator's own.
+    fn end(&self) -> Option<Values> {
+        let Some(task) = &self.case.task.oscillator else {
+            return end_of_exact_run(&self.case.problem, black_box(self.case.task.span));
+        };
         let entry = black_box(task.problem.entry);
         let mut run = task.problem.model.trajectory(entry).until(task.horizon);
         while let Some(step) = run.step() {
@@ -98,12 +101,18 @@ impl Benchmark for ExactSteps<'_> {
                 }
                 Step::Last(segment) => {
                     let end = segment.at_instant(&task.horizon);
-                    self.last = Values::of(&[end.state.p, end.state.y, end.state.q, end.v]);
-                    return Ok(());
+                    return Some(Values::of(&[end.state.p, end.state.y, end.state.q, end.v]));
                 }
             }
         }
-        Err(Failure::new("a run without end"))
+        None
+    }
+}
+
+impl Benchmark for ExactSteps<'_> {
+    fn call(&mut self) -> Result<(), Failure> {
+        self.last = self.end().ok_or_else(|| Failure::new("a run without end"))?;
+        Ok(())
     }
 
     fn check(&mut self) -> Result<(), Failure> {

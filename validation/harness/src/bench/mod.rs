@@ -23,11 +23,9 @@ mod pictures;
 pub mod report;
 pub mod rounds;
 mod summary;
-mod system_run;
 pub mod table;
 pub mod timed;
 pub mod timed_case;
-pub mod timed_system_case;
 pub mod workload;
 
 pub use pictures::{history as history_picture, pictures};

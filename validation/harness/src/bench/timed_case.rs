@@ -1,13 +1,15 @@
 //! The runs of contestants: a case from its start to its horizon, with the truth that answers are
 //! held to.
 
-use crate::case::{Case, FileError, Given};
-use crate::engine::{Event, Failure, OscillatorTask, Outcome, SampleGrid, place};
+use crate::case::{Case, FileError, Given, Horizon};
+use crate::engine::{Ended, Failure, OscillatorTask, Outcome, SampleGrid, Task};
 use crate::number::brief;
-use crate::score::{Matching, SCORED_ERROR, WINDOW, occurrences, worst};
-use crate::truth::{Library, Truth, TruthRow};
+use crate::score::{ErrorRule, EventNames, Matching, Occurrence, SCORED_ERROR, WINDOW, worst};
+use crate::system::SystemProblem;
+use crate::truth::{Library, Truth};
 use percuss::{Parameters, Start};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// The description of a timed case.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -32,22 +34,27 @@ impl CaseEntry {
 pub struct TimedCase {
     /// The name of the case.
     pub name: String,
-    /// The regime that the case stands for.
-    pub regime: String,
+    /// The regime that the case stands for, or the trouble that it makes.
+    pub kind: String,
     /// The run. It asks for no samples: events and the end are the answer.
-    pub task: OscillatorTask,
+    pub task: Task,
+    /// The system at its start, made ready for the exact solver.
+    pub problem: Arc<SystemProblem>,
     /// The truth.
     pub truth: Truth,
+    names: EventNames,
+    rule: ErrorRule,
+    occurrences: Vec<Occurrence>,
 }
 
 /// The errors of a right answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Score {
-    /// max(|dp|, |dy|, |dq|) over the events, each at its own time, and the end of the run.
+    /// The largest error of a state over the events, each at its own time, and the end of the run.
     pub state_error: f64,
-    /// The largest error of an event time.
+    /// The largest error of an event time, in the unit in which the case's times count.
     pub event_time_error: f64,
-    /// |dv| at the end.
+    /// |dv| at the end; zero where nothing drifts.
     pub drift_error: f64,
 }
 
@@ -63,40 +70,43 @@ impl Score {
     }
 }
 
-/// A grid without samples: only the events and the end are asked for.
-const NO_SAMPLES: SampleGrid = SampleGrid { per_period: 1, count: 0 };
-
 impl TimedCase {
     /// The run of a case.
     ///
     /// # Errors
-    /// [`FileError`] for reference data that are missing, altered or of another case.
+    /// [`FileError`] for reference data that are missing, altered or of another case, and for a
+    /// system that engines do not take.
     pub fn of(case: &Case, library: &Library) -> Result<Self, FileError> {
-        let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
-        let problem = given.check().map_err(FileError)?;
-        Ok(Self {
-            name: case.name.clone(),
-            regime: case.regime.to_string(),
-            task: OscillatorTask::of(case, problem, NO_SAMPLES),
-            truth: library.truth(case)?,
-        })
+        Self::with_truth(case, library.truth(case)?)
     }
 
     /// A run from rest of any model; its truth is the run made again in 106 bits.
     ///
     /// # Errors
     /// [`Failure`] for a model that is not accepted, or a run that 106 bits do not decide.
-    pub fn from_rest(parameters: Parameters, periods: u64) -> Result<Self, Failure> {
+    pub fn from_rest(parameters: Parameters, periods: u32) -> Result<Self, Failure> {
         let given = Given { parameters, start: Start::default(), ..Given::default() };
         let problem = given.check().map_err(Failure::new)?;
-        let horizon = problem.entry.instant.after_periods(periods, 1);
+        let case = Case::of_run(problem, Horizon::Periods(periods)).map_err(Failure::new)?;
+        let horizon = problem.entry.instant.after_periods(u64::from(periods), 1);
         let truth = Truth::replayed(&parameters, &problem.entry, horizon, (0, 1));
-        Ok(Self {
-            name: format!("omega {}, xi {}", parameters.omega, parameters.xi),
-            regime: "from rest".to_owned(),
-            task: OscillatorTask::until(parameters, problem, horizon, NO_SAMPLES),
-            truth: truth.map_err(Failure::new)?,
-        })
+        let timed = Self::with_truth(&case, truth.map_err(Failure::new)?).map_err(Failure::new)?;
+        let name = format!("omega {}, xi {}", parameters.omega, parameters.xi);
+        Ok(Self { name, kind: "from rest".to_owned(), ..timed })
+    }
+
+    fn with_truth(case: &Case, truth: Truth) -> Result<Self, FileError> {
+        let problem = Arc::new(case.problem()?);
+        let task = match &case.oscillator {
+            Some(own) => Task::of_oscillator(&OscillatorTask::of(own, NO_SAMPLES)),
+            None => Task::of(&problem, truth.span, Vec::new()),
+        };
+        let task = task.map_err(|failure| FileError::of(&case.file, failure))?;
+        let system = task.system.system();
+        let (names, rule) = (EventNames::of(case, system), ErrorRule::of(case, system));
+        let occurrences = names.of_truth(&truth);
+        let (name, kind) = (case.name.clone(), case.kind(" "));
+        Ok(Self { name, kind, task, problem, truth, names, rule, occurrences })
     }
 
     /// The case's entry in `bench.json`.
@@ -104,63 +114,69 @@ impl TimedCase {
     pub fn entry(&self) -> CaseEntry {
         CaseEntry {
             case: self.name.clone(),
-            regime: self.regime.clone(),
+            regime: self.kind.clone(),
             periods: self.periods(),
             events: self.truth.events.len(),
         }
     }
 
-    /// The length of the case in forcing periods.
+    /// The length of the case in forcing periods, or in what stands for them.
     #[must_use]
     pub fn periods(&self) -> f64 {
-        self.task.span / self.task.problem.model.period()
+        self.task.span / self.task.system.period()
     }
 
     /// How good an answer is, if it is right: every event there in its order and none besides, and
-    /// no error beyond the 1e-3 at which runs count as lost.
+    /// no error beyond the 1e-3 at which runs count as lost. States count in their scales; events
+    /// of one instant whose order is free may come in any.
     ///
     /// # Errors
     /// What is wrong with it.
     pub fn score(&self, answer: &Outcome) -> Result<Score, Failure> {
-        let truth = &self.truth.events;
-        let window = WINDOW * self.task.problem.model.period();
-        let same = truth.len() == answer.events.len()
-            && truth.iter().zip(&answer.events).all(|(row, event)| is_same(row, event, window));
+        let found = self.names.of_outcome(&self.task, &self.truth, answer);
+        let window = WINDOW * self.task.system.period();
+        let is_same = |(truth, own): (&Occurrence, &Occurrence)| {
+            truth.is_like(own) && (truth.elapsed - own.elapsed).abs() <= window
+        };
+        let same = self.occurrences.len() == found.len()
+            && self.occurrences.iter().zip(&found).all(is_same);
         if !same {
-            let matched =
-                Matching::of(&occurrences(truth), &occurrences(&answer.events), window).pairs.len();
-            let (missed, spurious) = (truth.len() - matched, answer.events.len() - matched);
+            let matched = Matching::of(&self.occurrences, &found, window).pairs.len();
+            let (missed, spurious) = (self.occurrences.len() - matched, found.len() - matched);
             return Err(Failure::new(format!(
                 "wrong: {missed} events missed, {spurious} spurious"
             )));
         }
-        let pairs = || truth.iter().zip(&answer.events);
-        let ends = [(&self.truth.end, answer.end)];
-        let states = pairs().map(|(row, event)| (row, event.state)).chain(ends);
-        let score = Score {
-            state_error: worst(states.map(|(row, state)| state_error(row, &state))),
-            event_time_error: worst(pairs().map(|(row, event)| off(row.elapsed, event.elapsed))),
-            drift_error: off(self.truth.end.state[3], answer.end[3]),
-        };
+        let score = self.errors(answer);
         // Written so that a NaN is wrong.
-        let largest = worst([score.state_error, score.drift_error].into_iter());
-        if largest <= SCORED_ERROR && score.event_time_error.is_finite() {
+        let largest =
+            worst([score.state_error, score.drift_error, score.event_time_error].into_iter());
+        if largest <= SCORED_ERROR {
             Ok(score)
         } else {
             let error = brief(largest);
             Err(Failure::new(format!("wrong: off by {error}, accepted is {SCORED_ERROR}")))
         }
     }
+
+    fn errors(&self, answer: &Outcome) -> Score {
+        let Self { truth, rule, .. } = self;
+        let rows = || truth.events.iter().zip(&answer.events);
+        // Between events of one instant the state is a matter of their order.
+        let placed = rows().zip(&self.occurrences).filter(|(_, it)| it.mode.is_some());
+        let states = placed.map(|((row, event), _)| rule.state_error(row, &event.state));
+        // Where infinitely many impacts end a run, engines do not come to the same end.
+        let reached = truth.ended == Ended::Horizon;
+        let end = reached.then(|| rule.state_error(&truth.end, &answer.end));
+        let times = rows().map(|(row, it)| rule.time_error(row.elapsed, it.elapsed));
+        let drift = rule.drift.map(|_| rule.drift_error(&truth.end, &answer.end));
+        Score {
+            state_error: worst(states.chain(end)),
+            event_time_error: worst(times.map(|error| error / rule.time_scale)),
+            drift_error: drift.unwrap_or(0.0),
+        }
+    }
 }
 
-fn is_same(row: &TruthRow, event: &Event, window: f64) -> bool {
-    row.phase.map(place) == Some(event.mode) && off(row.elapsed, event.elapsed) <= window
-}
-
-fn state_error(row: &TruthRow, state: &[f64]) -> f64 {
-    worst((0..3).map(|k| off(row.state[k], state[k])))
-}
-
-fn off(truth: percuss::TwoWord, value: f64) -> f64 {
-    truth.minus(percuss::TwoWord::new(value)).value().abs()
-}
+/// A grid without samples: only the events and the end are asked for.
+const NO_SAMPLES: SampleGrid = SampleGrid { per_period: 1, count: 0 };

@@ -32,7 +32,7 @@ impl Workload for CaseEvents<'_> {
     }
 
     fn run(&self, units: u64) -> Result<u64, Failure> {
-        let problem = &self.case.task.problem;
+        let problem = &self.case.task.of_the_oscillator()?.problem;
         let (mut done, mut evaluations) = (0, 0);
         while done < units {
             let counters = follow_events(&problem.model, problem.entry, units - done);

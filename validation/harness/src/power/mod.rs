@@ -3,20 +3,21 @@
 //! A bound that no fault trips guards nothing. Every wrong engine is run on every case that is at
 //! hand, held against the bounds of the engine that it is without its fault, and must fail at least
 //! one. A fault that shows in one way of running a case must be caught by the cases that are run in
-//! that way, and by no other ([`examine_on_systems`]).
+//! that way, and by no other ([`examine`]).
 
-mod systems;
+mod ways;
 
-pub use systems::{all_on_systems, examine_on_systems, is_run};
+pub use ways::is_run;
 
-use crate::case::{Bound, Quantity};
+use crate::case::{Case, Defaults, Quantity};
 use crate::engine::{Accuracy, Limits, REFERENCE};
 use crate::integrators::{SOUND, Way, WrongEngine, faulty, wrong};
 use crate::number::brief;
-use crate::score::{Checked, Expected, Measures, Subject, Verdict, judge};
-use crate::suite::{CaseRun, Extent, Prepared};
+use crate::score::{Checked, Expected, Subject, Verdict, judge};
+use crate::suite::{Extent, PreparedCase};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use ways::{MOST_CALLS, is_affordable};
 
 /// A group of bounds that test the same property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -198,7 +199,7 @@ impl Standard {
     }
 
     /// The extent of the tests of a wrong engine.
-    fn extent(&self, case: &crate::case::Case) -> Extent {
+    fn extent(&self, case: &Case) -> Extent {
         if self.accuracy == Accuracy::Exact {
             Extent::of_wrong(case)
         } else {
@@ -207,51 +208,59 @@ impl Standard {
     }
 }
 
-/// Every engine that is wrong on purpose, with what it is held to.
+/// Every engine that is wrong on purpose, with what it is held to: those whose faults show in ways
+/// of running a case come last.
 #[must_use]
 pub fn all() -> Vec<(WrongEngine, Standard)> {
     let integrators = Standard::of_faulty().into_iter();
     let integrators = integrators.flat_map(|held| faulty().iter().map(move |it| (*it, held)));
-    wrong().iter().map(|it| (*it, AS_EXACT)).chain(integrators).collect()
+    let mut all: Vec<_> = wrong().iter().map(|it| (*it, AS_EXACT)).chain(integrators).collect();
+    all.sort_by_key(|(it, _)| it.way.is_some());
+    all
 }
 
-/// Runs a wrong engine on all cases.
+/// Runs a wrong engine on all cases that show its fault. One that is wrong in a way of running a
+/// case is run on all cases of systems but for the stiffest: on those that are run in that way it
+/// has to fail a bound, and on the others none.
 #[must_use]
 pub fn examine(
     wrong: &WrongEngine,
-    cases: &[Prepared],
+    cases: &[PreparedCase],
     standard: Standard,
-    bounds: &[Bound],
+    defaults: &Defaults,
 ) -> Finding {
-    let one = |case: &Prepared| (case.case.name.clone(), held(wrong, case, standard, bounds));
-    let outcomes: Vec<_> = cases.par_iter().map(one).collect();
-    Finding::of(wrong, standard, outcomes)
+    let run = |cases: Vec<&PreparedCase>| {
+        let one =
+            |case: &&PreparedCase| (case.case.name.clone(), held(wrong, case, standard, defaults));
+        Finding::of(wrong, standard, cases.par_iter().map(one).collect::<Vec<_>>())
+    };
+    let (own, others): (Vec<_>, Vec<_>) =
+        cases.iter().partition(|case| case.case.oscillator.is_some());
+    let Some(way) = wrong.way else { return run(own) };
+    let others = others.into_iter().filter(|case| is_affordable(case));
+    let (with, without): (Vec<_>, Vec<_>) = others.partition(|case| is_run(case, way));
+    let count = without.len();
+    let elsewhere = (count, run(without).failed_on);
+    Finding { way: Some(way), elsewhere, ..run(with) }
 }
 
+/// The bounds that a run of a wrong engine was held against; none without a result.
 fn held(
     wrong: &WrongEngine,
-    prepared: &Prepared,
+    case: &PreparedCase,
     standard: Standard,
-    defaults: &[Bound],
+    defaults: &Defaults,
 ) -> Option<Vec<Checked>> {
-    let Standard { accuracy, unit, .. } = standard;
-    let limits = Limits::default();
-    let extent = |_| standard.extent(&prepared.case);
-    let measured = prepared.measured(wrong.engine, accuracy, unit, &limits, extent);
-    let (measures, ..) = measured.ok()?;
-    Some(judged(prepared, &measures, standard, defaults))
-}
-
-/// The bounds that a run of a wrong engine was held against.
-fn judged(
-    case: &dyn CaseRun,
-    measures: &Measures,
-    standard: Standard,
-    defaults: &[Bound],
-) -> Vec<Checked> {
     let Standard { engine, accuracy, unit } = standard;
-    let subject = Subject { case: case.name(), engine, accuracy, unit };
-    let bounds: Vec<_> = case.expectations().0.iter().chain(defaults).collect();
-    let expected = Expected { bounds: &bounds, of_classes: defaults, shortcomings: &[] };
-    judge(&subject, &case.as_run(measures), &expected).bounds
+    let mut limits = Limits::default();
+    if wrong.way.is_some() {
+        limits.calls = MOST_CALLS;
+    }
+    let extent = |_| standard.extent(&case.case);
+    let measured = case.measured(wrong.engine, (accuracy, unit), &limits, extent).ok()?;
+    let subject = Subject { case: &case.case.name, engine, accuracy, unit };
+    let of_classes = defaults.on(&case.case);
+    let bounds: Vec<_> = case.case.bounds.iter().chain(of_classes).collect();
+    let expected = Expected { bounds: &bounds, of_classes, shortcomings: &[] };
+    Some(judge(&subject, &case.as_run(&measured.measures), &expected).bounds)
 }

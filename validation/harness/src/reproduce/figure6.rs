@@ -42,7 +42,11 @@ fn section(engine: &dyn Engine, accuracy: Accuracy) -> Result<RunSection, Failur
     let refused = || Failure::new("the start is refused");
     let task = run_of(chaotic_model(), Start::default(), TRANSIENT + POINTS).ok_or_else(refused)?;
     let limits = Limits { calls: 1_000_000_000, events: 1_000_000, ..Limits::default() };
-    RunSection::of(&task, &answer(engine, &Task::of_oscillator(&task)?, accuracy, &limits)?, TRANSIENT)
+    RunSection::of(
+        &task,
+        &answer(engine, &Task::of_oscillator(&task)?, accuracy, &limits)?,
+        TRANSIENT,
+    )
 }
 
 /// Each integrator's section against the reference, in units of the calibrated limits.
@@ -53,10 +57,11 @@ fn compared(engines: &[&'static dyn Engine]) -> Result<Vec<(&'static str, Compar
     let (Some(case), Some(limits)) = (case, limits) else {
         return Err(Failure::new(format!("the case {CASE} has no calibrated limits")));
     };
-    let test = AttractorTest::new(case, limits)?;
+    let own = case.of_oscillator().map_err(Failure::new)?;
+    let test = AttractorTest::new(own, limits)?;
     let compare = |engine: &&'static dyn Engine| {
         let accuracy = Accuracy::Tolerance(TOLERANCE);
-        let comparison = test.compare(case, *engine, accuracy, &Limits::default())?;
+        let comparison = test.compare(own, *engine, accuracy, &Limits::default())?;
         Ok((engine.declaration().name, comparison))
     };
     engines.iter().map(compare).collect()

@@ -2,9 +2,7 @@
 
 use super::attractors::start;
 use super::paper::attractors_model;
-use crate::engine::{
-    Accuracy, Engine, Failure, Limits, Location, Role, Stepping, Task, answer,
-};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Location, Role, Stepping, Task, answer};
 use crate::integrators;
 use crate::score::attractor::run_of;
 use percuss::dynamics::strobe::StrobePoint;

@@ -1,50 +1,59 @@
 //! Scores: an engine's run compared with the truth.
 //!
 //! Everything is measured up to the scored horizon, which is fixed from the truth and the engine's
-//! unit of error alone ([`RunGrowth`]): a miss before it counts, nothing after it does.
+//! unit of error alone: a miss before it counts, nothing after it does.
 //!
-//! Files here are of the oscillator and of any other system alike. What is measured of the
-//! oscillator by what only it has is in the room `oscillator`, and of any other system in `system`.
+//! What an error is counted in, and how far a run is scored, is data ([`ErrorRule`]).
 
 pub mod attractor;
+mod decisions;
+mod event_names;
 mod graze;
+mod grazes;
 mod histogram;
 mod horizons;
 mod matching;
+mod measure;
 mod measures;
 mod mismatch;
 mod occurrence;
+mod on_attractor;
 mod order;
-mod oscillator;
 mod probed;
+mod restart;
 mod restart_figures;
+mod rule;
 mod scored;
+mod scored_horizon;
 mod shortcoming;
+mod starts;
 mod statistics;
-mod system;
+mod valid_horizon;
 mod verdict;
 
+pub use decisions::{Decision, decisions};
+pub use event_names::EventNames;
 pub use graze::Graze;
+pub use grazes::grazes;
 pub use histogram::Histogram;
 pub use horizons::{Horizons, ValidHorizon};
 pub use matching::{Matching, WINDOW};
+pub use measure::{MeasuredBy, measure, sample_errors};
 pub use measures::Measures;
 pub use mismatch::{Excused, Mismatch};
-pub use occurrence::{Occurrence, occurrences};
+pub use occurrence::Occurrence;
+pub use on_attractor::MOST_PERIODS;
 pub use order::order;
-pub use oscillator::{
-    HorizonTest, MOST_PERIODS, RestartRun, RestartTest, RunGrowth, far_apart, grazes, measure,
-    on_attractor, sample_errors,
-};
 pub use probed::ProbeResults;
+pub use restart::{RestartRun, RestartTest};
 pub use restart_figures::{Restart, RestartError};
+pub use rule::{Beside, ErrorRule};
 pub use scored::{Checked, ScoredRun, Verdict};
+pub use scored_horizon::ScoredBy;
+pub use starts::{far_apart, on_attractor};
 pub use statistics::Spread;
 pub(crate) use statistics::worst;
-pub use system::{
-    Decision, EventNames, SystemRestartRun, SystemRestartTest, SystemScale, decisions,
-    measure_system, system_grazes,
-};
+pub use valid_horizon::HorizonTest;
 pub use verdict::{Expected, RowJudgement, Subject, judge};
 
 /// Errors above this, in units of displacement, measure the growth and not the engine.

@@ -1,8 +1,5 @@
 //! Events as matching sees them, of the oscillator and of any other system alike.
 
-use crate::engine::{Event, place};
-use crate::truth::TruthRow;
-
 /// The time and the identity of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Occurrence {
@@ -22,24 +19,4 @@ impl Occurrence {
         let free = self.mode.is_none() || other.mode.is_none();
         self.event == other.event && (free || self.mode == other.mode)
     }
-}
-
-impl From<&TruthRow> for Occurrence {
-    fn from(row: &TruthRow) -> Self {
-        Self { elapsed: row.elapsed.value(), event: 0, mode: row.phase.map(place) }
-    }
-}
-
-impl From<&Event> for Occurrence {
-    fn from(event: &Event) -> Self {
-        Self { elapsed: event.elapsed, event: 0, mode: Some(event.mode) }
-    }
-}
-
-/// Events as matching sees them.
-pub fn occurrences<'a, T: 'a>(events: impl IntoIterator<Item = &'a T>) -> Vec<Occurrence>
-where
-    Occurrence: From<&'a T>,
-{
-    events.into_iter().map(Occurrence::from).collect()
 }

@@ -1,13 +1,11 @@
 //! Runs the matrix of cases, engines and settings, and the probes beyond it.
 
 mod matrix;
+mod prepared;
 mod probes;
 mod scope;
-mod system;
 
-pub use matrix::{
-    CaseRun, Measured, Prepared, Scored, Status, one, prepare, probes_any, run, size,
-};
+pub use matrix::{Scored, Status, one, probes_any, run, size};
+pub use prepared::{Measured, PreparedCase, prepare};
 pub use probes::{Extent, is_shown};
 pub use scope::{Suite, SuiteScope};
-pub use system::{PreparedSystem, prepare_systems};

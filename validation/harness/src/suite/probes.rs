@@ -2,10 +2,12 @@
 //! same attractor. Which cases ask what of integrators is said in their files (`[probes]`).
 
 use super::scope::Suite;
-use crate::case::{Case, FileError, Problem};
-use crate::engine::{Accuracy, Engine, Limits, Role, answer, contain};
+use crate::case::{Case, FileError, OscillatorCase, ProbedCase};
+use crate::engine::{Accuracy, Engine, Limits, Role, Task, answer, contain};
 use crate::score::attractor::{AttractorTest, Calibrated};
 use crate::score::{HorizonTest, ProbeResults, RestartTest};
+use crate::system::SystemProblem;
+use crate::truth::Truth;
 
 /// The tolerance at which integrators are probed in the quick suite, and those of the full one.
 const TOLERANCE: f64 = 1e-9;
@@ -17,14 +19,6 @@ const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
 pub fn is_shown(role: Role, accuracy: Accuracy) -> bool {
     let among = |it: f64| TOLERANCES.contains(&it);
     role == Role::Representative && accuracy.tolerance().is_none_or(among)
-}
-
-/// Whether a suite asks an engine at this accuracy for restarts on other systems than the
-/// oscillator: one engine a library, and the exact solver.
-#[must_use]
-pub fn restarts_on_systems(suite: Suite, role: Role, accuracy: Accuracy) -> bool {
-    let chosen = accuracy == Accuracy::Exact || role == Role::Representative;
-    chosen && may_probe(suite, role, accuracy)
 }
 
 /// Whether a suite may probe an engine at this accuracy on some case.
@@ -48,7 +42,7 @@ impl Suite {
 /// The probes of one case, made ready once and shared by all engines.
 #[derive(Default)]
 pub struct Probes {
-    /// Restarts from states on the attractor.
+    /// Restarts from states on the attractor, or along the run.
     pub restart: Option<RestartTest>,
     /// Runs until they are no longer right.
     pub horizons: Option<HorizonTest>,
@@ -63,39 +57,44 @@ impl Probes {
     /// The exact solver's own failure, or a case that says too short a time for its valid horizons.
     pub fn new(
         case: &Case,
-        problem: &Problem,
+        (problem, truth): (&SystemProblem, &Truth),
         suite: Suite,
         limits: &[Calibrated],
     ) -> Result<Self, FileError> {
+        let Some(oscillator) = &case.oscillator else {
+            let restart = RestartTest::along(case, problem, truth, restarts_along(suite));
+            let restart = Some(restart.map_err(|what| FileError::of(&case.file, what))?);
+            return Ok(Self { restart, ..Self::default() });
+        };
         // In the full suite the exact solver restarts on every attractor.
-        let restarted = suite == Suite::Full || case.probed.integrators;
-        let restart = restarted.then(|| RestartTest::new(problem, restarts(suite)));
+        let restarted = suite == Suite::Full || oscillator.probed.integrators;
+        let restart = restarted.then(|| RestartTest::on_attractor(case, restarts(suite)));
         let own = limits.iter().find(|it| it.case == case.name).cloned();
-        let attractor = own.map(|it| AttractorTest::new(case, it)).transpose();
+        let attractor = own.map(|it| AttractorTest::new(oscillator, it)).transpose();
         let attractor = attractor.map_err(|failure| FileError(failure.to_string()))?;
-        Ok(Self { restart, horizons: horizons(case, problem)?, attractor })
+        Ok(Self { restart: restart.transpose()?, horizons: horizons(case, oscillator)?, attractor })
     }
 
-    /// Asks an engine as much as `extent` says; `unit` is its unit of error.
+    /// Asks an engine as much as `extent` says, in its unit of error.
     #[must_use]
     pub fn ask(
         &self,
         case: &Case,
         engine: &dyn Engine,
-        accuracy: Accuracy,
-        unit: f64,
+        (accuracy, unit): (Accuracy, f64),
         limits: &Limits,
         extent: Extent,
     ) -> ProbeResults {
         let run = |task: &_| answer(engine, task, accuracy, limits);
         let restarts = self.restart.as_ref().filter(|_| extent.restarts > 0);
-        let restart = restarts.map(|test| test.score_first(extent.restarts, unit, run));
+        let restart = restarts.map(|it| it.score_first(extent.restarts, (accuracy, unit), run));
         let asked = self.horizons.as_ref().filter(|_| extent.horizons > 0);
         let horizons = asked.map(|test| test.score_first(extent.horizons, unit, run));
-        let compare = |test: &AttractorTest| {
-            contain(|| test.compare(case, engine, accuracy, limits)).map_err(|it| it.to_string())
+        let compare = |(test, own): (&AttractorTest, &OscillatorCase)| {
+            contain(|| test.compare(own, engine, accuracy, limits)).map_err(|it| it.to_string())
         };
         let attractor = self.attractor.as_ref().filter(|_| extent.attractor);
+        let attractor = attractor.zip(case.oscillator.as_ref());
         ProbeResults { restart, horizons, attractor: attractor.map(compare) }
     }
 
@@ -105,20 +104,43 @@ impl Probes {
         plan.map_or(0.0, |plan| f64::from(plan.transient + plan.periods))
     }
 
-    /// How much a suite asks of an engine on this case. What the case's own run cost a forcing
-    /// period tells what the probes would: they too stay within the budget of right-hand sides.
+    /// How much a suite asks of an engine on this case. What the case's own run cost tells what the
+    /// probes would: they too stay within the budget of right-hand sides.
     #[must_use]
     pub fn extent(
         &self,
         suite: Suite,
-        case: &Case,
+        (case, task): (&Case, &Task),
+        role: Role,
+        asked: (Accuracy, f64),
+        work: u64,
+    ) -> Extent {
+        if !may_probe(suite, role, asked.0) {
+            return Extent::default();
+        }
+        match &case.oscillator {
+            Some(own) => {
+                let periods = task.span / own.problem.model.period();
+                self.on_attractor(suite, own.probed, role, asked, work as f64 / periods.max(1.0))
+            }
+            None => {
+                let chosen = asked.0 == Accuracy::Exact || role == Role::Representative;
+                let restart = self.restart.as_ref().filter(|_| chosen);
+                let restarts =
+                    restart.map_or(0, |it| affordable(it, suite, work as f64 / task.span));
+                Extent { restarts, ..Extent::default() }
+            }
+        }
+    }
+
+    fn on_attractor(
+        &self,
+        suite: Suite,
+        probed: ProbedCase,
         role: Role,
         (accuracy, unit): (Accuracy, f64),
         work_a_period: f64,
     ) -> Extent {
-        if !may_probe(suite, role, accuracy) {
-            return Extent::default();
-        }
         if accuracy == Accuracy::Exact {
             return Extent { restarts: restarts(suite), horizons: HORIZONS, attractor: true };
         }
@@ -128,12 +150,19 @@ impl Probes {
             horizons: 0,
             attractor: self.long_run() <= budget,
         };
-        let probed = if case.probed.integrators { affordable } else { Extent::default() };
+        let asked = if probed.integrators { affordable } else { Extent::default() };
         let lasting = self.horizons.as_ref().is_some_and(|it| it.length(unit) as f64 <= budget);
         let followed = suite == Suite::Full && role == Role::Representative && lasting;
         let horizons = if followed { HORIZONS } else { 0 };
-        Extent { horizons, ..probed }
+        Extent { horizons, ..asked }
     }
+}
+
+/// How many restarts of a test a suite affords at so many right-hand sides a unit of time.
+fn affordable(test: &RestartTest, suite: Suite, work: f64) -> usize {
+    let work = work * test.span();
+    let share = suite.budget() / work.max(1.0);
+    (test.runs.len() as f64 * share.min(1.0)) as usize
 }
 
 /// The number of restarts and runs that a probe asks for.
@@ -151,7 +180,7 @@ impl Extent {
     /// The tests of an engine that is wrong on purpose.
     #[must_use]
     pub fn of_wrong(case: &Case) -> Self {
-        let listed = case.probed.integrators;
+        let listed = case.oscillator.as_ref().is_some_and(|it| it.probed.integrators);
         let restarts = if listed { restarts(Suite::Quick) } else { 0 };
         Self { restarts, horizons: HORIZONS_OF_WRONG, attractor: listed }
     }
@@ -171,9 +200,9 @@ const HORIZONS: usize = 200;
 const HORIZONS_OF_WRONG: usize = 40;
 
 /// The test of valid horizons, where a case asks for it.
-fn horizons(case: &Case, problem: &Problem) -> Result<Option<HorizonTest>, FileError> {
-    let Some(periods) = case.probed.valid_within else { return Ok(None) };
-    let test = HorizonTest::new(problem, HORIZONS, periods);
+fn horizons(case: &Case, own: &OscillatorCase) -> Result<Option<HorizonTest>, FileError> {
+    let Some(periods) = own.probed.valid_within else { return Ok(None) };
+    let test = HorizonTest::new(case, HORIZONS, periods)?;
     if test.decides(f64::EPSILON) {
         return Ok(Some(test));
     }
@@ -182,6 +211,14 @@ fn horizons(case: &Case, problem: &Problem) -> Result<Option<HorizonTest>, FileE
          to 1e-3 in each of {HORIZONS} runs on the case's attractor",
         case.file
     )))
+}
+
+/// Restarts of a system's case, spread over its run.
+const fn restarts_along(suite: Suite) -> usize {
+    match suite {
+        Suite::Quick => 20,
+        Suite::Full => 100,
+    }
 }
 
 /// A restart takes about this many forcing periods.

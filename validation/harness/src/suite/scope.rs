@@ -1,5 +1,6 @@
 //! The extent of a suite, and the limits of its runs.
 
+use crate::case::Case;
 use crate::engine::{Accuracy, Limits, Stepping};
 
 /// The extent of the run: quick or full.
@@ -107,16 +108,11 @@ impl Suite {
     }
 
     /// The limits beyond which a row's run is given up as a failure. The slowest method takes a
-    /// microsecond a call.
+    /// microsecond a call. On other systems than the oscillator it is seldom known beforehand what
+    /// a run costs: a right-hand side comes with a guard, and with hardly more.
     #[must_use]
-    pub fn limits(self) -> Limits {
-        Limits { calls: 4 * self.budget() as u64 + 8_000_000, ..Limits::default() }
-    }
-
-    /// As [`Suite::limits`], on other systems than the oscillator, where what a run costs is seldom
-    /// known beforehand: a right-hand side comes with a guard, and with hardly more.
-    #[must_use]
-    pub fn limits_of_systems(self) -> Limits {
-        Limits { calls: 2 * self.budget() as u64, ..Limits::default() }
+    pub fn limits(self, case: &Case) -> Limits {
+        let (calls, more) = if case.oscillator.is_some() { (4, 8_000_000) } else { (2, 0) };
+        Limits { calls: calls * self.budget() as u64 + more, ..Limits::default() }
     }
 }

@@ -4,18 +4,18 @@
 mod cautious;
 mod decimal;
 mod forms;
+mod growth;
+mod heading;
 mod landing;
 mod library;
 mod replay;
 mod replayed;
-mod system;
-mod system_growth;
 mod system_replay;
 mod table;
 
+pub use growth::GrowthMatrices;
 pub use library::Library;
 pub use percuss::affine::DoubleDouble;
 pub use replay::{Beginning, Replay, ReplayedPhase, Undecided};
-pub use system::{SystemTruth, SystemTruthRow};
 pub use system_replay::solver;
 pub use table::{Truth, TruthRow};

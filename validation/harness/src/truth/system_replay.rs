@@ -2,8 +2,10 @@
 //!
 //! It shares its method with the exact solver, which the tables do not.
 
-use super::{DoubleDouble, SystemTruth, SystemTruthRow, system_growth};
-use crate::case::{FileError, SystemCase};
+use super::growth::GrowthMatrices;
+use super::replayed::states_of_oscillator;
+use super::{DoubleDouble, Truth, TruthRow};
+use crate::case::{Case, FileError};
 use crate::engine::Ended;
 use percuss::TwoWord;
 use percuss::affine::{Ending, Event, Solver, StartPoint, Time, What};
@@ -22,30 +24,30 @@ const ALIKE: f64 = 1e-9;
 
 /// A run in 106 bits with what it is asked for.
 struct SystemReplay<'a> {
-    case: &'a SystemCase,
+    case: &'a Case,
     solver: &'a Solver<DoubleDouble>,
     begin: Time<DoubleDouble>,
 }
 
-impl SystemTruth {
+impl Truth {
     /// The truth of a case of which there are no tables.
-    pub(super) fn without_tables(case: &SystemCase) -> Result<Self, FileError> {
+    pub(super) fn of_system(case: &Case) -> Result<Self, FileError> {
         let refused = |what: String| FileError::of(&case.file, what);
         let solver = solver(case).map_err(refused)?;
-        Self::replayed(case, &solver).map_err(refused)
+        Self::solved(case, &solver).map_err(refused)
     }
 
     /// The truth of a case's run, by the closed forms of its system in the direction of the run.
     ///
     /// # Errors
     /// What 106 bits leave undecided, and horizons and samples beside an event.
-    pub fn replayed(case: &SystemCase, solver: &Solver<DoubleDouble>) -> Result<Self, String> {
+    pub fn solved(case: &Case, solver: &Solver<DoubleDouble>) -> Result<Self, String> {
         let start = case.system.start.as_ref().ok_or("the system has no start")?;
         let replay = SystemReplay { case, solver, begin: Time::of(&start.time) };
         let events = replay.events(start)?;
         replay.refuse_close_instants(&events)?;
         let mut truth = replay.truth(&events)?.with_sizes(&case.system.scales);
-        system_growth::fill(&mut truth, case);
+        GrowthMatrices::of(case).fill(&mut truth);
         Ok(truth)
     }
 }
@@ -54,17 +56,20 @@ impl SystemTruth {
 ///
 /// # Errors
 /// A system that the solver does not take.
-pub fn solver(case: &SystemCase) -> Result<Solver<DoubleDouble>, String> {
+pub fn solver(case: &Case) -> Result<Solver<DoubleDouble>, String> {
     let solver =
         if case.backward { Solver::backward(&case.system) } else { Solver::new(&case.system) };
     solver.map_err(|it| it.to_string())
 }
 
-impl SystemTruth {
+impl Truth {
     /// The states of a case's run in 106 bits at these times since its start; none where that does
     /// not decide the run so far.
     #[must_use]
-    pub fn states(case: &SystemCase, instants: &[f64]) -> Option<Vec<Vec<f64>>> {
+    pub fn states(case: &Case, instants: &[f64]) -> Option<Vec<Vec<f64>>> {
+        if let Some(own) = &case.oscillator {
+            return states_of_oscillator(own, instants);
+        }
         let (solver, start) = (solver(case).ok()?, case.system.start.as_ref()?);
         let replay = SystemReplay { case, solver: &solver, begin: Time::of(&start.time) };
         let events = replay.events(start).ok()?;
@@ -147,7 +152,7 @@ impl SystemReplay<'_> {
     }
 
     /// The truth without its growth, from the start, the events and the ending of a run.
-    fn truth(&self, events: &[Event<DoubleDouble>]) -> Result<SystemTruth, String> {
+    fn truth(&self, events: &[Event<DoubleDouble>]) -> Result<Truth, String> {
         let Some((last, events)) = events.split_last() else { return Err("has no run".into()) };
         let What::End(ending) = last.what else { return Err("its run does not end".into()) };
         let end = self.elapsed(&last.time).value();
@@ -165,7 +170,7 @@ impl SystemReplay<'_> {
         let rows: Vec<_> = events.iter().map(|event| self.row(event, self.number(event))).collect();
         let sampled_until = if ended == Ended::Horizon { f64::INFINITY } else { end };
         let times = self.case.sample_times(sampled_until);
-        Ok(SystemTruth {
+        Ok(Truth {
             start: rows[0].clone(),
             samples: times.iter().map(|time| self.sample(events, *time)).collect(),
             events: rows[1..].to_vec(),
@@ -222,13 +227,13 @@ impl SystemReplay<'_> {
         }
     }
 
-    fn row(&self, event: &Event<DoubleDouble>, number: usize) -> SystemTruthRow {
+    fn row(&self, event: &Event<DoubleDouble>, number: usize) -> TruthRow {
         let state = event.state.iter().map(|it| (*it).into()).collect();
         self.without_growth(number, event.mode, self.elapsed(&event.time), state)
     }
 
     /// The state at an instant, in the segment that the last event before it begins.
-    fn sample(&self, events: &[Event<DoubleDouble>], elapsed: f64) -> SystemTruthRow {
+    fn sample(&self, events: &[Event<DoubleDouble>], elapsed: f64) -> TruthRow {
         let begun = |event: &&Event<DoubleDouble>| self.elapsed(&event.time).value() <= elapsed;
         let segment = events.iter().take_while(begun).last().unwrap_or(&events[0]);
         let ahead = if self.case.backward { -elapsed } else { elapsed };
@@ -243,8 +248,8 @@ impl SystemReplay<'_> {
         mode: usize,
         elapsed: TwoWord,
         state: Vec<TwoWord>,
-    ) -> SystemTruthRow {
+    ) -> TruthRow {
         let growth = vec![1.0; state.len()];
-        SystemTruthRow { event, mode, elapsed, state, growth_time: 1.0, growth, size: 0.0 }
+        TruthRow { event, mode, elapsed, state, growth_time: 1.0, growth, size: 0.0 }
     }
 }

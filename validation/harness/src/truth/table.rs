@@ -1,22 +1,51 @@
-//! One case's tables: its events and its sample.
+//! The truth of a case: its tables, of which those in the oscillator's own words name phases and
+//! have no growth.
 
 use super::decimal;
-use crate::case::{Case, FileError, Horizon};
-use percuss::Phase;
+use super::growth::GrowthMatrices;
+use super::heading::check_heading;
+use crate::case::{Case, FileError};
+use crate::engine::Ended;
 use percuss::TwoWord;
+use percuss::affine::{System, Until};
+use std::collections::BTreeMap;
 
-/// The phase of an event table's last row.
-const END: &str = "end";
+/// A state that stays below this part of the largest is called faint.
+const FAINT: f64 = 1e-3;
 
 /// A row of a table.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct TruthRow {
-    /// The phase that begins at an event, or holds at a sample; `None` at the horizon.
-    pub phase: Option<Phase>,
+    /// The number of the event in the mode that it ends, or in which it is counted.
+    pub event: usize,
+    /// The mode that begins at an event, or holds at a sample.
+    pub mode: usize,
     /// Time since the start.
     pub elapsed: TwoWord,
-    /// p, y, q and v.
-    pub state: [TwoWord; 4],
+    /// The state after the event.
+    pub state: Vec<TwoWord>,
+    /// The growth of errors in the event time; 1 for samples.
+    pub growth_time: f64,
+    /// The growth of errors in each state.
+    pub growth: Vec<f64>,
+    /// The largest state of the run so far, over its scale: what rounds in one state grows into the
+    /// others.
+    pub size: f64,
+}
+
+impl TruthRow {
+    /// The row's state, rounded.
+    #[must_use]
+    pub fn rounded(&self) -> Vec<f64> {
+        self.state.iter().map(|it| it.value()).collect()
+    }
+
+    /// What an error of a time is judged beside, over the time scale: one, and the time or the
+    /// largest state so far, whichever is larger.
+    #[must_use]
+    pub fn size_of_time(&self, time_scale: f64) -> f64 {
+        1.0 + self.size.max(self.elapsed.value().abs() / time_scale)
+    }
 }
 
 /// The truth of a case.
@@ -24,130 +53,242 @@ pub struct TruthRow {
 pub struct Truth {
     /// The start.
     pub start: TruthRow,
-    /// The state at which each phase after the first begins.
+    /// The events.
     pub events: Vec<TruthRow>,
-    /// The horizon.
+    /// The last state of the run.
     pub end: TruthRow,
-    /// Eight instants per forcing period, the start among them.
+    /// The ending of the run.
+    pub ended: Ended,
+    /// The time for which engines run: up to the horizon, or past an accumulation of impacts.
+    pub span: f64,
+    /// The states at the instants asked for, as far as the run goes.
     pub samples: Vec<TruthRow>,
+    /// Whether events of one instant have an order that matters for what follows.
+    pub ordered: bool,
 }
 
-impl TruthRow {
-    /// The row's state, rounded.
-    #[must_use]
-    pub fn rounded(&self) -> [f64; 4] {
-        self.state.map(TwoWord::value)
-    }
+/// The last row's word for how a run ends.
+fn ending(word: &str) -> Option<Ended> {
+    Some(match word {
+        "end" => Ended::Horizon,
+        "accumulation" => Ended::Accumulation,
+        "leaves-domain" => Ended::LeavesDomain,
+        "no-progress" => Ended::NoProgress,
+        "beyond-guard" => Ended::BeyondGuard,
+        _ => return None,
+    })
 }
 
 impl Truth {
-    /// Samples per forcing period.
-    pub const SAMPLES_PER_PERIOD: u32 = 8;
-
     /// Reads both tables and holds them against the case they are said to be of.
     pub(super) fn read(
         case: &Case,
         events: (&str, &str),
         samples: (&str, &str),
     ) -> Result<Self, FileError> {
-        let mut rows = read_rows(case, events.0, events.1)?;
-        let samples = read_rows(case, samples.0, samples.1)?;
-        match (rows.len() >= 2).then(|| rows.pop()).flatten() {
-            Some(end) if end.phase.is_none() && rows.iter().all(|row| row.phase.is_some()) => {
-                let start = rows.remove(0);
-                Ok(Self { start, events: rows, end, samples })
-            }
-            _ => Err(FileError::of(
-                events.0,
-                "accepted is a table of phases whose last row alone is \"end\"",
-            )),
-        }
-    }
-
-    /// The run's length.
-    #[must_use]
-    pub fn span(&self) -> f64 {
-        self.end.elapsed.value()
-    }
-}
-
-fn read_rows(case: &Case, file: &str, text: &str) -> Result<Vec<TruthRow>, FileError> {
-    check_heading(case, file, text)?;
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
-    let heading = reader.headers().map_err(|error| FileError::of(file, error))?;
-    if heading.iter().ne(["index", "phase", "elapsed", "tau", "p", "y", "q", "v"]) {
-        return Err(FileError::of(
-            file,
-            "accepted are the columns index,phase,elapsed,tau,p,y,q,v",
-        ));
-    }
-    let mut rows: Vec<TruthRow> = Vec::new();
-    for (index, record) in reader.records().enumerate() {
-        let record = record.map_err(|error| FileError::of(file, error))?;
-        let row = read_row(index, &record);
-        let row = row.ok_or_else(|| {
-            FileError::of(file, format!("row {index} is not accepted: {record:?}"))
-        })?;
-        let backwards =
-            rows.last().is_some_and(|before| row.elapsed.minus(before.elapsed).value() < 0.0);
-        if backwards {
-            return Err(FileError::of(
-                file,
-                format!("row {index} is earlier than the one before it"),
+        let form = TableForm::of(case);
+        let table = Table::read(case, form, events, true)?;
+        let sampled = Table::read(case, form, samples, false)?;
+        let refused = |what: &str| FileError::of(events.0, what);
+        let (last, rest) = table.rows.split_last().ok_or_else(|| refused("holds no row"))?;
+        let (start, between) = rest.split_first().ok_or_else(|| refused("holds no start"))?;
+        let ended = ending(&last.0).ok_or_else(|| refused("its last row names no ending"))?;
+        if ended == Ended::BeyondGuard {
+            return Err(refused(
+                "the run ends where a mode is entered beyond one of its guards; accepted is a case \
+                 whose horizon is before that",
             ));
         }
-        rows.push(row);
+        let mut mode = start.1.mode;
+        let mut rows = Vec::new();
+        for (name, row) in between {
+            let event = form.event(&case.system, mode, name, row.mode).ok_or_else(|| {
+                refused(&format!("{name:?} is no event of {}", case.system.modes[mode].name))
+            })?;
+            mode = row.mode;
+            rows.push(TruthRow { event, ..row.clone() });
+        }
+        let earliest = table.heading.get("accumulation.earliest");
+        let earliest = earliest.and_then(|it| decimal::parse(it)).map(TwoWord::value);
+        let phases = form == TableForm::Phases;
+        let (mut end, mut whole) = (last.1.clone(), case.span());
+        if phases {
+            (end.mode, whole) = (mode, end.elapsed.value());
+        }
+        let mut truth = Self {
+            start: start.1.clone(),
+            events: rows,
+            end,
+            ended,
+            span: earliest.unwrap_or(whole),
+            samples: sampled.rows.into_iter().map(|(_, row)| row).collect(),
+            ordered: phases || table.heading.contains_key("order_matters"),
+        };
+        let growth = GrowthMatrices::of(case);
+        match form {
+            TableForm::Phases => growth.fill(&mut truth),
+            TableForm::Events => growth.round_instants(&mut truth),
+        }
+        Ok(truth.with_sizes(&case.system.scales))
     }
-    Ok(rows)
+
+    /// The truth with the largest state so far in each row.
+    #[must_use]
+    pub(super) fn with_sizes(mut self, scales: &[f64]) -> Self {
+        let rows = [&mut self.start, &mut self.end];
+        let mut rows: Vec<_> =
+            rows.into_iter().chain(&mut self.events).chain(&mut self.samples).collect();
+        rows.sort_by(|a, b| a.elapsed.value().total_cmp(&b.elapsed.value()));
+        let mut largest = 0.0_f64;
+        for row in rows {
+            let sizes =
+                row.state.iter().zip(scales).map(|(state, scale)| state.value().abs() / scale);
+            largest = sizes.fold(largest, f64::max);
+            row.size = largest;
+        }
+        self
+    }
+
+    /// The numbers of the states that move, but stay below a thousandth of the size beside which
+    /// their errors are judged: a wrong value of them is hardly seen.
+    #[must_use]
+    pub fn faint_states(&self, scales: &[f64]) -> Vec<usize> {
+        let rows = || self.events.iter().chain(&self.samples).chain([&self.start, &self.end]);
+        let largest = rows().fold(1.0, |most: f64, row| most.max(row.size));
+        let extent = |n: usize| {
+            rows().fold(0.0, |most: f64, row| most.max(row.state[n].value().abs() / scales[n]))
+        };
+        let is_faint = |n: &usize| (f64::MIN_POSITIVE..FAINT * largest).contains(&extent(*n));
+        (0..scales.len()).filter(is_faint).collect()
+    }
+
+    /// The times since the start at which the state is known.
+    #[must_use]
+    pub fn sample_times(&self) -> Vec<f64> {
+        self.samples.iter().map(|row| row.elapsed.value()).collect()
+    }
 }
 
-fn read_row(index: usize, record: &csv::StringRecord) -> Option<TruthRow> {
+/// The words of a table.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum TableForm {
+    /// Those of the oscillator: the phase that begins, and no growth.
+    Phases,
+    /// Those of systems: an event, the mode that begins, and how errors have grown.
+    Events,
+}
+
+impl TableForm {
+    fn of(case: &Case) -> Self {
+        if case.oscillator.is_some() { Self::Phases } else { Self::Events }
+    }
+
+    fn columns(self, states: &[String], of_events: bool) -> Vec<String> {
+        let first: &[&str] = match self {
+            Self::Phases => &["index", "phase", "elapsed", "tau"],
+            Self::Events if of_events => &["index", "event", "mode", "elapsed", "time"],
+            Self::Events => &["index", "mode", "elapsed", "time"],
+        };
+        let mut columns: Vec<String> = first.iter().map(|it| (*it).to_owned()).collect();
+        columns.extend(states.iter().cloned());
+        if self == Self::Events {
+            columns.extend(of_events.then(|| "growth_time".to_owned()));
+            columns.extend(states.iter().map(|state| format!("growth_{state}")));
+        }
+        columns
+    }
+
+    /// The number of an event in a mode, by its name or by the phase that it leads to: those that
+    /// end the mode come first.
+    fn event(self, system: &System, mode: usize, name: &str, next: usize) -> Option<usize> {
+        let mode = &system.modes[mode];
+        let leads = |until: &Until| until.next.iter().any(|it| it.mode == next);
+        if self == Self::Phases {
+            return mode.until.iter().position(leads);
+        }
+        let until = mode.until.iter().map(|it| &it.name);
+        until.chain(mode.watch.iter().map(|it| &it.name)).position(|it| it == name)
+    }
+}
+
+struct Table {
+    heading: BTreeMap<String, String>,
+    /// Each with the name of its event.
+    rows: Vec<(String, TruthRow)>,
+}
+
+impl Table {
+    fn read(
+        case: &Case,
+        form: TableForm,
+        (file, text): (&str, &str),
+        of_events: bool,
+    ) -> Result<Self, FileError> {
+        let lines = text.lines().take_while(|line| line.starts_with('#'));
+        let entry = |line: &str| {
+            let (key, value) = line[1..].split_once('=')?;
+            Some((key.trim().to_owned(), value.trim().to_owned()))
+        };
+        let heading: BTreeMap<_, _> = lines.filter_map(entry).collect();
+        check_heading(case, file, &heading)?;
+        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
+        let columns = form.columns(&case.system.states, of_events);
+        let found = reader.headers().map_err(|error| FileError::of(file, error))?;
+        if found.iter().ne(columns.iter().map(String::as_str)) {
+            let what = format!("accepted are the columns {}", columns.join(","));
+            return Err(FileError::of(file, what));
+        }
+        let mut rows: Vec<(String, TruthRow)> = Vec::new();
+        for (index, record) in reader.records().enumerate() {
+            let record = record.map_err(|error| FileError::of(file, error))?;
+            let row = read_row(case, index, &columns, &record).ok_or_else(|| {
+                FileError::of(file, format!("row {index} is not accepted: {record:?}"))
+            })?;
+            let is_earlier =
+                |before: &(String, TruthRow)| row.1.elapsed.minus(before.1.elapsed).value() < 0.0;
+            if rows.last().is_some_and(is_earlier) {
+                let what = format!("row {index} is earlier than the one before it");
+                return Err(FileError::of(file, what));
+            }
+            rows.push(row);
+        }
+        Ok(Self { heading, rows })
+    }
+}
+
+/// A row with the name of its event, or of its phase.
+fn read_row(
+    case: &Case,
+    index: usize,
+    columns: &[String],
+    record: &csv::StringRecord,
+) -> Option<(String, TruthRow)> {
     if record.get(0)?.parse() != Ok(index) {
         return None;
     }
-    let phase = match record.get(1)? {
-        END => None,
-        token => Some(token.parse().ok()?),
-    };
-    let number = |column: usize| decimal::parse(record.get(column)?);
-    let state = [number(4)?, number(5)?, number(6)?, number(7)?];
-    Some(TruthRow { phase, elapsed: number(2)?, state })
-}
-
-/// The table must have been made from the very f64 values of the case.
-fn check_heading(case: &Case, file: &str, text: &str) -> Result<(), FileError> {
-    let given = |name: &str| {
-        let mut lines = text.lines().take_while(|line| line.starts_with('#'));
-        lines.find_map(|line| line.strip_prefix(&format!("# {name} = ")))
-    };
-    let start = case.start;
-    let model = case.parameters;
-    let numbers = [
-        ("a", model.a),
-        ("b", model.b),
-        ("xi", model.xi),
-        ("omega", model.omega),
-        ("g", model.g),
-        ("phi", model.phi),
-        ("start.tau", start.tau),
-        ("start.p", start.p),
-        ("start.y", start.y),
-        ("start.v", start.v),
-        ("start.cycle", start.cycle as f64),
-        match case.horizon {
-            Horizon::Periods(periods) => ("horizon.periods", f64::from(periods)),
-            Horizon::Until(tau) => ("horizon.until", tau),
-        },
-    ];
-    for (name, value) in numbers.into_iter().chain(start.q.map(|q| ("start.q", q))) {
-        let stated = given(name).and_then(|text| text.parse::<f64>().ok());
-        if stated != Some(value) {
-            let stated = given(name).unwrap_or("missing");
-            return Err(FileError::of(
-                file,
-                format!("was made for {name} = {stated}, the case has {value:?}"),
-            ));
+    let place = |name: &str| columns.iter().position(|it| it == name);
+    let word = |name: &str| record.get(place(name)?);
+    let number = |name: &str| decimal::parse(word(name)?);
+    let growth = |name: &str| match place(name) {
+        Some(column) => {
+            let growth = record.get(column)?.parse::<f64>().ok()?;
+            (growth >= 1.0 && growth.is_finite()).then_some(growth)
         }
-    }
-    Ok(())
+        None => Some(1.0),
+    };
+    let states = || case.system.states.iter();
+    let name = word("event").or_else(|| word("phase")).unwrap_or_default();
+    let mode = word("mode").unwrap_or(name);
+    // The last row of a table of phases names none.
+    let last = ending(mode).filter(|_| place("phase").is_some()).map(|_| 0);
+    let row = TruthRow {
+        event: 0,
+        mode: last.or_else(|| case.system.mode(mode))?,
+        elapsed: number("elapsed")?,
+        state: states().map(|it| number(it)).collect::<Option<_>>()?,
+        growth_time: growth("growth_time")?,
+        growth: states().map(|it| growth(&format!("growth_{it}"))).collect::<Option<_>>()?,
+        size: 0.0,
+    };
+    Some((name.to_owned(), row))
 }

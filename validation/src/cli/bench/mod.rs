@@ -11,14 +11,13 @@ use super::shared::programs::ProgramFlags;
 use super::shared::{long_work, parse};
 use super::{DONE, OUT_OF_BOUNDS};
 use crate::bench::compare::worker::serve;
-use crate::bench::contest::{self, SettingResult, contest, system_contest};
+use crate::bench::contest::{self, SettingResult, contest};
 use crate::bench::contestant::Contestant;
 use crate::bench::report::{CaseEntry, Measurement};
 use crate::bench::timed_case::TimedCase;
-use crate::bench::timed_system_case::TimedSystemCase;
 use crate::bench::{Bench, cases, contestants, damping, floor, length, pictures};
 use crate::bench::{table, workload};
-use crate::case::Cases;
+use crate::case::{Case, embedded};
 use crate::engine::{Declaration, REFERENCE, Stepping, hush_contained_panics};
 use crate::provenance;
 use crate::truth::Library;
@@ -84,7 +83,7 @@ fn time_engines(arguments: &Arguments) -> Result<u8> {
     let _programs = arguments.programs.start()?;
     let all = contestants();
     let contestants = chosen_engines(&all, &arguments.engine)?;
-    let timed_cases = TimedCases::of(&arguments.case)?;
+    let timed_cases = timed(&arguments.case)?;
     if let Some(folder) = &arguments.out {
         make_folder(folder)?;
     }
@@ -112,21 +111,18 @@ fn worker() -> Result<()> {
 fn measured(
     arguments: &Arguments,
     contestants: &[&dyn Contestant],
-    timed_cases: &TimedCases,
+    timed_cases: &[TimedCase],
 ) -> Result<Bench> {
     let rounds = usize::from(arguments.rounds);
     // Length and xi are of no case: they belong to the whole.
     let whole = arguments.case.is_empty();
-    let TimedCases { oscillator, systems } = timed_cases;
-    let bar = bar(arguments, contestants, oscillator.len() + systems.len(), whole);
+    let bar = bar(arguments, contestants, timed_cases.len(), whole);
     let done = || bar.inc(1);
     // First, while the process holds nothing: its peak is then the run's own.
     let length = if whole { length::lengths(arguments.long, &done)? } else { Vec::new() };
     let floors = floor::floors(&[], FLOOR_ROUNDS * rounds, &done)?;
-    let own = oscillator.iter().map(|it| (it.entry(), contest(it, contestants, rounds, &done)));
-    let others =
-        systems.iter().map(|it| (it.entry(), system_contest(it, contestants, rounds, &done)));
-    let contests: Vec<(CaseEntry, Vec<SettingResult>)> = own.chain(others).collect();
+    let contest = |it: &TimedCase| (it.entry(), contest(it, contestants, rounds, &done));
+    let contests: Vec<(CaseEntry, Vec<SettingResult>)> = timed_cases.iter().map(contest).collect();
     let damping = if whole { damping::over_xi(contestants, rounds, &done)? } else { Vec::new() };
     bar.finish_and_clear();
     let measured = Measurement { contests: &contests, floors: &floors, length, damping: &damping };
@@ -170,52 +166,24 @@ fn chosen_engines<'a>(
     Ok(all.iter().map(AsRef::as_ref).filter(|it| is_unit(*it) || matches(*it)).collect())
 }
 
-/// The cases that engines are timed on.
-struct TimedCases {
-    oscillator: Vec<TimedCase>,
-    systems: Vec<TimedSystemCase>,
-}
-
-impl TimedCases {
-    /// The cases that are named, or the oscillator's usual ones.
-    fn of(patterns: &[Regex]) -> Result<Self> {
-        let all = Cases::embedded()?;
-        let own = all.oscillator.iter().map(|it| it.name.as_str());
-        CASES.check(patterns, own.chain(all.systems.iter().map(|it| it.name.as_str())))?;
-        let wanted = |name: &str| {
-            if patterns.is_empty() {
-                cases::USUAL.contains(&name)
-            } else {
-                patterns.iter().any(|it| it.is_match(name))
-            }
-        };
-        let library = Library::embedded()?;
-        let chosen = in_order(&cases::USUAL, all.oscillator, |it| &it.name, wanted);
-        let oscillator =
-            chosen.iter().map(|it| TimedCase::of(it, &library)).collect::<Result<_, _>>();
-        let chosen = in_order(&cases::SYSTEMS, all.systems, |it| &it.name, wanted);
-        let systems =
-            chosen.iter().map(|it| TimedSystemCase::of(it, &library)).collect::<Result<_, _>>();
-        Ok(Self { oscillator: oscillator?, systems: systems? })
-    }
-}
-
-/// The cases that are wanted, those of a list first.
-fn in_order<C>(
-    list: &[&str],
-    all: Vec<C>,
-    name: fn(&C) -> &String,
-    wanted: impl Fn(&str) -> bool,
-) -> Vec<C> {
-    let mut chosen: Vec<C> = all.into_iter().filter(|it| wanted(name(it))).collect();
-    let place = |case: &C| list.iter().position(|it| it == name(case));
-    chosen.sort_by_key(|case| place(case).unwrap_or(usize::MAX));
-    chosen
+/// The cases that are named, or the oscillator's usual ones, those of the lists first.
+fn timed(patterns: &[Regex]) -> Result<Vec<TimedCase>> {
+    let mut all = embedded()?;
+    CASES.check(patterns, all.iter().map(|it| it.name.as_str()))?;
+    all.retain(|it| match patterns {
+        [] => cases::USUAL.contains(&it.name.as_str()),
+        _ => patterns.iter().any(|pattern| pattern.is_match(&it.name)),
+    });
+    let listed = || cases::USUAL.iter().chain(&cases::SYSTEMS);
+    let place = |case: &Case| listed().position(|it| *it == case.name);
+    all.sort_by_key(|it| (it.oscillator.is_none(), place(it).unwrap_or(usize::MAX)));
+    let library = Library::embedded()?;
+    Ok(all.iter().map(|it| TimedCase::of(it, &library)).collect::<Result<_, _>>()?)
 }
 
 /// The cases that are timed where none are named, and that versions are compared by.
 fn usual_cases() -> Result<Vec<TimedCase>> {
-    Ok(TimedCases::of(&[])?.oscillator)
+    timed(&[])
 }
 
 fn write(bench: &Bench, folder: &Path) -> Result<()> {

@@ -6,12 +6,12 @@ use super::names::{CASES, Selection, held_by};
 use super::output::{Destination, make_folder, reader_left};
 use super::terminal::{note, say};
 use super::{parse, reports};
-use crate::case::{self, Cases, Defaults};
+use crate::case::{self, Case, Defaults};
 use crate::report::{
     Baseline, CASES_FLAG, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary,
     ranking_text, screen,
 };
-use crate::suite::{self, CaseRun, Prepared, PreparedSystem, Suite};
+use crate::suite::{self, PreparedCase, Suite};
 use crate::truth::Library;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
@@ -76,18 +76,18 @@ const FEW_CASES: usize = 3;
 
 impl CaseFlags {
     /// The cases that are chosen.
-    pub(in crate::cli) fn read(&self) -> Result<Cases> {
+    pub(in crate::cli) fn read(&self) -> Result<Vec<Case>> {
         let mut cases = match &self.cases {
-            Some(folder) => Cases::from_directory(folder).context("--cases")?,
-            None => Cases::embedded()?,
+            Some(folder) => case::from_directory(folder).context("--cases")?,
+            None => case::embedded()?,
         };
-        let names: Vec<&str> = cases.names().collect();
+        let names: Vec<&str> = cases.iter().map(|it| it.name.as_str()).collect();
         let listed = match &self.cases {
             Some(folder) => held_by(folder, &names),
             None => CASES.listed.to_owned(),
         };
         Selection { listed: &listed, ..CASES }.check(&self.case, names)?;
-        cases.retain(|name| self.accepts(name));
+        cases.retain(|it| self.accepts(&it.name));
         Ok(cases)
     }
 
@@ -115,7 +115,7 @@ impl CaseFlags {
 
 /// Cases whose truth is still to be read.
 pub(in crate::cli) struct OpenedCases {
-    cases: Cases,
+    cases: Vec<Case>,
     library: Library,
     /// Whether they come from a folder, not from inside the binary.
     are_users: bool,
@@ -125,15 +125,12 @@ impl OpenedCases {
     /// The cases with their truth, and with the probes of a suite if one is given.
     pub(in crate::cli) fn prepare(self, probes: Option<Suite>) -> Result<PreparedCases> {
         let Self { cases, library, are_users } = self;
-        let replayed: Vec<String> =
-            cases.names().filter(|name| library.is_replayed(name)).map(str::to_owned).collect();
-        let prepared = PreparedCases {
-            replayed,
-            oscillator: suite::prepare(cases.oscillator, &library, probes)?,
-            systems: suite::prepare_systems(cases.systems, &library, probes)?,
-        };
+        let names = cases.iter().map(|it| it.name.clone());
+        let replayed: Vec<String> = names.filter(|name| library.is_replayed(name)).collect();
+        let prepared = PreparedCases { replayed, all: suite::prepare(cases, &library, probes)? };
         if are_users {
-            prepared.systems.iter().for_each(note_faint_states);
+            let systems = prepared.all.iter().filter(|it| it.case.oscillator.is_none());
+            systems.for_each(note_faint_states);
         }
         for name in &prepared.replayed {
             note(&format!(
@@ -145,7 +142,7 @@ impl OpenedCases {
 }
 
 /// Says which states of a case are too small beside the others for their errors to be seen.
-fn note_faint_states(prepared: &PreparedSystem) {
+fn note_faint_states(prepared: &PreparedCase) {
     let system = &prepared.case.system;
     let faint = prepared.truth.faint_states(&system.scales);
     let names: Vec<&str> = faint.iter().map(|n| system.states[*n].as_str()).collect();
@@ -173,16 +170,8 @@ pub(in crate::cli) fn accepts(patterns: &[Regex], name: &str) -> bool {
 pub(in crate::cli) struct PreparedCases {
     /// The names of those without tables.
     pub(in crate::cli) replayed: Vec<String>,
-    pub(in crate::cli) oscillator: Vec<Prepared>,
-    pub(in crate::cli) systems: Vec<PreparedSystem>,
-}
-
-impl PreparedCases {
-    /// All cases: those of the oscillator, then those of other systems.
-    pub(in crate::cli) fn all(&self) -> Vec<&dyn CaseRun> {
-        let oscillator = self.oscillator.iter().map(|it| it as &dyn CaseRun);
-        oscillator.chain(self.systems.iter().map(|it| it as &dyn CaseRun)).collect()
-    }
+    /// Those of the oscillator, then those of other systems.
+    pub(in crate::cli) all: Vec<PreparedCase>,
 }
 
 impl JudgedFlags {

@@ -2,16 +2,13 @@
 //! truly is and as the engine had it, with the engine's steps and what its root finder saw.
 //!
 //! The row's run is made again and watched around the event. The truth is the exact solver's run,
-//! made again in 106 bits. A picture has the same parts for all systems ([`scene`]); [`mismatch`]
-//! gets them for the oscillator, [`system`] for any other system.
+//! made again in 106 bits. Its parts are in [`scene`]; [`mismatch`] finds the event and draws it.
 
 mod choice;
 mod draw;
-mod guarded;
 mod mismatch;
 mod scales;
 mod scene;
-mod system;
 
 pub use choice::event_pictures;
 pub use mismatch::MismatchKind;

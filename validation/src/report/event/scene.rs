@@ -1,111 +1,13 @@
 //! The true run and the engine's run in the views of one wrong event.
 
-use super::guarded::GuardCurve;
-use super::mismatch::EventMismatch;
 use super::scales::Scales;
-use super::{EventMark, EventPicture, View, ViewTrajectory};
-use crate::engine::{Engine, Limits, OscillatorTask, Outcome, Task, Watched, contain};
-use crate::suite::{Prepared, Scored};
-use crate::truth::Replay;
-use percuss::{Phase, TwoWord};
+use super::{EventMark, View, ViewTrajectory};
 
 /// Marks of steps and looks nearer to each other than this share of a view are shown as one.
 const APART: f64 = 1.0 / 120.0;
 /// The engine's error hides the truth's shape where it is larger than this share of the truth's
 /// range.
 const HIDDEN: f64 = 0.6;
-
-/// Runs a row again and watches it around its first wrong event.
-pub(super) fn picture(
-    prepared: &Prepared,
-    task: &OscillatorTask,
-    row: &Scored,
-    it: &EventMismatch,
-    (engine, mean_step, limits): (&dyn Engine, f64, &Limits),
-) -> Option<EventPicture> {
-    let period = task.problem.model.period();
-    let scales = Scales::around((it.at, it.reach), mean_step, period, task.span);
-    let instants = scales.all_instants();
-    let truth = truth_at(task, it.guarded, &instants)?;
-    let watched = Watched { window: scales.window(), instants: instants.clone() };
-    let task = OscillatorTask { watched: Some(watched), ..task.clone() };
-    // An engine that records nothing gives no states at the instants, and its events are drawn.
-    let asked = Task::of_oscillator(&task).ok()?;
-    let outcome = contain(|| engine.run(&asked, row.accuracy, limits)).ok()?;
-    let trace = outcome.trace.as_ref();
-    let looks = trace.map_or(&[][..], |trace| &trace.looks);
-    let looks = looks.iter().filter_map(|look| Some([look.t, it.guarded.of_look(look)?]));
-    let scene = Scene {
-        at: it.at,
-        first: task.phase.as_str().to_owned(),
-        truth: SceneCurve { values: truth, events: truth_events(prepared, it) },
-        engine: SceneCurve {
-            values: engine_at(&task, it.guarded, &outcome),
-            events: engine_events(&outcome, it),
-        },
-        steps: trace.map(|trace| trace.steps.clone()).unwrap_or_default(),
-        looks: in_order(looks),
-        instants,
-    };
-    let views: Vec<View> = scales.spans.iter().map(|span| scene.view(*span)).collect();
-    Some(EventPicture {
-        case: row.case.clone(),
-        engine: row.engine.to_owned(),
-        tolerance: row.accuracy.tolerance(),
-        step: row.accuracy.step(),
-        kind: it.kind,
-        title: it.title(period),
-        guard: it.guarded.label().to_owned(),
-        modes: Vec::new(),
-        centre: it.at,
-        telling: telling(&views),
-        views,
-    })
-}
-
-fn truth_events(prepared: &Prepared, it: &EventMismatch) -> Vec<(f64, String, bool)> {
-    let is_known = |i: usize| it.pairs.iter().any(|pair| pair.0 == i);
-    let mark = |(i, row): (usize, &crate::truth::TruthRow)| {
-        Some((row.elapsed.value(), row.phase?.as_str().to_owned(), is_known(i)))
-    };
-    prepared.truth.events.iter().enumerate().filter_map(mark).collect()
-}
-
-fn engine_events(outcome: &Outcome, it: &EventMismatch) -> Vec<(f64, String, bool)> {
-    let is_known = |j: usize| it.pairs.iter().any(|pair| pair.1 == j);
-    let events = outcome.events.iter().enumerate();
-    events
-        .map(|(j, event)| (event.elapsed, Phase::ALL[event.mode].as_str().to_owned(), is_known(j)))
-        .collect()
-}
-
-/// The true values, by the run made again in 106 bits.
-fn truth_at(task: &OscillatorTask, guarded: GuardCurve, instants: &[f64]) -> Option<Vec<f64>> {
-    let OscillatorTask { parameters, problem, horizon, .. } = task;
-    let start = problem.entry.instant;
-    let mut values = Vec::with_capacity(instants.len());
-    for passage in Replay::new(parameters, &problem.entry, *horizon) {
-        let passage = passage.ok()?;
-        while let Some(t) = instants.get(values.len()) {
-            let instant = start.after(TwoWord::new(*t), parameters.omega);
-            if passage.ends_by(&instant) {
-                break;
-            }
-            let [p, y, q, _] = passage.at(&instant);
-            values.push(guarded.of_truth(parameters, [p, y, q]));
-        }
-        if values.len() == instants.len() {
-            return Some(values);
-        }
-    }
-    None
-}
-
-/// The engine's values, where it records.
-fn engine_at(task: &OscillatorTask, guarded: GuardCurve, outcome: &Outcome) -> Vec<f64> {
-    let states = outcome.samples.iter().filter(|_| outcome.trace.is_some());
-    states.map(|state| guarded.of_state(&task.parameters, state)).collect()
-}
 
 /// The data of all views of one event, for any system.
 pub(super) struct Scene {

@@ -41,16 +41,11 @@ impl Watcher for LaneRecord {
 
 /// Runs a task so many times at once, by these instructions.
 #[must_use]
-pub fn run_in_lanes(
-    by: Instructions,
-    task: &OscillatorTask,
-    times: usize,
-) -> Vec<Outcome> {
+pub fn run_in_lanes(by: Instructions, task: &OscillatorTask, times: usize) -> Vec<Outcome> {
     let Problem { model, entry, .. } = &task.problem;
     let (done, _) = follow_by(by, times, |_| {
         let (start, omega) = (entry.instant, task.parameters.omega);
-        let watcher =
-            LaneRecord { outcome: Outcome::default(), start, omega, phase: task.phase };
+        let watcher = LaneRecord { outcome: Outcome::default(), start, omega, phase: task.phase };
         let (first, horizon) = (task.horizon, Some(task.horizon));
         Member { model, entry: *entry, first, horizon, watcher }
     });

@@ -85,7 +85,7 @@ impl Engine for Dop853 {
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
-            let integration = Integration::<Oscillator>::of(own);
+            let integration = Integration::<Oscillator>::of(task, own);
             return if self.clock {
                 run::<_, U5>(&integration, [true, false], accuracy, limits)
             } else {

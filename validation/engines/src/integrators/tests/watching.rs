@@ -17,14 +17,6 @@ fn task() -> Option<Task> {
     Task::of_oscillator(&OscillatorTask::until(given.parameters, problem, horizon, grid)).ok()
 }
 
-/// The same run, watched.
-fn watching(task: &Task, watched: Watched) -> Task {
-    let own = task.oscillator.as_deref().cloned();
-    let own = own.map(|it| OscillatorTask { watched: Some(watched), ..it });
-    let again = own.and_then(|it| Task::of_oscillator(&it).ok());
-    again.unwrap_or_else(|| unreachable!("it is a task of the oscillator"))
-}
-
 fn accuracy(engine: &dyn Engine) -> Option<Accuracy> {
     match engine.declaration().stepping {
         Stepping::Exact => None,
@@ -40,7 +32,7 @@ fn watching_changes_no_event_and_sees_every_integrator_at_work() {
     let instants: Vec<f64> =
         (0..=60).map(|k| window[0] + 0.005 * f64::from(k) * task.span).collect();
     let watched = Watched { window, instants: instants.clone() };
-    let again = watching(&task, watched);
+    let again = Task { watched: Some(watched), ..task.clone() };
     let mut seen = 0;
     for engine in all() {
         let name = engine.declaration().name;

@@ -2,9 +2,7 @@
 
 use crate::accuracy::Accuracy;
 use crate::case::Problem;
-use crate::engine::{
-    Declaration, Engine, Limits, OscillatorTask, Outcome, Role, Task, answer,
-};
+use crate::engine::{Declaration, Engine, Limits, OscillatorTask, Outcome, Role, Task, answer};
 use crate::failure::Failure;
 use crate::integrators::exact::Exact;
 use percuss::{Exit, Model, Parameters, Phase, Segment, Start};

@@ -59,8 +59,8 @@ impl Engine for Faulty {
         Declaration { name: self.name, method, role: Role::Rows, ..DOPRI5.declaration() }
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let task = task.of_the_oscillator()?;
+    fn run(&self, asked: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+        let task = asked.of_the_oscillator()?;
         let tolerance = accuracy.wanted_tolerance()?;
         if let IntegratorFault::GivesUp(every) = self.slip
             && task.events_before % every == every - 1
@@ -69,7 +69,7 @@ impl Engine for Faulty {
         }
         let meter = Meter::new(limits);
         let equations = Oscillator::of(&self.parameters(task), task.forcing_angle);
-        let integration = Integration::by(task, equations);
+        let integration = Integration::by(asked, task, equations);
         let mut run = Dopri5Run::<_, U4>::new(&integration, tolerance, &meter);
         let mut detection = FaultyDetection {
             slip: self.slip,

@@ -1,8 +1,7 @@
 //! Engines that are wrong on purpose, one fault each: a bound that no fault exceeds tests nothing.
 //!
-//! [`wrong`] are held to the exact solver's bounds, [`faulty`] to those of a good integrator. The
-//! faults of [`wrong_on_systems`] and [`faulty_on_systems`] each show in one [`Way`] of running a
-//! case of a system, and nowhere else.
+//! [`wrong`] are held to the exact solver's bounds, [`faulty`] to those of a good integrator. Some
+//! faults each show in one [`Way`] of running a case of a system, and nowhere else.
 //!
 //! They never run beside the others; the power test runs them and asks which bounds notice. Four
 //! are the exact solver on something slightly different; the others are a plain solver that
@@ -35,6 +34,9 @@ pub struct WrongEngine {
     pub engine: &'static dyn Engine,
     /// The engine's fault, in a phrase.
     pub fault: &'static str,
+    /// The one way of running a case of a system in which the fault shows; others show on the
+    /// oscillator.
+    pub way: Option<Way>,
 }
 
 /// The walking solver without a fault: the control of the power test.
@@ -44,13 +46,14 @@ pub static CONTROL: &dyn Engine =
 /// The number of events of which one is dropped.
 pub const DROPPED: [u64; 2] = [100, 1000];
 
-static WRONG: [WrongEngine; 9] = [
+static WRONG: [WrongEngine; 10] = [
     WrongEngine {
         engine: &ClosedFormStepper {
             name: "wrong-dropped-100",
             fault: StepperFault::Dropped(DROPPED[0]),
         },
         fault: "every hundredth event is dropped",
+        way: None,
     },
     WrongEngine {
         engine: &ClosedFormStepper {
@@ -58,38 +61,51 @@ static WRONG: [WrongEngine; 9] = [
             fault: StepperFault::Dropped(DROPPED[1]),
         },
         fault: "every thousandth event is dropped",
+        way: None,
     },
     WrongEngine {
         engine: &Altered { name: "wrong-omega", change: Alteration::Frequency },
         fault: "omega is larger by 0.002",
+        way: None,
     },
     WrongEngine {
         engine: &Altered { name: "wrong-xi", change: Alteration::Damping },
         fault: "xi is larger by 1 %",
+        way: None,
     },
     WrongEngine {
         engine: &Altered { name: "wrong-drift", change: Alteration::Drift },
         fault: "Eq. (20) as printed, with + before the exponential",
+        way: None,
     },
     WrongEngine {
         engine: &ClosedFormStepper { name: "wrong-arctan", fault: StepperFault::Arctangent },
         fault: "Eqs. (15) to (17) as printed, with arctan for beta and delta",
+        way: None,
     },
     WrongEngine {
         engine: &ClosedFormStepper { name: "wrong-sign-change", fault: StepperFault::SignChange },
         fault: "guards are looked at only where a step ends, for a change of sign",
+        way: None,
     },
     WrongEngine {
         engine: &ClosedFormStepper { name: "wrong-impact", fault: StepperFault::ContactAtImpact },
         fault: "every impact goes into contact, none straight into progression",
+        way: None,
     },
     WrongEngine {
         engine: &Altered { name: "wrong-clock", change: Alteration::Clock },
         fault: "time is one number: omega tau loses digits late in a run",
+        way: None,
+    },
+    WrongEngine {
+        engine: &LastFirst { name: "wrong-last-first" },
+        fault: "of events in one instant the file's last comes first",
+        way: Some(Way::Simultaneous),
     },
 ];
 
-/// The wrong engines that run the oscillator.
+/// The wrong engines that have to exceed the exact solver's bounds.
 #[must_use]
 pub fn wrong() -> &'static [WrongEngine] {
     &WRONG
@@ -104,11 +120,21 @@ const SELDOM: u64 = 20;
 
 macro_rules! faulty {
     ($name:literal, $slip:expr, $fault:literal) => {
-        WrongEngine { engine: &Faulty { name: $name, slip: $slip }, fault: $fault }
+        WrongEngine { engine: &Faulty { name: $name, slip: $slip }, fault: $fault, way: None }
     };
 }
 
-static FAULTY: [WrongEngine; 9] = [
+macro_rules! faulty_on_systems {
+    ($way:ident, $name:literal, $slip:ident, $fault:literal) => {
+        WrongEngine {
+            engine: &FaultyOnSystems { name: $name, slip: SystemFault::$slip },
+            fault: $fault,
+            way: Some(Way::$way),
+        }
+    };
+}
+
+static FAULTY: [WrongEngine; 19] = [
     faulty!(
         "dopri5-drops",
         IntegratorFault::Dropped(SELDOM),
@@ -146,92 +172,6 @@ static FAULTY: [WrongEngine; 9] = [
         IntegratorFault::GivesUp(SELDOM),
         "some restarts end without a result"
     ),
-];
-
-/// Integrators with one fault each, held to the bounds of the engine without it, [`SOUND`].
-#[must_use]
-pub fn faulty() -> &'static [WrongEngine] {
-    &FAULTY
-}
-
-/// The engine whose bounds [`faulty`] integrators are held to.
-pub const SOUND: &str = "ode_solvers-dopri5";
-
-/// A way of running a case of a system, as far as the case itself tells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Way {
-    /// The case runs back in time.
-    Backward,
-    /// The case watches a guard in one direction.
-    Direction,
-    /// The case starts on a guard.
-    StartOnGuard,
-    /// The case asks for states at events: each event has the state after its reset.
-    OutputAtEvents,
-    /// The case asks for states between events, in steps that an event cuts short.
-    OutputBetweenEvents,
-    /// The case has several events in one instant.
-    Simultaneous,
-    /// The case has events in close succession, as in chatter and before an accumulation.
-    CloseEvents,
-}
-
-impl Way {
-    /// The property of the cases, in words.
-    #[must_use]
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::Backward => "a run back in time",
-            Self::Direction => "a guard that is watched in one direction",
-            Self::StartOnGuard => "a start on a guard",
-            Self::OutputAtEvents => "resets, after which each event has its state",
-            Self::OutputBetweenEvents => "states asked for soon after an event",
-            Self::Simultaneous => "several events in one instant",
-            Self::CloseEvents => "events that follow each other closely",
-        }
-    }
-}
-
-/// An engine that is wrong in one way of running a case.
-#[derive(Clone, Copy)]
-pub struct WrongWay {
-    /// The engine and its fault.
-    pub wrong: WrongEngine,
-    /// The way of running a case in which the fault shows.
-    pub way: Way,
-}
-
-static WRONG_ON_SYSTEMS: [WrongWay; 1] = [WrongWay {
-    wrong: WrongEngine {
-        engine: &LastFirst { name: "wrong-last-first" },
-        fault: "of events in one instant the file's last comes first",
-    },
-    way: Way::Simultaneous,
-}];
-
-/// Wrong engines that have to exceed the exact solver's bounds on systems.
-#[must_use]
-pub fn wrong_on_systems() -> &'static [WrongWay] {
-    &WRONG_ON_SYSTEMS
-}
-
-/// The integrator of [`faulty_on_systems`] without a fault.
-pub static FAULTY_ON_SYSTEMS_CONTROL: &dyn Engine =
-    &FaultyOnSystems { name: "dopri5-control", slip: SystemFault::None };
-
-macro_rules! faulty_on_systems {
-    ($way:ident, $name:literal, $slip:ident, $fault:literal) => {
-        WrongWay {
-            wrong: WrongEngine {
-                engine: &FaultyOnSystems { name: $name, slip: SystemFault::$slip },
-                fault: $fault,
-            },
-            way: Way::$way,
-        }
-    };
-}
-
-static FAULTY_ON_SYSTEMS: [WrongWay; 10] = [
     faulty_on_systems!(
         Backward,
         "dopri5-forward-directions",
@@ -294,8 +234,50 @@ static FAULTY_ON_SYSTEMS: [WrongWay; 10] = [
     ),
 ];
 
-/// Integrators with one fault each, held to the bounds of [`SOUND`] on systems.
+/// Integrators with one fault each, held to the bounds of the engine without it, [`SOUND`].
 #[must_use]
-pub fn faulty_on_systems() -> &'static [WrongWay] {
-    &FAULTY_ON_SYSTEMS
+pub fn faulty() -> &'static [WrongEngine] {
+    &FAULTY
 }
+
+/// The engine whose bounds [`faulty`] integrators are held to.
+pub const SOUND: &str = "ode_solvers-dopri5";
+
+/// A way of running a case of a system, as far as the case itself tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Way {
+    /// The case runs back in time.
+    Backward,
+    /// The case watches a guard in one direction.
+    Direction,
+    /// The case starts on a guard.
+    StartOnGuard,
+    /// The case asks for states at events: each event has the state after its reset.
+    OutputAtEvents,
+    /// The case asks for states between events, in steps that an event cuts short.
+    OutputBetweenEvents,
+    /// The case has several events in one instant.
+    Simultaneous,
+    /// The case has events in close succession, as in chatter and before an accumulation.
+    CloseEvents,
+}
+
+impl Way {
+    /// The property of the cases, in words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Backward => "a run back in time",
+            Self::Direction => "a guard that is watched in one direction",
+            Self::StartOnGuard => "a start on a guard",
+            Self::OutputAtEvents => "resets, after which each event has its state",
+            Self::OutputBetweenEvents => "states asked for soon after an event",
+            Self::Simultaneous => "several events in one instant",
+            Self::CloseEvents => "events that follow each other closely",
+        }
+    }
+}
+
+/// The integrator of [`faulty`] on systems, without a fault.
+pub static FAULTY_ON_SYSTEMS_CONTROL: &dyn Engine =
+    &FaultyOnSystems { name: "dopri5-control", slip: SystemFault::None };

@@ -7,8 +7,7 @@
 use super::closed::Closed;
 use crate::accuracy::Accuracy;
 use crate::engine::{
-    Declaration, Engine, Event, Limits, Location, OscillatorTask, Outcome, Role, Task, Work,
-    place,
+    Declaration, Engine, Event, Limits, Location, OscillatorTask, Outcome, Role, Task, Work, place,
 };
 use crate::equations::{Equations, Numbers};
 use crate::failure::Failure;

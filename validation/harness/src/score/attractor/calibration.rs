@@ -14,7 +14,7 @@ use super::distance::{Distances, STATISTICS, distances};
 use super::limits::{Calibrated, ComparisonPlan};
 use super::runs::{RunKind, exact_section, reference};
 use super::section::RunSection;
-use crate::case::Case;
+use crate::case::OscillatorCase;
 use crate::engine::Failure;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -43,10 +43,14 @@ pub struct Calibration {
 ///
 /// # Errors
 /// The solver's reason where it refuses a run.
-pub fn calibrate(case: &Case, plan: ComparisonPlan, runs: u32) -> Result<Calibration, Failure> {
+pub fn calibrate(
+    (name, case): (&str, &OscillatorCase),
+    plan: ComparisonPlan,
+    runs: u32,
+) -> Result<Calibration, Failure> {
     let reference = reference(case, &plan)?;
     let null = |number| {
-        let run = exact_section(case, case.parameters, &plan, RunKind::Calibration, number)?;
+        let run = exact_section(case, *case.parameters(), &plan, RunKind::Calibration, number)?;
         Ok(Null::of(&run, &reference))
     };
     let nulls: Result<Vec<Null>, Failure> = (0..runs).into_par_iter().map(null).collect();
@@ -56,7 +60,7 @@ pub fn calibrate(case: &Case, plan: ComparisonPlan, runs: u32) -> Result<Calibra
         nulls.iter().flat_map(|null| scales.iter().map(|it| (it.standardized(null), it.name)));
     let farthest = all.fold((0.0, ""), |most, it| if it.0 > most.0 { it } else { most });
     let limits = scales.iter().map(|scale| (scale.name.to_owned(), scale.limit(farthest.0)));
-    let calibrated = Calibrated { case: case.name.clone(), plan, limits: limits.collect() };
+    let calibrated = Calibrated { case: name.to_owned(), plan, limits: limits.collect() };
     Ok(Calibration { calibrated, z: farthest.0, farthest: farthest.1 })
 }
 

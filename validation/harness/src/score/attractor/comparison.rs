@@ -4,7 +4,7 @@ use super::distance::{Distances, distances};
 use super::limits::Calibrated;
 use super::runs::{reference, section};
 use super::section::RunSection;
-use crate::case::Case;
+use crate::case::OscillatorCase;
 use crate::engine::{Accuracy, Engine, Failure, Limits};
 
 /// The same-attractor test of one case, made ready: its reference is computed once.
@@ -41,7 +41,7 @@ impl AttractorTest {
     ///
     /// # Errors
     /// What the exact solver says.
-    pub fn new(case: &Case, calibrated: Calibrated) -> Result<Self, Failure> {
+    pub fn new(case: &OscillatorCase, calibrated: Calibrated) -> Result<Self, Failure> {
         let reference = reference(case, &calibrated.plan)?;
         Ok(Self { calibrated, reference })
     }
@@ -52,7 +52,7 @@ impl AttractorTest {
     /// The engine's failure.
     pub fn compare(
         &self,
-        case: &Case,
+        case: &OscillatorCase,
         engine: &dyn Engine,
         accuracy: Accuracy,
         limits: &Limits,

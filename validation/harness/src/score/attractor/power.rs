@@ -3,7 +3,7 @@
 use super::comparison::AttractorTest;
 use super::distance::{distances, is_sampled};
 use super::runs::{RunKind, exact_section};
-use crate::case::Case;
+use crate::case::OscillatorCase;
 use crate::engine::Failure;
 use percuss::Parameters;
 use rayon::prelude::*;
@@ -86,8 +86,8 @@ impl AttractorTest {
     ///
     /// # Errors
     /// The solver's reason where it refuses a run.
-    pub fn false_alarms(&self, case: &Case, runs: u32) -> Result<Alarms, Failure> {
-        self.alarms(case, case.parameters, RunKind::Fresh, runs)
+    pub fn false_alarms(&self, case: &OscillatorCase, runs: u32) -> Result<Alarms, Failure> {
+        self.alarms(case, *case.parameters(), RunKind::Fresh, runs)
     }
 
     /// Alarms on so many runs with a parameter that is changed.
@@ -96,17 +96,17 @@ impl AttractorTest {
     /// The solver's reason where it refuses a run.
     pub fn alarms_of_changed(
         &self,
-        case: &Case,
+        case: &OscillatorCase,
         changed: Changed,
         relative: f64,
         runs: u32,
     ) -> Result<Alarms, Failure> {
-        self.alarms(case, changed.by(relative, case.parameters), RunKind::Changed, runs)
+        self.alarms(case, changed.by(relative, *case.parameters()), RunKind::Changed, runs)
     }
 
     fn alarms(
         &self,
-        case: &Case,
+        case: &OscillatorCase,
         parameters: Parameters,
         kind: RunKind,
         runs: u32,

@@ -2,7 +2,7 @@
 
 use super::limits::ComparisonPlan;
 use super::section::{RunSection, run_of};
-use crate::case::Case;
+use crate::case::OscillatorCase;
 use crate::engine::{Accuracy, Engine, Failure, Limits, Task, answer};
 use crate::integrators;
 use percuss::{Parameters, Start};
@@ -40,7 +40,7 @@ const STRIDE: f64 = 1e-9;
 /// Run number `number` of a kind: the exact solver with `parameters` from a start of its own, as a
 /// section of the attractor that the case's own parameters have.
 pub(super) fn exact_section(
-    case: &Case,
+    case: &OscillatorCase,
     parameters: Parameters,
     plan: &ComparisonPlan,
     kind: RunKind,
@@ -50,40 +50,47 @@ pub(super) fn exact_section(
 }
 
 /// The reference section of a case: from its own start.
-pub(super) fn reference(case: &Case, plan: &ComparisonPlan) -> Result<RunSection, Failure> {
+pub(super) fn reference(
+    case: &OscillatorCase,
+    plan: &ComparisonPlan,
+) -> Result<RunSection, Failure> {
     nth_section(
         case,
-        case.parameters,
+        *case.parameters(),
         &ComparisonPlan { periods: plan.reference_periods, ..*plan },
         0,
     )
 }
 
 fn nth_section(
-    case: &Case,
+    case: &OscillatorCase,
     parameters: Parameters,
     plan: &ComparisonPlan,
     place: u32,
 ) -> Result<RunSection, Failure> {
-    let start = Start { p: case.start.p - f64::from(place) * STRIDE, ..case.start };
+    let start = Start { p: case.problem.start.p - f64::from(place) * STRIDE, ..case.problem.start };
     let refused = || Failure::new("the start is refused");
     let periods = plan.transient + plan.periods;
     let task = run_of(parameters, start, periods).ok_or_else(refused)?;
-    let truth = run_of(case.parameters, start, periods).ok_or_else(refused)?;
-    let outcome =
-        answer(integrators::exact(), &Task::of_oscillator(&task)?, Accuracy::Exact, &Limits::default())?;
+    let truth = run_of(*case.parameters(), start, periods).ok_or_else(refused)?;
+    let outcome = answer(
+        integrators::exact(),
+        &Task::of_oscillator(&task)?,
+        Accuracy::Exact,
+        &Limits::default(),
+    )?;
     RunSection::judged(&task, &outcome, plan.transient, &truth.problem)
 }
 
 /// The section of one engine's run.
 pub(super) fn section(
     engine: &dyn Engine,
-    case: &Case,
+    case: &OscillatorCase,
     plan: &ComparisonPlan,
     accuracy: Accuracy,
     limits: &Limits,
 ) -> Result<RunSection, Failure> {
-    let task = run_of(case.parameters, case.start, plan.transient + plan.periods)
+    let task = run_of(*case.parameters(), case.problem.start, plan.transient + plan.periods)
         .ok_or_else(|| Failure::new("the start is refused"))?;
     let outcome = answer(engine, &Task::of_oscillator(&task)?, accuracy, limits)?;
     RunSection::of(&task, &outcome, plan.transient)

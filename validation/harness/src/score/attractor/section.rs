@@ -43,11 +43,7 @@ impl RunSection {
     ///
     /// # Errors
     /// A run that lacks samples or holds a number that is not finite.
-    pub fn of(
-        task: &OscillatorTask,
-        outcome: &Outcome,
-        transient: u32,
-    ) -> Result<Self, Failure> {
+    pub fn of(task: &OscillatorTask, outcome: &Outcome, transient: u32) -> Result<Self, Failure> {
         Self::judged(task, outcome, transient, &task.problem)
     }
 

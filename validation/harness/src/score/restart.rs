@@ -1,5 +1,5 @@
-//! The restart test of a piecewise-affine system: from states along a case's true run through the
-//! next two events.
+//! The restart test: from states along a case's true run through the next two events, or from
+//! states on its attractor ([`super::on_attractor`]).
 //!
 //! Each sample of the truth, rounded, is a start of its own. Its run ends half way between the
 //! second and the third of the instants at which the case has events from there on, so that what is
@@ -7,15 +7,16 @@
 
 use super::decisions::{Decision, decisions};
 use super::event_names::EventNames;
-use super::grazes::{guard_growth, system_grazes};
-use super::measure::{MOST_UNITS, SystemRun, SystemScale, off, scored_horizon};
-use crate::case::SystemCase;
+use super::graze::Graze;
+use super::grazes::grazes;
+use super::restart_figures::{Restart, RestartError, RestartResult};
+use super::rule::{Beside, ErrorRule, off};
+use super::scored_horizon::{MOST_UNITS, ScoredBy};
+use super::statistics::worst;
+use crate::case::Case;
 use crate::engine::{Accuracy, Ended, Failure, Outcome, Task};
-use crate::score::graze::Graze;
-use crate::score::restart_figures::{Restart, RestartError, RestartResult};
-use crate::score::statistics::worst;
 use crate::system::SystemProblem;
-use crate::truth::{DoubleDouble, SystemTruth, SystemTruthRow, solver};
+use crate::truth::{DoubleDouble, Truth, TruthRow, solver};
 use percuss::TwoWord;
 use percuss::affine::{Rational, Solver, StartPoint};
 use rayon::prelude::*;
@@ -29,54 +30,69 @@ const BY_MODEL: f64 = 1e-24;
 const CLOSE: f64 = 1e-5;
 
 /// A run with its truth.
-pub struct SystemRestartRun {
+pub struct RestartRun {
     /// The task that an engine is given.
     pub task: Task,
-    /// The true run.
-    pub truth: SystemTruth,
-    grazes: Vec<Graze>,
-    decisions: Vec<Decision>,
+    /// The true run, with how errors grow along it.
+    pub truth: Truth,
+    /// Whether the run has an impact; where systems differ from the oscillator, an event.
+    pub impact: bool,
+    pub(super) grazes: Vec<Graze>,
+    pub(super) decisions: Vec<Decision>,
 }
 
 /// The runs of one case.
-pub struct SystemRestartTest {
+pub struct RestartTest {
     /// The runs with a truth, in the order of their starts.
-    pub runs: Vec<SystemRestartRun>,
+    pub runs: Vec<RestartRun>,
     /// Runs that 106 bits do not decide, which are left out.
     pub undecided: usize,
-    names: EventNames,
+    pub(super) names: EventNames,
+    pub(super) rule: ErrorRule,
 }
 
 /// The source of restarts: a case with its truth, and the data that its runs share.
 struct Restarts<'a> {
-    case: &'a SystemCase,
+    case: &'a Case,
     problem: &'a SystemProblem,
-    truth: &'a SystemTruth,
+    truth: &'a Truth,
     names: &'a EventNames,
+    rule: &'a ErrorRule,
     solver: Solver<DoubleDouble>,
 }
 
-impl SystemRestartTest {
+impl RestartTest {
     /// Makes runs from at most `count` of the samples of a case's truth, spread evenly over those
     /// that events follow. None are made of a case that has fewer events than a run passes.
     ///
     /// # Errors
     /// A system that the solver does not take.
-    pub fn new(
-        case: &SystemCase,
+    pub fn along(
+        case: &Case,
         problem: &SystemProblem,
-        truth: &SystemTruth,
+        truth: &Truth,
         count: usize,
     ) -> Result<Self, String> {
-        let names = EventNames::of(problem.checked.system());
-        let restarts = Restarts { case, problem, truth, names: &names, solver: solver(case)? };
+        let system = problem.checked.system();
+        let (names, rule) = (EventNames::of(case, system), ErrorRule::of(case, system));
+        let solver = solver(case)?;
+        let restarts = Restarts { case, problem, truth, names: &names, rule: &rule, solver };
         let spans = truth.samples.iter().skip(1).filter_map(|row| Some((row, restarts.span(row)?)));
         let starts: Vec<_> = spans.collect();
         let count = count.min(starts.len());
         let spread = |k: usize| starts[k * starts.len() / count];
         let made: Vec<_> = (0..count).into_par_iter().map(|k| restarts.run(spread(k))).collect();
         let runs: Vec<_> = made.into_iter().flatten().collect();
-        Ok(Self { undecided: count - runs.len(), runs, names })
+        Ok(Self { undecided: count - runs.len(), runs, names, rule })
+    }
+
+    /// Scores an engine on all runs, as [`RestartTest::score_first`] does.
+    pub fn score(
+        &self,
+        asked: (Accuracy, f64),
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+    ) -> Restart {
+        self.score_first(usize::MAX, asked, run)
     }
 
     /// Scores an engine, given how it runs a task, on the first runs, at most this many. Runs in
@@ -90,11 +106,11 @@ impl SystemRestartTest {
         let runs = &self.runs[..most.min(self.runs.len())];
         let results: Vec<_> = runs
             .par_iter()
-            .filter(|it| it.is_decided(accuracy, unit))
+            .filter(|it| it.is_decided(&self.rule, (accuracy, unit)))
             .map(|it| RestartResult {
-                impact: !it.truth.events.is_empty(),
+                impact: it.impact,
                 events: it.truth.events.len(),
-                error: run(&it.task).map(|outcome| it.error(&self.names, &outcome, unit)).ok(),
+                error: run(&it.task).map(|outcome| self.error(it, &outcome, unit)).ok(),
             })
             .collect();
         Restart::of(&results, self.undecided)
@@ -109,7 +125,7 @@ impl SystemRestartTest {
 
 impl Restarts<'_> {
     /// The length of the run from a sample; none if too few events follow.
-    fn span(&self, row: &SystemTruthRow) -> Option<f64> {
+    fn span(&self, row: &TruthRow) -> Option<f64> {
         let close = CLOSE * self.case.system.time_scale;
         let begin = row.elapsed.value();
         let mut instants = vec![begin];
@@ -133,7 +149,7 @@ impl Restarts<'_> {
         None
     }
 
-    fn run(&self, (row, span): (&SystemTruthRow, f64)) -> Option<SystemRestartRun> {
+    fn run(&self, (row, span): (&TruthRow, f64)) -> Option<RestartRun> {
         let begin = self.problem.clock(row.elapsed.value());
         let zero = Rational::ZERO;
         let exact = |value: f64| Rational::try_from(value).ok();
@@ -142,17 +158,18 @@ impl Restarts<'_> {
         let state = state.collect::<Option<Vec<_>>>()?;
         let start = StartPoint { mode: row.mode, time: exact(begin)?, state };
         let until = if self.case.backward { begin - span } else { begin + span };
-        let mut case = SystemCase { until, samples: 1, ..self.case.clone() };
+        let mut case = Case { until, samples: 1, ..self.case.clone() };
         case.system.start = Some(start.clone());
-        let truth = SystemTruth::replayed(&case, &self.solver).ok()?;
+        let truth = Truth::solved(&case, &self.solver).ok()?;
         if truth.ended != Ended::Horizon {
             return None;
         }
         let problem = Arc::new(self.problem.from_start(start).ok()?);
         let task = Task::of(&problem, truth.span, truth.sample_times()).ok()?;
-        let grazes = system_grazes(&problem, &truth, self.names);
-        let decisions = decisions(&problem, &truth);
-        Some(SystemRestartRun { task, truth, grazes, decisions })
+        let grazes = grazes(&problem, &truth, (self.names, self.rule));
+        let decisions = decisions(&problem.checked, &truth, self.rule);
+        let impact = !truth.events.is_empty();
+        Some(RestartRun { task, truth, impact, grazes, decisions })
     }
 }
 
@@ -175,25 +192,26 @@ fn two_words(exact: &Rational) -> TwoWord {
     TwoWord::sum(high, low)
 }
 
-impl SystemRestartRun {
-    /// Whether errors of this unit leave open nothing that follows.
-    fn is_decided(&self, accuracy: Accuracy, unit: f64) -> bool {
-        let scale = SystemScale::of((accuracy, unit), &self.grazes, &self.decisions);
-        self.has_an_order(unit)
-            && self.has_clear_entries(unit)
-            && scored_horizon(&self.task, &self.truth, scale).1
+impl RestartRun {
+    /// Whether errors of this unit leave open nothing that follows; beside its own value no error
+    /// is asked for more than the run itself.
+    fn is_decided(&self, rule: &ErrorRule, asked: (Accuracy, f64)) -> bool {
+        let by = ScoredBy::new(asked, &self.grazes, &self.decisions);
+        let clear = || self.has_an_order(asked.1) && self.has_clear_entries(rule, asked.1);
+        rule.beside == Beside::Value || (clear() && rule.decides(&self.truth, by))
     }
 
     /// Whether the errors that a method is allowed leave no guard open where a mode is entered: one
     /// that is zero there in the case's run may be off by the rounding of this run's start.
-    fn has_clear_entries(&self, unit: f64) -> bool {
+    fn has_clear_entries(&self, rule: &ErrorRule, unit: f64) -> bool {
         let Some(problem) = &self.task.exact else { return true };
         let system = self.task.system.system();
         self.truth.events.iter().all(|row| {
             let rounded = system.modes[row.mode].until.iter();
             problem.exact.modes[row.mode].until.iter().zip(rounded).all(|(exact, rounded)| {
                 let [value, size] = at_entry(&exact.guard, &row.state);
-                let allowed = MOST_UNITS * unit * guard_growth(&rounded.guard, row, &system.scales);
+                let growth = rule.guard_growth(&rounded.guard, row, &row.rounded());
+                let allowed = MOST_UNITS * unit * growth;
                 value <= BY_MODEL * size || value > allowed
             })
         })
@@ -209,23 +227,26 @@ impl SystemRestartRun {
             apart == 0.0 || apart > MOST_UNITS * unit * scale * size * pair[1].growth_time
         })
     }
+}
 
-    fn error(&self, names: &EventNames, outcome: &Outcome, unit: f64) -> RestartError {
-        let run = SystemRun { task: &self.task, truth: &self.truth, outcome, unit };
-        let end = &self.truth.end;
-        let (all, own) =
-            (names.of_truth(&self.truth), names.of_outcome(&self.task, &self.truth, outcome));
+impl RestartTest {
+    /// The error of a run; a constant is by the number of events, the error of a restart is not.
+    pub(super) fn error(&self, it: &RestartRun, outcome: &Outcome, unit: f64) -> RestartError {
+        let Self { names, rule, .. } = self;
+        let RestartRun { task, truth, .. } = it;
+        let (all, own) = (names.of_truth(truth), names.of_outcome(task, truth, outcome));
         let pairs = || all.iter().zip(&own);
         let same_modes = all.len() == own.len() && pairs().all(|(truth, own)| truth.is_like(own));
-        // A constant is by the number of events, the error of a restart is not.
-        let late = pairs().enumerate().map(|(n, (truth, own))| {
-            run.time_units((truth.elapsed, own.elapsed, n)) * (n + 1) as f64
+        let late = pairs().enumerate().map(|(n, (known, own))| {
+            let time = truth.events.get(n).map_or(TwoWord::new(known.elapsed), |row| row.elapsed);
+            rule.time_units(truth, n, (time, own.elapsed)) / unit
         });
-        let states = end.state.iter().zip(outcome.end.iter()).zip(run.scales());
+        let states = truth.end.state.iter().zip(outcome.end.iter()).zip(&rule.scales);
         let absolute = states.map(|((truth, own), scale)| off(*truth, *own) / scale);
+        let drift = rule.drift.map(|k| rule.units(&truth.end, k, outcome.end[k]) / unit);
         RestartError {
-            units: run.units(end, &outcome.end, 1),
-            drift_units: f64::NAN,
+            units: rule.state_units(&truth.end, &outcome.end) / unit,
+            drift_units: drift.unwrap_or(f64::NAN),
             time_units: if same_modes { worst(late) } else { f64::NAN },
             absolute: worst(absolute),
             same_modes,

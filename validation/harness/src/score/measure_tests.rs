@@ -1,9 +1,8 @@
 use super::*;
-use crate::case::Quantity;
-use crate::case::{Given, Problem};
-use crate::engine::{Numbers, SampleGrid, place};
+use crate::case::{Case, Given, Horizon, Problem, Quantity, SAMPLES_PER_PERIOD};
+use crate::engine::{Accuracy, Ended, Event, Numbers, OscillatorTask, SampleGrid, place};
 use crate::system::Values;
-use percuss::Phase::{Contact, NoContact, Progression};
+use percuss::Phase::{self, Contact, NoContact, Progression};
 use percuss::{Parameters, Start};
 
 const UNIT: f64 = 1e-6;
@@ -17,14 +16,23 @@ fn problem() -> Problem {
 }
 
 fn row(elapsed: f64, phase: Phase, state: [f64; 4]) -> TruthRow {
-    TruthRow { phase: Some(phase), elapsed: TwoWord::new(elapsed), state: state.map(TwoWord::new) }
+    TruthRow {
+        event: 0,
+        mode: place(phase),
+        elapsed: TwoWord::new(elapsed),
+        state: state.map(TwoWord::new).to_vec(),
+        growth_time: 1.0,
+        growth: vec![1.0; 4],
+        size: 0.0,
+    }
 }
 
 /// Two forcing periods with three events, and growths that are all different.
 struct Planted {
-    task: OscillatorTask,
+    task: Task,
     truth: Truth,
-    growth: RunGrowth,
+    names: EventNames,
+    rule: ErrorRule,
     outcome: Outcome,
 }
 
@@ -32,43 +40,56 @@ impl Planted {
     fn new() -> Self {
         let problem = problem();
         let horizon = problem.entry.instant.after_periods(2, 1);
-        let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: 17 };
+        let grid = SampleGrid { per_period: SAMPLES_PER_PERIOD, count: 17 };
         let task = OscillatorTask::until(Parameters::default(), problem, horizon, grid);
+        let (task, case) = (Task::of_oscillator(&task), Case::of_run(problem, Horizon::Periods(2)));
+        let (Ok(task), Ok(case)) = (task, case) else { unreachable!("it is a system") };
         let states = [[0.5, -0.25, 0.5, 0.0], [1.0, 2.0, 0.75, 0.0], [3.0, 0.0, -1.0, 1.5]];
         let phases = [Contact, Progression, NoContact];
+        let growth = [[2.0, 4.0, 5.0, 8.0, 10.0], [3.0, 1.0, 6.0, 1.0, 1.0], [7.0; 5]];
         let times = [1.0, 2.0, 8.0];
-        let events: Vec<TruthRow> = (0..3).map(|i| row(times[i], phases[i], states[i])).collect();
+        let event = |i: usize| TruthRow {
+            growth_time: growth[i][0],
+            growth: growth[i][1..].to_vec(),
+            ..row(times[i], phases[i], states[i])
+        };
         let period = problem.model.period();
-        let sample = |k: usize| row(k as f64 * period / 8.0, NoContact, [0.25, 1.0, 0.0, 0.0]);
+        let sample = |k: usize| TruthRow {
+            growth: vec![1.0, 2.0, 4.0, 8.0],
+            ..row(k as f64 * period / 8.0, NoContact, [0.25, 1.0, 0.0, 0.0])
+        };
         let truth = Truth {
             start: row(0.0, NoContact, [0.25, 1.0, 0.0, 0.0]),
-            events,
+            events: (0..3).map(event).collect(),
             end: row(task.span, NoContact, [0.25, 1.0, 0.0, 1.5]),
+            ended: Ended::Horizon,
+            span: task.span,
             samples: (0..17).map(sample).collect(),
+            ordered: true,
         };
-        let growth = RunGrowth {
-            events: vec![[2.0, 4.0, 5.0, 8.0, 10.0], [3.0, 1.0, 6.0, 1.0, 1.0], [7.0; 5]],
-            samples: vec![[1.0, 2.0, 4.0, 8.0]; 17],
-            end: [1.0; 4],
-        };
+        let state = |row: &TruthRow| Values::of(&row.rounded());
         let event = |row: &TruthRow| Event {
             event: 0,
-            mode: place(row.phase.unwrap_or(NoContact)),
+            mode: row.mode,
             elapsed: row.elapsed.value(),
-            state: Values::of(&row.rounded()),
+            state: state(row),
             before: None,
         };
         let outcome = Outcome {
             events: truth.events.iter().map(event).collect(),
-            samples: truth.samples.iter().map(|it| Values::of(&it.rounded())).collect(),
-            end: Values::of(&truth.end.rounded()),
+            samples: truth.samples.iter().map(state).collect(),
+            end: state(&truth.end),
             ..Outcome::default()
         };
-        Self { task, truth, growth, outcome }
+        let system = task.system.system();
+        let (names, rule) = (EventNames::of(&case, system), ErrorRule::of(&case, system));
+        Self { task, truth, names, rule, outcome }
     }
 
     fn measures(&self) -> Measures {
-        measure(&self.task, &self.truth, &self.growth, &self.outcome, UNIT)
+        let Self { task, truth, names, rule, outcome } = self;
+        let scored_by = ScoredBy::new((Accuracy::Tolerance(UNIT), UNIT), &[], &[]);
+        measure(MeasuredBy { task, truth, names, rule }, outcome, scored_by)
     }
 }
 
@@ -162,8 +183,8 @@ fn a_run_is_valid_until_the_sample_before_the_first_that_is_off() {
 fn what_is_beyond_the_scored_horizon_does_not_count() {
     let mut planted = Planted::new();
     // A unit of error has grown past what is scored from the ninth sample on.
-    for growth in &mut planted.growth.samples[8..] {
-        growth[1] = 2.0 * SCORED_ERROR / (crate::score::SCORED_FACTOR * UNIT);
+    for row in &mut planted.truth.samples[8..] {
+        row.growth[1] = 2.0 * SCORED_ERROR / (crate::score::SCORED_FACTOR * UNIT);
     }
     planted.outcome.samples[9][0] += 0.5;
     planted.outcome.events[2].elapsed += 0.5;
@@ -180,8 +201,8 @@ fn what_is_beyond_the_scored_horizon_does_not_count() {
 #[test]
 fn an_event_just_past_the_horizon_is_the_partner_of_one_just_before_it() {
     let mut planted = Planted::new();
-    for growth in &mut planted.growth.samples[8..] {
-        growth[0] = 2.0 * SCORED_ERROR / (crate::score::SCORED_FACTOR * UNIT);
+    for row in &mut planted.truth.samples[8..] {
+        row.growth[0] = 2.0 * SCORED_ERROR / (crate::score::SCORED_FACTOR * UNIT);
     }
     let horizon = planted.truth.samples[7].elapsed.value();
     let window = WINDOW * problem().model.period();

@@ -2,9 +2,10 @@
 //! error is larger than the margin may find the events of a crossing or not.
 
 use super::event_names::EventNames;
-use crate::score::graze::Graze;
+use super::graze::Graze;
+use super::rule::ErrorRule;
 use crate::system::{Direction, System, SystemProblem};
-use crate::truth::{SystemTruth, SystemTruthRow};
+use crate::truth::{Truth, TruthRow};
 use percuss::affine::{Event, Time, What};
 
 /// Margins above this part of a guard's size are no grazes.
@@ -18,17 +19,19 @@ const FEWEST_LOOKS: f64 = 16.0;
 const MOST_LOOKS: f64 = 1e5;
 /// A guard this close to zero at a segment's entry, over its size, began on it.
 const ON_GUARD: f64 = 1e-12;
+/// A mode is entered again soon within so many times the time to the turn of its guard.
+const SOON: f64 = 4.0;
 /// Halvings of a bracket, after which an extremum is known to rounding.
 const HALVINGS: u32 = 60;
 
 /// The grazes of a true run, in the order of time.
 #[must_use]
-pub fn system_grazes(
+pub fn grazes(
     problem: &SystemProblem,
-    truth: &SystemTruth,
-    names: &EventNames,
+    truth: &Truth,
+    (names, rule): (&EventNames, &ErrorRule),
 ) -> Vec<Graze> {
-    let scan = SystemScan { problem, system: problem.checked.system(), truth, names };
+    let scan = Scan { problem, system: problem.checked.system(), truth, names, rule };
     let ends = truth.events.iter().chain([&truth.end]);
     let begins = std::iter::once(&truth.start).chain(&truth.events);
     let mut found: Vec<Graze> = begins
@@ -44,16 +47,17 @@ pub fn system_grazes(
     found
 }
 
-struct SystemScan<'a> {
+struct Scan<'a> {
     problem: &'a SystemProblem,
     system: &'a System,
-    truth: &'a SystemTruth,
+    truth: &'a Truth,
     names: &'a EventNames,
+    rule: &'a ErrorRule,
 }
 
 /// A segment of the true run in closed form.
-struct SystemSegment<'a> {
-    scan: &'a SystemScan<'a>,
+struct ScannedSegment<'a> {
+    scan: &'a Scan<'a>,
     begin: Event<f64>,
     began: f64,
     mode: usize,
@@ -67,16 +71,16 @@ struct ScannedGuard<'a> {
     direction: Option<Direction>,
 }
 
-impl SystemScan<'_> {
+impl Scan<'_> {
     /// The grazes of the segment after `n` events.
-    fn segment(&self, n: usize, begin: &SystemTruthRow, end: &SystemTruthRow) -> Vec<Graze> {
+    fn segment(&self, n: usize, begin: &TruthRow, end: &TruthRow) -> Vec<Graze> {
         let began = begin.elapsed.value();
         let length = end.elapsed.minus(begin.elapsed).value();
         let clock = Time::of(&self.problem.start.time);
         let time = clock.after(if self.problem.backward { -began } else { began });
         let state = begin.state.iter().map(|it| it.value()).collect();
         let begin = Event { what: What::Start, time, state, mode: begin.mode, errors: None };
-        let segment = SystemSegment { scan: self, mode: begin.mode, begin, began };
+        let segment = ScannedSegment { scan: self, mode: begin.mode, begin, began };
         let guards = self.guards(segment.mode);
         guards.iter().flat_map(|guard| segment.grazes(n, guard, length)).collect()
     }
@@ -90,7 +94,7 @@ impl SystemScan<'_> {
     }
 
     /// Whether an event is only watched in a mode, which goes on.
-    fn is_watched(&self, mode: usize, row: &SystemTruthRow) -> bool {
+    fn is_watched(&self, mode: usize, row: &TruthRow) -> bool {
         row.mode == mode && row.event >= self.system.modes[mode].until.len()
     }
 
@@ -107,22 +111,14 @@ impl SystemScan<'_> {
     }
 
     /// The error in a guard that one unit of error in the states may have become.
-    fn growth(&self, guard: &[f64], elapsed: f64) -> f64 {
-        let passed = |it: &&SystemTruthRow| it.elapsed.value() <= elapsed;
+    fn growth(&self, guard: &[f64], elapsed: f64, state: &[f64]) -> f64 {
+        let passed = |it: &&TruthRow| it.elapsed.value() <= elapsed;
         let sample = self.truth.samples.iter().take_while(passed).last();
-        guard_growth(guard, sample.unwrap_or(&self.truth.start), &self.system.scales)
+        self.rule.guard_growth(guard, sample.unwrap_or(&self.truth.start), state)
     }
 }
 
-/// The largest of the contributions of the states' errors, as they are in a row of the truth, to
-/// that of a guard's value.
-pub(super) fn guard_growth(guard: &[f64], row: &SystemTruthRow, scales: &[f64]) -> f64 {
-    let parts = guard.iter().zip(&row.growth).zip(scales);
-    let parts = parts.map(|((factor, growth), scale)| factor.abs() * scale * growth);
-    (1.0 + row.size) * parts.fold(0.0, f64::max)
-}
-
-impl SystemSegment<'_> {
+impl ScannedSegment<'_> {
     /// The states, cos theta, sin theta and 1 at a time since the segment's begin.
     fn point(&self, d: f64) -> Vec<f64> {
         let ahead = if self.scan.problem.backward { -d } else { d };
@@ -158,7 +154,7 @@ impl SystemSegment<'_> {
         let mut step = length / looks;
         // The crossing that ends the segment may turn back soon after it. An event that is only
         // watched may be the extremum itself, and rounding puts that on either side of it.
-        let watched = |it: &SystemTruthRow| self.scan.is_watched(self.mode, it);
+        let watched = |it: &TruthRow| self.scan.is_watched(self.mode, it);
         let goes_on = self.scan.truth.events.get(n).is_some_and(watched);
         let beyond = match guard.direction {
             None => 0.25 * turn,
@@ -222,14 +218,14 @@ impl SystemSegment<'_> {
         }
         let scan = self.scan;
         let elapsed = self.began + at;
-        let growth = scan.growth(guard.row, elapsed) * n.max(1) as f64;
+        let growth = scan.growth(guard.row, elapsed, &self.point(at)) * n.max(1) as f64;
         let makes = scan.makes(self.mode, guard);
         let crossed =
             if margin < 0.0 { None } else { self.crossed(n, guard, makes, (at, maximum)) };
         // What touches zero exactly crosses nothing.
         let touches = margin <= ON_GUARD * size;
         let events = crossed.or_else(|| touches.then(Vec::new))?;
-        let event = Some(scan.names.number(self.mode, guard.event));
+        let event = scan.names.telling(self.mode, guard.event);
         Some(Graze { elapsed, margin, growth, events, mode: self.mode, event, ends: until, makes })
     }
 
@@ -242,10 +238,15 @@ impl SystemSegment<'_> {
         (at, maximum): (f64, bool),
     ) -> Option<Vec<usize>> {
         let Some(direction) = guard.direction else {
-            // The segment ends by the crossing, and a mode that is left is entered again.
+            // The segment ends by the crossing. A parabola comes back after twice the time to its
+            // turn: a mode that is entered again within twice that belongs to the graze.
             let events = &self.scan.truth.events;
             let own = events.get(n).is_some_and(|it| it.event == guard.event);
-            return (own && events.len() >= n + makes).then(|| (n..n + makes).collect());
+            let last = events.get(n + makes - 1).filter(|_| own)?;
+            let length = events[n].elapsed.value() - self.began;
+            let soon = last.elapsed.value() - self.began - length <= SOON * (at - length);
+            let returns = makes == 1 || (last.mode == self.mode && soon);
+            return Some(if returns { (n..n + makes).collect() } else { vec![n] });
         };
         let before = || self.watched(guard, at, (0..n).rev());
         let after = || self.watched(guard, at, n..self.scan.truth.events.len());
@@ -282,3 +283,7 @@ impl SystemSegment<'_> {
         rates.all(|it| it == first).then_some(own)
     }
 }
+
+#[cfg(test)]
+#[path = "grazes_tests.rs"]
+mod tests;

@@ -1,16 +1,10 @@
-//! Faults in ways of running a system's case: they have to be caught where a case is run in that
+//! Ways of running a system's case: faults in them have to be caught where a case is run in that
 //! way, and to do no harm where none is.
 
-use super::{AS_EXACT, Finding, Standard, judged};
-use crate::case::Bound;
-use crate::engine::{Equations, Limits};
-use crate::integrators::{
-    COOLDOWN, Way, WrongEngine, WrongWay, faulty_on_systems, wrong_on_systems,
-};
-use crate::score::Checked;
-use crate::suite::{CaseRun, PreparedSystem};
+use crate::engine::Equations;
+use crate::integrators::{COOLDOWN, Way};
+use crate::suite::PreparedCase;
 use crate::system::{Affine, Direction, System, Until};
-use rayon::prelude::*;
 
 /// The longest step of the integrators with a fault, in forcing periods: a step that an event cuts
 /// short reaches no further beyond it.
@@ -22,20 +16,11 @@ const ROOM: f64 = 1.1;
 /// system changes: explicit methods cannot step over these.
 const MOST_TIMES: f64 = 1e5;
 /// Calls after which an engine that is wrong on purpose is given up.
-const MOST_CALLS: u64 = 1_000_000;
-
-/// Every engine that is wrong in a way of running a case, with what it is held to.
-#[must_use]
-pub fn all_on_systems() -> Vec<(WrongWay, Standard)> {
-    let integrators = Standard::of_faulty().into_iter();
-    let integrators =
-        integrators.flat_map(|held| faulty_on_systems().iter().map(move |it| (*it, held)));
-    wrong_on_systems().iter().map(|it| (*it, AS_EXACT)).chain(integrators).collect()
-}
+pub(super) const MOST_CALLS: u64 = 1_000_000;
 
 /// Whether a case is run in a way.
 #[must_use]
-pub fn is_run(case: &PreparedSystem, way: Way) -> bool {
+pub fn is_run(case: &PreparedCase, way: Way) -> bool {
     let times: Vec<f64> = case.truth.events.iter().map(|it| it.elapsed.value()).collect();
     let system = case.task.system.system();
     match way {
@@ -59,14 +44,14 @@ pub fn is_run(case: &PreparedSystem, way: Way) -> bool {
     }
 }
 
-fn starts_on_guard(case: &PreparedSystem) -> bool {
+fn starts_on_guard(case: &PreparedCase) -> bool {
     let equations = Affine::of(&case.task.system);
     let entered = equations.enter(None, case.task.mode, 0.0, &case.task.state);
     entered.zeros != 0 || entered.fires.is_some()
 }
 
 /// The events of a true run that change the state.
-fn resets(case: &PreparedSystem) -> impl Iterator<Item = &Until> {
+fn resets(case: &PreparedCase) -> impl Iterator<Item = &Until> {
     let System { modes, states, .. } = case.task.system.system();
     let mut mode = case.truth.start.mode;
     case.truth.events.iter().filter_map(move |row| {
@@ -84,43 +69,6 @@ fn changes(until: &Until, states: usize) -> bool {
 }
 
 /// Whether an explicit integrator gets through a case at a cost that a fault is worth.
-fn is_affordable(case: &PreparedSystem) -> bool {
+pub(super) fn is_affordable(case: &PreparedCase) -> bool {
     case.truth.span <= MOST_TIMES * case.task.system.shortest_time()
-}
-
-/// Runs an engine that is wrong in one way on all cases, but for the stiffest: on those that are
-/// run in that way it has to fail a bound, and on the others none.
-#[must_use]
-pub fn examine_on_systems(
-    it: &WrongWay,
-    cases: &[PreparedSystem],
-    standard: Standard,
-    bounds: &[Bound],
-) -> Finding {
-    let cases = cases.iter().filter(|case| is_affordable(case));
-    let (with, without): (Vec<_>, Vec<_>) = cases.partition(|case| is_run(case, it.way));
-    let run = |cases: &[&PreparedSystem]| -> Vec<(String, Option<Vec<Checked>>)> {
-        let one = |case: &&PreparedSystem| {
-            (case.name().to_owned(), held(&it.wrong, case, standard, bounds))
-        };
-        cases.par_iter().map(one).collect()
-    };
-    let elsewhere = Finding::of(&it.wrong, standard, run(&without));
-    let failed = elsewhere.failed_on.clone();
-    let mut finding = Finding::of(&it.wrong, standard, run(&with));
-    finding.way = Some(it.way);
-    finding.elsewhere = (without.len(), failed);
-    finding
-}
-
-fn held(
-    wrong: &WrongEngine,
-    case: &PreparedSystem,
-    standard: Standard,
-    defaults: &[Bound],
-) -> Option<Vec<Checked>> {
-    let Standard { accuracy, unit, .. } = standard;
-    let limits = Limits { calls: MOST_CALLS, ..Limits::default() };
-    let measured = case.measured(wrong.engine, (accuracy, unit), &limits).ok()?;
-    Some(judged(case, &measured.measures, standard, defaults))
 }

@@ -6,17 +6,15 @@
 //! engine's unit of error to 1e-3. In 106 bits the truth lasts twice as long as f64; it counts
 //! while its own unit times growth is below a hundredth of 1e-3.
 
-use super::growth::RunGrowth;
-use super::restart::task;
+use super::SCORED_ERROR;
+use super::horizons::{Horizons, ValidHorizon};
+use super::on_attractor::task;
+use super::rule::ErrorRule;
 use super::starts::far_apart;
-use crate::case::Problem;
-use crate::engine::{Failure, OscillatorTask, Outcome, SampleGrid, Task};
-use crate::score::SCORED_ERROR;
-use crate::score::horizons::{Horizons, ValidHorizon};
-use crate::score::statistics::Spread;
-use crate::system::Values;
-use crate::truth::{DoubleDouble, Truth};
-use percuss::TwoWord;
+use super::statistics::Spread;
+use crate::case::{Case, FileError, Problem};
+use crate::engine::{Failure, OscillatorTask, Outcome, SampleGrid, Task, percussive};
+use crate::truth::{DoubleDouble, GrowthMatrices, Truth};
 use rayon::prelude::*;
 
 /// An engine's run is made until its unit of error times the growth passes this many times 1e-3.
@@ -43,23 +41,29 @@ pub struct HorizonTest {
     /// The number of runs that 106 bits do not decide.
     pub undecided: usize,
     periods: u32,
+    rule: ErrorRule,
 }
 
 impl HorizonTest {
-    /// Follows the truth from `count` states on the attractor for this many periods.
-    #[must_use]
-    pub fn new(problem: &Problem, count: usize, periods: u32) -> Self {
+    /// Follows the truth from `count` states on a case's attractor for this many periods.
+    ///
+    /// # Errors
+    /// A case that is not in the oscillator's own words.
+    pub fn new(case: &Case, count: usize, periods: u32) -> Result<Self, FileError> {
+        let own = case.of_oscillator()?;
+        let rule = ErrorRule::of(case, &percussive(own.parameters(), 0.0));
+        let growth = GrowthMatrices::of(case);
         // A run forgets where it began within its horizon, some 90 periods in f64.
-        let starts = far_apart(problem, count, u64::from(periods));
-        let made: Vec<_> =
-            starts.into_par_iter().map(|start| HorizonRun::new(start, periods)).collect();
+        let starts = far_apart(&own.problem, count, u64::from(periods));
+        let run = |start| HorizonRun::new(start, periods, (&growth, &rule));
+        let made: Vec<_> = starts.into_par_iter().map(run).collect();
         let mut runs: Vec<HorizonRun> = made.into_iter().flatten().collect();
         let mut events = 0;
         for run in &mut runs {
             run.events_before = events;
             events += run.truth.events.len() as u64;
         }
-        Self { undecided: count - runs.len(), runs, periods }
+        Ok(Self { undecided: count - runs.len(), runs, periods, rule })
     }
 
     /// The number of periods for which the truth itself holds in each run, at most those that were
@@ -100,7 +104,8 @@ impl HorizonTest {
         run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
     ) -> Horizons {
         let asked = &self.runs[..most.min(self.runs.len())];
-        let results: Vec<_> = asked.par_iter().map(|it| it.horizon(unit, &run)).collect();
+        let results: Vec<_> =
+            asked.par_iter().map(|it| it.horizon(&self.rule, unit, &run)).collect();
         let runs: Vec<_> = results.iter().map(|(horizon, _)| *horizon).collect();
         let spread = |value: fn(&ValidHorizon) -> f64| Spread::of(runs.iter().map(value).collect());
         let negative = spread(|run| -f64::from(run.valid));
@@ -116,20 +121,23 @@ impl HorizonTest {
 }
 
 impl HorizonRun {
-    fn new(problem: Problem, periods: u32) -> Option<Self> {
+    fn new(
+        problem: Problem,
+        periods: u32,
+        (growth, rule): (&GrowthMatrices, &ErrorRule),
+    ) -> Option<Self> {
         let entry = problem.entry;
-        let parameters = *problem.model.parameters();
         let horizon = entry.instant.after_periods(u64::from(periods), 1);
         let grid = (periods as usize + 1, 1);
-        let truth = Truth::replayed(&parameters, &entry, horizon, grid).ok()?;
-        let angle = task(problem, horizon).forcing_angle;
-        let samples = RunGrowth::along(&truth, &parameters, angle).samples;
+        let parameters = problem.model.parameters();
+        let mut truth = Truth::replayed(parameters, &entry, horizon, grid).ok()?;
+        growth.from(problem.start.tau).fill(&mut truth);
         let mut largest = 1.0_f64;
-        let mut rising = |growth: &[f64; 4]| {
-            largest = growth[..3].iter().fold(largest, |largest, size| largest.max(*size));
+        let rising = truth.samples.iter().map(|row| {
+            largest = largest.max(rule.largest_growth(row));
             largest
-        };
-        let growth = samples.iter().map(&mut rising).collect();
+        });
+        let growth = rising.collect();
         Some(Self { problem, truth, growth, events_before: 0 })
     }
 
@@ -151,14 +159,15 @@ impl HorizonRun {
 
     fn horizon(
         &self,
+        rule: &ErrorRule,
         unit: f64,
         run: &impl Fn(&Task) -> Result<Outcome, Failure>,
     ) -> (ValidHorizon, bool) {
         let predicted = self.grows_to(SCORED_ERROR / unit);
         let usual = self.last(unit);
-        let mut found = self.followed(usual, run);
+        let mut found = self.followed(rule, usual, run);
         if found.as_ref().is_ok_and(|valid| *valid == usual) && self.trusted() > usual {
-            found = self.followed(self.trusted(), run);
+            found = self.followed(rule, self.trusted(), run);
         }
         let outlasts = found.as_ref().is_ok_and(|valid| *valid == self.trusted());
         let valid = found.as_ref().map_or(0, |valid| *valid);
@@ -168,6 +177,7 @@ impl HorizonRun {
     /// The valid horizon of a run of the given number of periods.
     fn followed(
         &self,
+        rule: &ErrorRule,
         periods: u32,
         run: &impl Fn(&Task) -> Result<Outcome, Failure>,
     ) -> Result<u32, Failure> {
@@ -176,21 +186,17 @@ impl HorizonRun {
         let events_before = self.events_before;
         let own = OscillatorTask { grid, events_before, ..task(self.problem, horizon) };
         let outcome = run(&Task::of_oscillator(&own)?)?;
-        Ok(self.valid(&outcome, periods))
+        Ok(self.valid(rule, &outcome, periods))
     }
 
-    fn valid(&self, outcome: &Outcome, last: u32) -> u32 {
+    fn valid(&self, rule: &ErrorRule, outcome: &Outcome, last: u32) -> u32 {
+        let pairs = self.truth.samples.iter().zip(&outcome.samples).take(last as usize + 1);
         // Written so that a NaN is off.
-        let right = |(truth, found): (&crate::truth::TruthRow, &Values)| {
-            let off = |k: usize| truth.state[k].minus(TwoWord::new(found[k])).value().abs();
-            (0..3).all(|k| off(k) <= SCORED_ERROR)
-        };
-        let pairs = self.truth.samples.iter().zip(&outcome.samples);
-        let within = pairs.take(last as usize + 1).take_while(|pair| right(*pair)).count();
-        within.saturating_sub(1) as u32
+        let within = pairs.take_while(|(row, found)| rule.state_error(row, found) <= SCORED_ERROR);
+        within.count().saturating_sub(1) as u32
     }
 }
 
 #[cfg(test)]
-#[path = "horizon_tests.rs"]
+#[path = "valid_horizon_tests.rs"]
 mod tests;

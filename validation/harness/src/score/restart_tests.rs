@@ -1,27 +1,33 @@
 use super::*;
-use crate::case::Given;
-use crate::engine::Numbers;
+use crate::case::{Given, Horizon};
+use crate::engine::{Accuracy, Ended, Event, Failure, Numbers, Outcome};
+use crate::score::rule::off;
 use crate::system::Values;
-use percuss::Phase::{Contact, NoContact, Progression};
-use percuss::Start;
+use percuss::Phase::{self, Contact, NoContact, Progression};
+use percuss::{Start, TwoWord};
 
 const UNIT: f64 = 1e-9;
+const ASKED: (Accuracy, f64) = (Accuracy::Tolerance(UNIT), UNIT);
 
-fn problem() -> Problem {
+/// Restarts on the attractor of the default model.
+fn test(count: usize) -> RestartTest {
     let given = Given { start: Start::default(), ..Given::default() };
-    let Ok(problem) = given.check() else { unreachable!("the defaults are in range") };
-    problem
+    let case = given.check().ok().and_then(|it| Case::of_run(it, Horizon::Periods(1)).ok());
+    let test = case.and_then(|case| RestartTest::on_attractor(&case, count).ok());
+    test.unwrap_or_else(|| unreachable!("the defaults are in range"))
 }
 
-fn run() -> RestartRun {
-    let Some(run) = RestartRun::new(problem()) else { unreachable!("106 bits decide it") };
-    run
+/// The first of them that has an impact, with the test that it belongs to.
+fn with_impact() -> (RestartTest, usize) {
+    let test = test(12);
+    let found = test.runs.iter().position(|it| it.impact && it.truth.events.len() >= 2);
+    (test, found.unwrap_or_else(|| unreachable!("some have an impact")))
 }
 
 fn perfect(run: &RestartRun) -> Outcome {
-    let event = |row: &TruthRow| crate::engine::Event {
+    let event = |row: &TruthRow| Event {
         event: 0,
-        mode: place(row.phase.unwrap_or(NoContact)),
+        mode: row.mode,
         elapsed: row.elapsed.value(),
         state: Values::of(&row.rounded()),
         before: None,
@@ -35,12 +41,23 @@ fn perfect(run: &RestartRun) -> Outcome {
 
 fn truth(start: Phase, phases: &[Phase]) -> Truth {
     let row = |(k, phase): (usize, &Phase)| TruthRow {
-        phase: Some(*phase),
+        event: 0,
+        mode: place(*phase),
         elapsed: TwoWord::new(k as f64),
-        state: [TwoWord::ZERO; 4],
+        state: vec![TwoWord::ZERO; 4],
+        growth_time: 1.0,
+        growth: vec![1.0; 4],
+        size: 0.0,
     };
-    let events: Vec<TruthRow> = phases.iter().enumerate().map(|(k, it)| row((k + 1, it))).collect();
-    Truth { start: row((0, &start)), end: row((9, &start)), samples: Vec::new(), events }
+    Truth {
+        start: row((0, &start)),
+        events: phases.iter().enumerate().map(|(k, it)| row((k + 1, it))).collect(),
+        end: row((9, &start)),
+        ended: Ended::Horizon,
+        span: 9.0,
+        samples: Vec::new(),
+        ordered: true,
+    }
 }
 
 fn near(found: f64, expected: f64) {
@@ -63,15 +80,15 @@ fn a_passage_is_an_impact_and_the_separation_after_it() {
 
 #[test]
 fn an_error_counts_over_its_size_and_growth() {
-    let run = run();
-    assert!(run.impact && run.truth.events.len() >= 2);
+    let (test, n) = with_impact();
+    let run = &test.runs[n];
     for k in 0..4 {
-        let mut outcome = perfect(&run);
+        let mut outcome = perfect(run);
         outcome.end[k] += 1e-5;
         let off = off(run.truth.end.state[k], outcome.end[k]);
-        let found = run.error(&outcome, UNIT);
+        let found = test.error(run, &outcome, UNIT);
         let size = 1.0 + run.truth.end.rounded()[k].abs();
-        near(found.units, off / (UNIT * size * run.growth.end[k]));
+        near(found.units, off / (UNIT * size * run.truth.end.growth[k]));
         near(found.absolute, off);
         near(found.drift_units, if k == 3 { found.units } else { 0.0 });
         assert!(found.same_modes && found.time_units < 1e-3);
@@ -80,31 +97,33 @@ fn an_error_counts_over_its_size_and_growth() {
 
 #[test]
 fn a_time_counts_where_the_phases_are_right() {
-    let run = run();
-    let mut outcome = perfect(&run);
+    let (test, n) = with_impact();
+    let run = &test.runs[n];
+    let mut outcome = perfect(run);
     outcome.events[1].elapsed += 1e-5;
-    let found = run.error(&outcome, UNIT);
+    let found = test.error(run, &outcome, UNIT);
     let row = &run.truth.events[1];
     let off = off(row.elapsed, outcome.events[1].elapsed);
-    near(found.time_units, off / (UNIT * (1.0 + row.elapsed.value()) * run.growth.events[1][0]));
+    near(found.time_units, off / (UNIT * (1.0 + row.elapsed.value()) * row.growth_time));
     outcome.events.truncate(1);
-    let found = run.error(&outcome, UNIT);
+    let found = test.error(run, &outcome, UNIT);
     assert!(!found.same_modes && found.time_units.is_nan());
 }
 
 #[test]
 fn an_end_that_is_no_number_is_the_largest_error() {
-    let run = run();
-    let mut outcome = perfect(&run);
+    let (test, n) = with_impact();
+    let run = &test.runs[n];
+    let mut outcome = perfect(run);
     outcome.end[0] = f64::NAN;
     outcome.end[1] += 1.0;
-    let found = run.error(&outcome, UNIT);
+    let found = test.error(run, &outcome, UNIT);
     assert!(found.units.is_nan() && found.absolute.is_nan());
 }
 
 #[test]
 fn runs_that_fail_or_go_another_way_are_counted() {
-    let test = RestartTest::new(&problem(), 12);
+    let test = test(12);
     let with_impact = test.runs.iter().filter(|run| run.impact).count();
     assert!(with_impact >= 4 && test.runs.len() == 12 && test.undecided == 0);
     let at = |task: &Task| test.runs.iter().position(|run| run.task.state == task.state);
@@ -120,14 +139,14 @@ fn runs_that_fail_or_go_another_way_are_counted() {
         }
         Ok(outcome)
     };
-    let found = test.score(UNIT, answer);
+    let found = test.score(ASKED, answer);
     assert_eq!((found.runs, found.with_impact), (12, with_impact));
     assert_eq!((found.failed, found.wrong_sequences, found.undecided), (1, 1, 0));
     // What gave no result is counted as failed and spoils no error of the others.
     assert!(found.units.max < 1e-3 && found.units.median < 1e-3);
     let counted: usize = found.by_events.values().map(|(count, _)| count).sum();
     assert_eq!(counted, with_impact - 1);
-    assert_eq!(test.score_first(3, UNIT, answer).runs, 3);
+    assert_eq!(test.score_first(3, ASKED, answer).runs, 3);
     // A run counts its events after those of the runs before it.
     let before: u64 = test.runs[..5].iter().map(|run| run.truth.events.len() as u64).sum();
     let own = test.runs[5].task.oscillator.as_ref();

@@ -3,10 +3,11 @@
 //! Events of one instant may come in any order where the truth says that the order is free: only
 //! their names count then, and the mode after the last of them.
 
+use super::occurrence::Occurrence;
+use crate::case::Case;
 use crate::engine::{Ended, Outcome, Task};
-use crate::score::occurrence::Occurrence;
 use crate::system::System;
-use crate::truth::{SystemTruth, SystemTruthRow};
+use crate::truth::{Truth, TruthRow};
 
 /// The numbers of a system's events, over all of its modes.
 #[derive(Clone, Debug)]
@@ -15,14 +16,18 @@ pub struct EventNames {
     names: Vec<String>,
     /// The number of each event of each mode.
     numbers: Vec<Vec<usize>>,
+    /// Whether events are told apart by the modes that begin, and all have one name.
+    by_modes: bool,
 }
 
 impl EventNames {
-    /// The names of a system's events.
+    /// The names of the events of a case, which is a run of this system.
     #[must_use]
-    pub fn of(system: &System) -> Self {
+    pub fn of(case: &Case, system: &System) -> Self {
+        let by_modes = case.oscillator.is_some();
         let mut names: Vec<String> = Vec::new();
         let mut number = |name: &String| {
+            let name = if by_modes { &system.name } else { name };
             names.iter().position(|it| it == name).unwrap_or_else(|| {
                 names.push(name.clone());
                 names.len() - 1
@@ -33,7 +38,7 @@ impl EventNames {
             until.chain(mode.watch.iter().map(|it| &it.name)).map(&mut number).collect()
         });
         let numbers = numbers.collect();
-        Self { names, numbers }
+        Self { names, numbers, by_modes }
     }
 
     /// The number of an event's name.
@@ -44,9 +49,15 @@ impl EventNames {
         number.copied().unwrap_or(usize::MAX)
     }
 
+    /// The number of an event's name, where that tells it from others.
+    #[must_use]
+    pub fn telling(&self, mode: usize, event: usize) -> Option<usize> {
+        (!self.by_modes).then(|| self.number(mode, event))
+    }
+
     /// The events of a truth; an ending that engines have to find is the last.
     #[must_use]
-    pub fn of_truth(&self, truth: &SystemTruth) -> Vec<Occurrence> {
+    pub fn of_truth(&self, truth: &Truth) -> Vec<Occurrence> {
         let mut mode = truth.start.mode;
         let mut found: Vec<Occurrence> = Vec::new();
         for row in &truth.events {
@@ -63,12 +74,7 @@ impl EventNames {
 
     /// The events of an engine's answer, those of one instant in the truth's order.
     #[must_use]
-    pub fn of_outcome(
-        &self,
-        task: &Task,
-        truth: &SystemTruth,
-        outcome: &Outcome,
-    ) -> Vec<Occurrence> {
+    pub fn of_outcome(&self, task: &Task, truth: &Truth, outcome: &Outcome) -> Vec<Occurrence> {
         let mut mode = task.mode;
         let mut found: Vec<Occurrence> = Vec::new();
         for event in &outcome.events {
@@ -85,12 +91,11 @@ impl EventNames {
     }
 
     /// The events of one instant whose order is free, by their indices.
-    fn groups(&self, truth: &SystemTruth) -> Vec<std::ops::Range<usize>> {
+    fn groups(&self, truth: &Truth) -> Vec<std::ops::Range<usize>> {
         if truth.ordered {
             return Vec::new();
         }
-        let at_once =
-            |a: &SystemTruthRow, b: &SystemTruthRow| b.elapsed.minus(a.elapsed).value() == 0.0;
+        let at_once = |a: &TruthRow, b: &TruthRow| b.elapsed.minus(a.elapsed).value() == 0.0;
         let mut groups = Vec::new();
         let mut from = 0;
         for group in truth.events.chunk_by(at_once) {

@@ -1,0 +1,175 @@
+//! The figures of one run.
+
+use super::SCORED_ERROR;
+use super::event_names::EventNames;
+use super::matching::{Matching, WINDOW};
+use super::measures::Measures;
+use super::mismatch::{Excused, Mismatch};
+use super::occurrence::Occurrence;
+use super::probed::ProbeResults;
+use super::rule::ErrorRule;
+use super::scored_horizon::ScoredBy;
+use super::statistics::{Spread, worst};
+use crate::engine::{Outcome, Task};
+use crate::system::System;
+use crate::truth::{Truth, TruthRow};
+use percuss::TwoWord;
+
+/// A true run, with what runs of engines are measured by.
+#[derive(Clone, Copy)]
+pub struct MeasuredBy<'a> {
+    /// The run that is asked for.
+    pub task: &'a Task,
+    /// The truth.
+    pub truth: &'a Truth,
+    /// The names of its events.
+    pub names: &'a EventNames,
+    /// How errors are counted.
+    pub rule: &'a ErrorRule,
+}
+
+/// A run to be measured.
+struct MeasuredRun<'a> {
+    by: MeasuredBy<'a>,
+    outcome: &'a Outcome,
+    /// The truth's events, and the engine's.
+    events: [&'a [Occurrence]; 2],
+    pairs: &'a [(usize, usize)],
+    unit: f64,
+}
+
+/// Measures a run.
+#[must_use]
+pub fn measure(by: MeasuredBy<'_>, outcome: &Outcome, scored_by: ScoredBy<'_>) -> Measures {
+    let MeasuredBy { task, truth, names, rule } = by;
+    let period = task.system.period();
+    let window = WINDOW * period;
+    let (horizon, whole) = rule.scored_horizon(truth, scored_by);
+    let (all, own) = (names.of_truth(truth), names.of_outcome(task, truth, outcome));
+    let until = |events: &[Occurrence], time: f64| {
+        events.iter().take_while(|it| it.elapsed <= time).count()
+    };
+    // An event just past the horizon may be the partner of one just before it.
+    let (rows, found) = (until(&all, horizon + window), until(&own, horizon + window));
+    let (expected, counted) = (until(&all, horizon), until(&own, horizon));
+    let matching = Matching::of(&all[..rows], &own[..found], window);
+    let mismatch = Mismatch::of(&matching, (rows, expected), (found, counted));
+    let pairs: Vec<_> = matching.pairs.iter().copied().filter(|(i, _)| *i < expected).collect();
+    let unit = scored_by.unit;
+    let run = MeasuredRun { by, outcome, events: [&all, &own], pairs: &pairs, unit };
+    let scored = truth.samples.iter().take_while(|it| it.elapsed.value() <= horizon).count();
+    let errors = sample_errors(truth, rule, outcome);
+    let lost = errors.iter().position(|error| error.is_nan() || *error > SCORED_ERROR);
+    let valid = lost
+        .map_or(truth.end.elapsed.value(), |k| truth.samples[k.saturating_sub(1)].elapsed.value());
+    Measures {
+        horizon_periods: horizon / period,
+        whole,
+        total: all.len(),
+        samples: truth.samples.len().saturating_sub(1),
+        sampled: scored.saturating_sub(1),
+        expected,
+        matched: pairs.len(),
+        phase_sequence_ok: mismatch.same_phases(&all[..rows], &own, &Excused::default()),
+        event_time: Spread::of(
+            run.times().map(|(_, time, own)| rule.time_error(time, own)).collect(),
+        ),
+        // The start is given: its error is none.
+        state: Spread::of(errors.get(1..scored).unwrap_or_default().to_vec()),
+        drift: if whole { rule.drift_error(&truth.end, &outcome.end) } else { f64::NAN },
+        drift_by_times: if whole { run.drift_by_times() } else { f64::NAN },
+        valid_periods: valid / period,
+        event_time_units: run.time_units().collect(),
+        event_constant: run.event_constant(),
+        state_constant: run.state_constant(scored),
+        found: own,
+        mismatch,
+        probed: ProbeResults::default(),
+    }
+}
+
+/// The largest error of a state at each sample of the truth; NaN at one that the engine did not
+/// deliver.
+#[must_use]
+pub fn sample_errors(truth: &Truth, rule: &ErrorRule, outcome: &Outcome) -> Vec<f64> {
+    let error = |(k, row): (usize, &TruthRow)| {
+        outcome.samples.get(k).map_or(f64::NAN, |state| rule.state_error(row, state))
+    };
+    truth.samples.iter().enumerate().map(error).collect()
+}
+
+impl MeasuredRun<'_> {
+    /// The place of each matched event among the truth's, its true time, and the engine's.
+    fn times(&self) -> impl Iterator<Item = (usize, TwoWord, f64)> {
+        let [all, own] = self.events;
+        let events = &self.by.truth.events;
+        self.pairs.iter().map(move |(i, j)| {
+            let truth = events.get(*i).map_or(TwoWord::new(all[*i].elapsed), |row| row.elapsed);
+            (*i, truth, own[*j].elapsed)
+        })
+    }
+
+    /// The error of each matched event's time in units of error x (1 + size) x growth x events so
+    /// far.
+    fn time_units(&self) -> impl Iterator<Item = f64> {
+        let MeasuredBy { truth, rule, .. } = self.by;
+        let unit = |n: usize| self.unit * (n + 1) as f64;
+        self.times().map(move |(n, time, own)| rule.time_units(truth, n, (time, own)) / unit(n))
+    }
+
+    fn event_constant(&self) -> f64 {
+        if self.pairs.is_empty() {
+            return f64::NAN;
+        }
+        // Between events of one instant the state is a matter of their order.
+        let [all, _] = self.events;
+        let placed = self.pairs.iter().filter(|(i, _)| all[*i].mode.is_some());
+        let states = placed.filter_map(|(i, j)| {
+            let (row, event) = (self.by.truth.events.get(*i)?, self.outcome.events.get(*j)?);
+            Some(self.by.rule.state_units(row, &event.state) / (self.unit * (i + 1) as f64))
+        });
+        worst(self.time_units().chain(states))
+    }
+
+    fn state_constant(&self, scored: usize) -> f64 {
+        // The start is given and measures nothing.
+        if scored <= 1 {
+            return f64::NAN;
+        }
+        let MeasuredBy { truth, rule, .. } = self.by;
+        let mut events = 0;
+        worst((1..scored).map(|k| {
+            let row = &truth.samples[k];
+            let passed = |it: &&TruthRow| it.elapsed.minus(row.elapsed).value() <= 0.0;
+            events += truth.events[events..].iter().take_while(passed).count();
+            let state = self.outcome.samples.get(k);
+            let units = state.map_or(f64::NAN, |state| rule.state_units(row, state));
+            units / (self.unit * events.max(1) as f64)
+        }))
+    }
+
+    /// A drift that begins too late by dt lacks v' dt; NaN where nothing drifts.
+    fn drift_by_times(&self) -> f64 {
+        let Some(drift) = self.by.rule.drift else { return f64::NAN };
+        let system = self.by.task.system.system();
+        let truth = self.by.truth;
+        let lost = |(n, time, own): (usize, TwoWord, f64)| {
+            let Some(row) = truth.events.get(n) else { return 0.0 };
+            let before = n.checked_sub(1).map_or(truth.start.mode, |it| truth.events[it].mode);
+            let [before, after] = [before, row.mode].map(|it| rate(system, (it, drift), row));
+            (after - before) * TwoWord::new(own).minus(time).value()
+        };
+        self.times().map(lost).sum::<f64>().abs()
+    }
+}
+
+/// The rate of a state in a mode, at a row of the truth.
+fn rate(system: &System, (mode, state): (usize, usize), row: &TruthRow) -> f64 {
+    let (sin, cos) = (system.omega * row.elapsed.value() + system.phi).sin_cos();
+    let z = row.rounded().into_iter().chain([cos, sin, 1.0]);
+    system.modes[mode].rate(state).iter().zip(z).map(|(factor, value)| factor * value).sum()
+}
+
+#[cfg(test)]
+#[path = "measure_tests.rs"]
+mod tests;

@@ -1,0 +1,114 @@
+//! What errors are counted in, as data: the two rules that there are.
+
+use super::statistics::worst;
+use crate::case::Case;
+use crate::system::System;
+use crate::truth::{Truth, TruthRow};
+use percuss::TwoWord;
+
+/// What an error is judged beside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beside {
+    /// One and the value itself, each with its own growth; times are plain.
+    Value,
+    /// One and the largest state so far, in the scales of the system, with the growth of times too:
+    /// an error of one state grows into the others.
+    Largest,
+}
+
+/// How errors along a case's run are counted.
+#[derive(Clone, Debug)]
+pub struct ErrorRule {
+    /// What an error is judged beside.
+    pub beside: Beside,
+    /// The scales of the states.
+    pub scales: Vec<f64>,
+    /// The scale of times.
+    pub time_scale: f64,
+    /// The state that drifts, which is no part of the state's error.
+    pub drift: Option<usize>,
+}
+
+impl ErrorRule {
+    /// The rule of a case, which is a run of this system.
+    #[must_use]
+    pub fn of(case: &Case, system: &System) -> Self {
+        let beside = if case.oscillator.is_some() { Beside::Value } else { Beside::Largest };
+        let (scales, time_scale) = (system.scales.clone(), case.unit_of_time());
+        Self { beside, scales, time_scale, drift: case.drift() }
+    }
+
+    /// The largest error of a state, over its scale.
+    #[must_use]
+    pub fn state_error(&self, row: &TruthRow, state: &[f64]) -> f64 {
+        let states = row.state.iter().zip(state).zip(&self.scales).enumerate();
+        let states = states.filter(|(k, _)| Some(*k) != self.drift);
+        worst(states.map(|(_, ((truth, own), scale))| off(*truth, *own) / scale))
+    }
+
+    /// The error of the state that drifts; NaN where there is none.
+    #[must_use]
+    pub fn drift_error(&self, row: &TruthRow, state: &[f64]) -> f64 {
+        self.drift.map_or(f64::NAN, |k| off(row.state[k], state[k]))
+    }
+
+    /// The error of an event's time.
+    #[must_use]
+    pub fn time_error(&self, truth: TwoWord, own: f64) -> f64 {
+        match self.beside {
+            Beside::Value => off(truth, own),
+            Beside::Largest => (truth.value() - own).abs(),
+        }
+    }
+
+    /// The error of an event's time over its size and growth; an ending has those of the last row.
+    pub(super) fn time_units(&self, truth: &Truth, n: usize, (time, own): (TwoWord, f64)) -> f64 {
+        let row = truth.events.get(n);
+        // An ending has no growth of its own.
+        let growth = row.or(truth.events.last()).map_or(1.0, |row| row.growth_time);
+        let elapsed = time.value().abs() / self.time_scale;
+        let size = match self.beside {
+            Beside::Value => elapsed,
+            Beside::Largest => row.map_or(truth.end.size, |row| row.size).max(elapsed),
+        };
+        self.time_error(time, own) / self.time_scale / (1.0 + size) / growth
+    }
+
+    /// The largest error of a state over its size and growth.
+    pub(super) fn state_units(&self, row: &TruthRow, state: &[f64]) -> f64 {
+        worst((0..row.state.len().min(state.len())).map(|k| self.units(row, k, state[k])))
+    }
+
+    /// The error of one state over its size and growth.
+    pub(super) fn units(&self, row: &TruthRow, k: usize, own: f64) -> f64 {
+        let error = off(row.state[k], own) / self.scales[k];
+        match self.beside {
+            Beside::Value => error / (1.0 + row.state[k].value().abs()) / row.growth[k],
+            Beside::Largest => error / row.growth[k].max(row.growth_time) / (1.0 + row.size),
+        }
+    }
+
+    /// The largest of the contributions of the states' errors to that of a guard, at a state, by
+    /// their growth in a row of the truth.
+    pub(super) fn guard_growth(&self, guard: &[f64], row: &TruthRow, state: &[f64]) -> f64 {
+        let size = |k: usize| match self.beside {
+            Beside::Value => state[k].abs(),
+            Beside::Largest => row.size,
+        };
+        let part = |k: usize| guard[k].abs() * self.scales[k] * row.growth[k] * (1.0 + size(k));
+        let states = (0..row.state.len()).filter(|k| Some(*k) != self.drift);
+        states.map(part).fold(0.0, f64::max)
+    }
+
+    /// The largest growth of a state, at least one.
+    #[must_use]
+    pub fn largest_growth(&self, row: &TruthRow) -> f64 {
+        let growth = row.growth.iter().enumerate().filter(|(k, _)| Some(*k) != self.drift);
+        growth.fold(1.0_f64, |most, (_, growth)| most.max(*growth))
+    }
+}
+
+/// The distance of a value from the truth.
+pub(crate) fn off(truth: TwoWord, value: f64) -> f64 {
+    truth.minus(TwoWord::new(value)).value().abs()
+}
