@@ -23,6 +23,8 @@ pub struct Follower<'a, T: Number> {
     /// The structural zeros at the present record, and the node that they had when last asked for.
     zeros: ZeroSpace,
     known: Option<usize>,
+    /// The present record, as it was handed over last.
+    record: Event<T>,
     /// The number of decisions that rounding had left open when the continuation began.
     undecided_before: u64,
 }
@@ -56,8 +58,8 @@ impl<T: Number> Solver<T> {
     pub fn follow(&self, start: &StartPoint) -> Result<Follower<'_, T>, SystemError> {
         let run = self.at_start(start, T::zero())?;
         let zeros = run.graph.node(run.node).zeros().clone();
-        let known = Some(run.node);
-        Ok(Follower { run, mode: start.mode, zeros, known, undecided_before: 0 })
+        let (known, record) = (Some(run.node), run.event(What::Start, run.entered, &run.state));
+        Ok(Follower { run, mode: start.mode, zeros, known, record, undecided_before: 0 })
     }
 }
 
@@ -66,6 +68,11 @@ impl<T: Number> Follower<'_, T> {
     #[must_use]
     pub fn mode(&self) -> usize {
         self.mode
+    }
+
+    /// Takes the mode and the structural zeros of another follower of the same run.
+    pub fn adopt<U: Number>(&mut self, other: &Follower<'_, U>) {
+        (self.mode, self.zeros, self.known) = (other.mode, other.zeros.clone(), None);
     }
 
     /// Forgets what is zero: the records before this one say nothing of its state.
@@ -108,13 +115,13 @@ impl<T: Number> Follower<'_, T> {
     }
 
     /// The derivatives of guards that are zero by the model at the present record, with their
-    /// values in its state.
-    pub fn imposed(&mut self, time: f64, state: &[f64]) -> Vec<Imposed> {
+    /// values in its state; `elapsed` is its time since the run's start.
+    pub fn imposed(&mut self, elapsed: f64, state: &[f64]) -> Vec<Imposed> {
         let solver = self.run.solver;
         let node = self.node();
         let orders = self.run.graph.node(node).multiplicities.clone();
         let own = &solver.modes[self.mode];
-        let entry = own.flow.modal(&solver.complete_f64(time, state).1);
+        let entry = own.flow.modal(&self.complete(elapsed, state).1);
         let mut imposed = Vec::new();
         for (guard, (row, order)) in own.guards.iter().zip(orders.iter()).enumerate() {
             for order in 0..order.unwrap_or(row.last) {
@@ -126,24 +133,55 @@ impl<T: Number> Follower<'_, T> {
     }
 
     /// Begins the exact continuation of the present record, whose time and state are given, up to a
-    /// time.
+    /// time; both are times since the run's start.
     ///
     /// A guard of an `until` that is positive there, not by the model alone, fires at once, unless
     /// it is one of `late`, as bits: those are on their way back, and fire after they have been
     /// inside.
-    pub fn go_on(&mut self, time: f64, state: &[f64], until: f64, late: u64) {
+    pub fn go_on(&mut self, elapsed: f64, state: &[f64], until: f64, late: u64) {
         let node = self.node();
+        let begin = self.complete(elapsed, state);
+        let horizon = self.time(until).value();
         let run = &mut self.run;
         let solver = run.solver;
         (run.node, self.undecided_before) = (node, run.work.undecidable);
-        (run.entered, run.state) = solver.complete_f64(time, state);
-        run.horizon = T::exact(until);
+        (run.entered, run.state) = begin;
+        run.horizon = horizon;
         run.queue.clear();
         (run.ended, run.events_in_instant, run.restitution) = (false, 0, None);
         let until_guards = low_bits(solver.system.modes[self.mode].until.len());
         (run.is_lenient, run.returning) = (true, late & until_guards);
         run.last = run.event(What::Start, run.entered, &run.state);
+        self.record.clone_from(&run.last);
         run.enter();
+    }
+
+    /// Goes past an event of the present continuation as if it had not happened: begins anew at this
+    /// time after it, in the same mode. The guards of `past`, as bits, are outside and fire after
+    /// they have been inside.
+    pub fn go_past(&mut self, elapsed: f64, until: f64, past: u64) {
+        let state: Vec<f64> = self.along(elapsed).iter().map(|it| it.to_f64()).collect();
+        let node = self.node();
+        let none = ZeroGuards { guards: 0, point: None };
+        let lasting = self.run.graph.zeros_with(node, none, false);
+        let zeros = std::mem::replace(&mut self.zeros, lasting);
+        self.known = None;
+        self.go_on(elapsed, &state, until, past);
+        (self.zeros, self.known) = (zeros, Some(node));
+    }
+
+    /// The state at a time since the run's start, if the mode that the present record begins went
+    /// on without an event.
+    #[must_use]
+    pub fn along(&self, elapsed: f64) -> Vec<T> {
+        self.run.solver.state_at(&self.record, &self.time(elapsed))
+    }
+
+    /// The time of an event since the run's start.
+    #[must_use]
+    pub fn elapsed(&self, event: &Event<T>) -> f64 {
+        let elapsed = event.time.since(&self.run.start.time).value().to_f64();
+        if self.run.solver.backward { -elapsed } else { elapsed }
     }
 
     /// The node of the structural zeros at the present record.
@@ -175,11 +213,17 @@ impl<T: Number> Iterator for Follower<'_, T> {
     }
 }
 
-impl<T: Number> Solver<T> {
+impl<T: Number> Follower<'_, T> {
+    /// The clock's time when this much has elapsed since the run's start.
+    fn time(&self, elapsed: f64) -> Time<T> {
+        let ahead = if self.run.solver.backward { -elapsed } else { elapsed };
+        self.run.start.time.after(T::exact(ahead))
+    }
+
     /// A time and the state there, which are given in f64.
-    fn complete_f64(&self, time: f64, state: &[f64]) -> (Time<T>, Vector<T>) {
-        let time = Time { high: T::exact(time), low: T::zero() };
+    fn complete(&self, elapsed: f64, state: &[f64]) -> (Time<T>, Vector<T>) {
+        let time = self.time(elapsed);
         let states: Vec<T> = state.iter().map(|it| T::exact(*it)).collect();
-        (time, self.complete(&states, &time))
+        (time, self.run.solver.complete(&states, &time))
     }
 }
