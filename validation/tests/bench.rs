@@ -124,12 +124,31 @@ fn an_engine_that_is_told_its_events_makes_the_same_run() {
     assert!(unmetered.is_ok_and(|it| it.is_none()));
 }
 
+/// Events at the entry of a mode, and crossings that end nothing, are told as well: the share is
+/// known on every system.
+#[test]
+fn the_harness_share_is_known_on_every_system() {
+    let limits = Limits { calls: 200_000, ..Limits::default() };
+    for case in system_cases() {
+        for engine in all().iter().filter(|it| it.takes(&case.task).is_ok()) {
+            let stepping = engine.declaration().stepping;
+            let setting = settings(stepping)[settings(stepping).len() / 2];
+            if answer(*engine, &case.task, setting, &limits).is_err() {
+                continue;
+            }
+            let part = library_part(*engine, &case, setting, limits);
+            let (case, name) = (&case.name, engine.declaration().name);
+            assert_eq!(part.map(|it| it.is_some()), Ok(true), "{name} on {case}");
+        }
+    }
+}
+
 /// The search is left out indeed: told of no event, an engine whose events the harness finds has
 /// none.
 #[test]
 fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let case = case("impact-into-progression");
-    let none = Script::of(&[]);
+    let none = Script::default();
     let limits = Limits::default();
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {

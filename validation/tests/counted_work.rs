@@ -51,7 +51,8 @@ fn the_least_work_is_a_lower_bound() {
 
 /// Each right-hand side of a multistep method is one of Newton's iterations, which solves one
 /// system, but for those that begin a phase (four in diffsol: one of ours and three that choose the
-/// first step) and those of Hermite's cubic at both ends of a step in differential-equations.
+/// first step) and those of Hermite's cubic in differential-equations, at both ends of a step that
+/// a state inside is asked of.
 #[test]
 fn newtons_iterations_solve_one_system_each() {
     for engine in all() {
@@ -70,8 +71,9 @@ fn newtons_iterations_solve_one_system_each() {
                 );
             }
             "differential-equations-bdf" => {
-                let solves = work.rhs_evaluations - phases - 2 * work.steps;
-                assert_eq!(work.linear_solves, solves, "{work:?}");
+                let of_cubics = work.rhs_evaluations - phases - work.linear_solves;
+                assert!(of_cubics.is_multiple_of(2), "{work:?}");
+                assert!((2 * (phases - 1)..work.steps).contains(&of_cubics), "{work:?}");
             }
             // The library decomposes its matrix anew for each system.
             "differential-equations-kvaerno745" => {

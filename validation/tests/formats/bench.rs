@@ -53,6 +53,20 @@ fn bench() {
     assert!(
         rows.iter().filter(|row| row["ns_per_period"].is_number()).all(|it| share(it).is_some())
     );
+    // Net ratios are the gross ones without that share; the exact solver is the unit of both.
+    for row in rows.iter().filter(|row| row["ns_per_period"].is_number()) {
+        let number = |key: &str| row[key].as_f64().expect("a number");
+        let is_unit = row["engine"] == "exact";
+        let taken_off = if is_unit { 0.0 } else { number("harness_share").max(0.0) };
+        let net = number("ratio_to_exact") * (1.0 - taken_off);
+        assert!((number("net_ratio_to_exact") / net - 1.0).abs() < 1e-12, "{row}");
+        assert!(row["harness_share_spread"].is_number(), "{row}");
+    }
+    for key in ["net_ratio_at_1e-6", "net_ratio_at_1e-9", "net_ratio_at_comparable_error"] {
+        assert_eq!(exact[0][key], 1.0);
+        let gross = &key["net_".len()..];
+        assert!(decades[0][key].as_f64() <= decades[0][gross].as_f64(), "{key}");
+    }
     // One time of an event: that of the run.
     let event = bench["events"][0].clone();
     let (entry, number) = (&bench["cases"][0], |it: &Value| it.as_f64().expect("a number"));
@@ -72,7 +86,10 @@ fn bench() {
     // Each case has its picture; cost against length and xi belongs to the whole.
     for case in ["impact-into-progression", "never-returns"] {
         for ending in ["png", "svg"] {
-            assert!(folder.path().join(format!("work-precision-{case}.{ending}")).is_file());
+            for times in ["", "-gross"] {
+                let name = format!("work-precision-{case}{times}.{ending}");
+                assert!(folder.path().join(name).is_file());
+            }
         }
     }
     assert!(!folder.path().join("length.png").exists());

@@ -3,6 +3,7 @@
 use super::field::Coordinates;
 use super::meter::Meter;
 use super::sampler::Sampler;
+use super::script::{GuardRise, note};
 use crate::accuracy::shortest_time;
 use crate::engine::{Ended, Event, OscillatorTask, Outcome, Task, Watched, place};
 use crate::equations::{Entered, Equations, Numbers};
@@ -149,6 +150,7 @@ pub(crate) fn join<E: Equations>(
             Some(guard) => StretchEnd::Event { t: now.t, guard, state: now.state },
             None => stretch(&now, &mut sampler)?,
         };
+        note_located(&now, &sampler, &ended);
         record_counted(equations, now.mode, (&mut sampler, meter), &mut outcome)?;
         now = match ended {
             StretchEnd::Inside { t, state } => Moment { t, state, ..now },
@@ -186,6 +188,20 @@ pub(crate) fn join<E: Equations>(
 /// A state as an outcome has it.
 fn reported<E: Equations>(equations: &E, state: &E::State) -> Values {
     Values::of(equations.reported(state).as_ref())
+}
+
+/// Notes what the search has found in a stretch, where a run is to be repeated without it.
+fn note_located<E: Equations>(
+    now: &Moment<E>,
+    sampler: &Sampler<E::State>,
+    ended: &StretchEnd<E::State>,
+) {
+    for crossing in &sampler.counted {
+        note(GuardRise { t: crossing.t, guard: crossing.guard }, false);
+    }
+    if let (None, StretchEnd::Event { t, guard, .. }) = (now.entered.fires, ended) {
+        note(GuardRise { t: *t, guard: *guard }, true);
+    }
 }
 
 /// Moves the crossings of guards that do not end the mode from the sampler to the outcome.

@@ -1,58 +1,34 @@
 //! Event location by this harness, on any dense output of a step.
 //!
-//! The guards are looked at at [`INTERIOR`] instants inside a step. Between two of them a guard has
-//! risen to zero if it is there at the second, or if it was rising at the first, is falling at the
-//! second and its peak, found by bisection of its rate, reaches zero: so a touch shorter than the
-//! interval is seen wherever the dense output shows it. Rates come from the equations of motion.
-//! The crossing itself is then narrowed down to the last bit.
+//! Guards and their rates by the equations of motion are looked at at the ends of a step. A guard
+//! has risen to zero if it is there at the second end. Whether it may have done so between two ends
+//! that do not show it is asked of the cubic through both (`guard_cubic.rs`): only where that comes
+//! near zero is the guard looked at inside, first at the cubic's own turn. The crossing itself is
+//! narrowed down to some roundings of its time (`crossing.rs`).
 
+use super::cubic::CubicEnd;
+use super::guard_values::GuardValues;
 use super::joining::Moment;
 use super::meter::Meter;
 use super::sampler::CountedCrossing;
-use super::script::GuardRise;
+use super::script::{GuardRise, ScriptLine, ToldCrossings};
 use crate::equations::{Entered, Equations, NO_GUARD, Numbers};
 use crate::failure::Failure;
 
-/// Instants inside a step at which the guards are looked at.
-const INTERIOR: u32 = 8;
-/// Evaluations after which a bracket has shrunk as far as it will.
-const MOST_EVALUATIONS: u32 = 200;
+/// How often a step is divided where the looks so far may hide something.
+const MOST_DIVISIONS: u32 = 3;
 
 /// Roots of two guards that are no further apart than this, relative to their time, are one
 /// instant: the guard that comes first ends the mode.
 const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
 
 /// A dense output: the state at an instant.
-pub(crate) type StateAt<'a, S> = dyn FnMut(f64) -> Result<S, Failure> + 'a;
-
-/// The guards at an instant.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GuardValues<G> {
-    t: f64,
-    guards: G,
-    rates: G,
-}
-
-impl<G: Numbers> GuardValues<G> {
-    fn value(&self, guard: usize) -> f64 {
-        self.guards.as_ref()[guard]
-    }
-
-    fn rate(&self, guard: usize) -> f64 {
-        self.rates.as_ref()[guard]
-    }
-
-    /// Outside, and by the equations of motion not on the way back: the interpolant of a loose
-    /// tolerance ripples through a threshold that the motion itself is leaving.
-    fn leaves(&self, guard: usize) -> bool {
-        self.value(guard) >= 0.0 && self.rate(guard) > 0.0
-    }
-}
+pub(super) type StateAt<'a, S> = dyn FnMut(f64) -> Result<S, Failure> + 'a;
 
 /// The search for the end of one mode.
 pub(crate) struct GuardSearch<'a, E: Equations> {
-    equations: E,
-    mode: usize,
+    pub(super) equations: E,
+    pub(super) mode: usize,
     meter: &'a Meter,
     began: f64,
     entered: Entered,
@@ -64,33 +40,8 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         Self { equations, mode, meter, began, entered }
     }
 
-    /// The first crossing in a step at which the mode ends; those before it that are only counted
-    /// go to `counted`.
-    pub(crate) fn step(
-        &self,
-        begin: f64,
-        end: f64,
-        state_at: &mut StateAt<'_, E::State>,
-        counted: &mut Vec<CountedCrossing<E::State>>,
-    ) -> Result<Option<GuardRise>, Failure> {
-        if let Some(told) = self.meter.told() {
-            return Ok(told.up_to(end));
-        }
-        self.meter.stepped(end);
-        let width = (end - begin) / f64::from(INTERIOR);
-        let mut left = self.look_at(begin, state_at)?;
-        for i in 1..=INTERIOR {
-            let t = if i == INTERIOR { end } else { begin + width * f64::from(i) };
-            let right = self.look_at(t, state_at)?;
-            if let Some(found) = self.within(&left, &right, state_at, counted)? {
-                return Ok(Some(found));
-            }
-            left = right;
-        }
-        Ok(None)
-    }
-
-    /// The first crossing in a step of which only the ends are looked at.
+    /// The first crossing in a step at which the mode ends, from looks at the step's ends; those
+    /// before it that are only counted go to `counted`.
     pub(crate) fn between(
         &self,
         left: &GuardValues<E::Guards>,
@@ -99,10 +50,63 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         counted: &mut Vec<CountedCrossing<E::State>>,
     ) -> Result<Option<GuardRise>, Failure> {
         if let Some(told) = self.meter.told() {
-            return Ok(told.up_to(right.t));
+            return Self::told(told, right.t, state_at, counted);
         }
         self.meter.stepped(right.t);
-        self.within(left, right, state_at, counted)
+        let guards = self.equations.count(self.mode);
+        if (0..guards).all(|guard| left.cubic_to(right, guard).stays_inside()) {
+            return Ok(None);
+        }
+        self.divided(left, right, MOST_DIVISIONS, state_at, counted)
+    }
+
+    /// What a run that was made before has found in this step.
+    fn told(
+        told: &ToldCrossings,
+        end: f64,
+        state_at: &mut StateAt<'_, E::State>,
+        counted: &mut Vec<CountedCrossing<E::State>>,
+    ) -> Result<Option<GuardRise>, Failure> {
+        while let Some(ScriptLine { rise, ends }) = told.up_to(end) {
+            if ends {
+                return Ok(Some(rise));
+            }
+            let GuardRise { t, guard } = rise;
+            counted.push(CountedCrossing { t, guard, state: state_at(t)? });
+        }
+        Ok(None)
+    }
+
+    /// The first crossing between two looks, with looks between them where they may hide something.
+    fn divided(
+        &self,
+        left: &GuardValues<E::Guards>,
+        right: &GuardValues<E::Guards>,
+        divisions: u32,
+        state_at: &mut StateAt<'_, E::State>,
+        counted: &mut Vec<CountedCrossing<E::State>>,
+    ) -> Result<Option<GuardRise>, Failure> {
+        let inside = |t: &f64| *t > left.t && *t < right.t;
+        let division = self.division(left, right).filter(|t| divisions > 0 && inside(t));
+        let Some(t) = division else { return self.within(left, right, state_at, counted) };
+        let middle = self.look_at(t, state_at)?;
+        let found = self.divided(left, &middle, divisions - 1, state_at, counted)?;
+        if found.is_some() {
+            return Ok(found);
+        }
+        self.divided(&middle, right, divisions - 1, state_at, counted)
+    }
+
+    /// Where to look between two looks that may hide a change of sign.
+    fn division(
+        &self,
+        left: &GuardValues<E::Guards>,
+        right: &GuardValues<E::Guards>,
+    ) -> Option<f64> {
+        let cubics = (0..self.equations.count(self.mode))
+            .map(|guard| (left.cubic_to(right, guard), self.equations.ends(self.mode, guard)));
+        let mut hiding = cubics.filter(|(cubic, ends)| cubic.hides(*ends));
+        hiding.next().map(|(cubic, _)| cubic.division())
     }
 
     /// The first crossing between two looks.
@@ -135,12 +139,26 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         Ok(first)
     }
 
+    /// A state that is known, a little later or earlier, by Heun's step.
+    pub(super) fn moved(&self, known: &CubicEnd<E::State>, t: f64) -> E::State {
+        let (begin, state) = known;
+        let length = t - begin;
+        let rates = self.derivatives(*begin, state);
+        let after = self.derivatives(t, &moved_by(state, &rates, length));
+        moved_by(&moved_by(state, &rates, 0.5 * length), &after, 0.5 * length)
+    }
+
+    fn derivatives(&self, t: f64, state: &E::State) -> E::State {
+        let mut rates = *state;
+        self.equations.derivatives(self.mode, t, state.as_ref(), rates.as_mut());
+        self.meter.rhs(rates.as_ref());
+        rates
+    }
+
     /// The guards of a known state.
     pub(crate) fn look(&self, t: f64, state: &E::State) -> GuardValues<E::Guards> {
-        let count = self.equations.most_guards();
         if self.meter.told().is_some() {
-            let [guards, rates] = [NO_GUARD, 0.0].map(|value| E::Guards::all(count, value));
-            return GuardValues { t, guards, rates };
+            return self.no_look(t);
         }
         let state = state.as_ref();
         let mut guards = self.equations.guards(self.mode, t, state);
@@ -151,143 +169,33 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         GuardValues { t, guards, rates: self.equations.rates(self.mode, t, state) }
     }
 
-    fn look_at(
+    /// The guards at an instant.
+    pub(crate) fn look_at(
         &self,
         t: f64,
         state_at: &mut StateAt<'_, E::State>,
     ) -> Result<GuardValues<E::Guards>, Failure> {
+        if self.meter.told().is_some() {
+            return Ok(self.no_look(t));
+        }
         Ok(self.look(t, &state_at(t)?))
     }
 
-    fn of_guard(
-        &self,
-        guard: usize,
-        left: &GuardValues<E::Guards>,
-        right: &GuardValues<E::Guards>,
-        state_at: &mut StateAt<'_, E::State>,
-    ) -> Result<Option<f64>, Failure> {
-        let begins_inside = left.value(guard) < 0.0;
-        if right.value(guard) < 0.0 {
-            if !begins_inside || left.rate(guard) <= 0.0 || right.rate(guard) > 0.0 {
-                return Ok(None);
-            }
-            return self.peak(guard, left, right, state_at);
-        }
-        if !begins_inside {
-            // It began on the surface or, by the interpolant's error, past it.
-            if !right.leaves(guard) {
-                return Ok(None);
-            }
-            let at = self.bisect(left, right, |look| look.leaves(guard), state_at)?;
-            return Ok(Some(at.t));
-        }
-        self.rise(guard, left, right, state_at)
+    /// In place of a look in a run that is told its events.
+    fn no_look(&self, t: f64) -> GuardValues<E::Guards> {
+        let count = self.equations.most_guards();
+        let [guards, rates] = [NO_GUARD, 0.0].map(|value| E::Guards::all(count, value));
+        GuardValues { t, guards, rates }
     }
+}
 
-    /// A crossing of a guard that ends nothing: it becomes positive after it was negative.
-    fn of_counted(
-        &self,
-        guard: usize,
-        left: &GuardValues<E::Guards>,
-        right: &GuardValues<E::Guards>,
-        state_at: &mut StateAt<'_, E::State>,
-    ) -> Result<Option<f64>, Failure> {
-        match (left.value(guard) < 0.0, right.value(guard) < 0.0) {
-            (true, false) => self.rise(guard, left, right, state_at),
-            (true, true) if left.rate(guard) > 0.0 && right.rate(guard) <= 0.0 => {
-                self.peak(guard, left, right, state_at)
-            }
-            (false, false) if left.rate(guard) < 0.0 && right.rate(guard) > 0.0 => {
-                let turned = |look: &GuardValues<E::Guards>| look.rate(guard) >= 0.0;
-                let valley = self.bisect(left, right, turned, state_at)?;
-                if valley.value(guard) >= 0.0 {
-                    return Ok(None);
-                }
-                self.rise(guard, &valley, right, state_at)
-            }
-            _ => Ok(None),
-        }
+/// A state moved on at these rates.
+fn moved_by<S: Numbers>(state: &S, rates: &S, length: f64) -> S {
+    let mut there = *state;
+    for (value, rate) in there.as_mut().iter_mut().zip(rates.as_ref()) {
+        *value += rate * length;
     }
-
-    /// The root of a guard that is negative at the left and not at the right.
-    fn rise(
-        &self,
-        guard: usize,
-        left: &GuardValues<E::Guards>,
-        right: &GuardValues<E::Guards>,
-        state_at: &mut StateAt<'_, E::State>,
-    ) -> Result<Option<f64>, Failure> {
-        let t = self.root(guard, left, right, state_at)?;
-        let leaves = right.leaves(guard) || self.look_at(t, state_at)?.leaves(guard);
-        Ok(leaves.then_some(t))
-    }
-
-    /// The root before a guard's peak between two looks, if the peak reaches zero.
-    fn peak(
-        &self,
-        guard: usize,
-        left: &GuardValues<E::Guards>,
-        right: &GuardValues<E::Guards>,
-        state_at: &mut StateAt<'_, E::State>,
-    ) -> Result<Option<f64>, Failure> {
-        let turned = |look: &GuardValues<E::Guards>| look.rate(guard) <= 0.0;
-        let peak = self.bisect(left, right, turned, state_at)?;
-        let reaches = peak.value(guard) >= 0.0;
-        reaches.then(|| self.root(guard, left, &peak, state_at)).transpose()
-    }
-
-    /// The first instant, to the last bit, from which `is_past` holds.
-    fn bisect(
-        &self,
-        left: &GuardValues<E::Guards>,
-        right: &GuardValues<E::Guards>,
-        is_past: impl Fn(&GuardValues<E::Guards>) -> bool,
-        state_at: &mut StateAt<'_, E::State>,
-    ) -> Result<GuardValues<E::Guards>, Failure> {
-        let (mut before, mut past) = (left.t, *right);
-        loop {
-            let middle = before + 0.5 * (past.t - before);
-            if middle <= before || middle >= past.t {
-                return Ok(past);
-            }
-            let look = self.look_at(middle, state_at)?;
-            if is_past(&look) { past = look } else { before = middle }
-        }
-    }
-
-    /// The time at which a guard that is negative at the left and not at the right becomes zero, by
-    /// regula falsi with the weight of an end that stays halved, and every fourth time the middle.
-    fn root(
-        &self,
-        guard: usize,
-        left: &GuardValues<E::Guards>,
-        right: &GuardValues<E::Guards>,
-        state_at: &mut StateAt<'_, E::State>,
-    ) -> Result<f64, Failure> {
-        let (mut inside, mut outside) = (left.t, right.t);
-        let (mut below, mut above) = (left.value(guard), right.value(guard));
-        let mut stayed = 0;
-        for count in 0..MOST_EVALUATIONS {
-            let middle = inside + 0.5 * (outside - inside);
-            if above == 0.0 || middle <= inside || middle >= outside {
-                break;
-            }
-            let chord = inside - below * (outside - inside) / (above - below);
-            let use_chord = count % 4 != 3 && inside < chord && chord < outside;
-            let t = if use_chord { chord } else { middle };
-            let value = self.look_at(t, state_at)?.value(guard);
-            if value >= 0.0 {
-                (outside, above) = (t, value);
-                below *= if stayed == -1 { 0.5 } else { 1.0 };
-                stayed = -1;
-            } else {
-                (inside, below) = (t, value);
-                above *= if stayed == 1 { 0.5 } else { 1.0 };
-                stayed = 1;
-            }
-        }
-        Ok(outside)
-    }
+    there
 }
 
 #[cfg(test)]

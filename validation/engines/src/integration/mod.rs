@@ -5,8 +5,12 @@
 //! co-ordinates (`field.rs`) and in the paper's original ones (`original.rs`). Which library makes
 //! the steps is not known here.
 
+mod bracket;
+mod crossing;
 mod cubic;
 mod field;
+mod guard_cubic;
+mod guard_values;
 mod joining;
 mod location;
 mod meter;
@@ -20,7 +24,7 @@ pub(crate) use cubic::{Cubic, CubicEnd};
 pub(crate) use field::Coordinates;
 pub use field::{GUARDS, Oscillator, event_between};
 pub(crate) use joining::{Integration, Moment, StretchEnd, Times, join};
-pub(crate) use location::{GuardSearch, StateAt};
+pub(crate) use location::GuardSearch;
 pub(crate) use meter::Meter;
 pub use original::ELSEWHERE;
 pub(crate) use original::OriginalOscillator;

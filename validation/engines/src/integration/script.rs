@@ -7,12 +7,13 @@
 //!
 //! [`GuardSearch`]: super::location::GuardSearch
 
-use crate::engine::Event;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 thread_local! {
     static SCRIPT: RefCell<Option<Script>> = const { RefCell::new(None) };
+    /// What the run on this thread locates, where that is noted.
+    static NOTED: RefCell<Option<Vec<ScriptLine>>> = const { RefCell::new(None) };
 }
 
 /// A guard that has risen to zero.
@@ -22,24 +23,33 @@ pub(crate) struct GuardRise {
     pub(crate) guard: usize,
 }
 
+/// A crossing that a search has found. An event at the entry of a mode is none: nobody searches for
+/// it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ScriptLine {
+    pub(crate) rise: GuardRise,
+    /// Whether the mode ends there.
+    pub(crate) ends: bool,
+}
+
 /// The crossings of a run that was made before.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Script(Rc<AnswerLines>);
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct AnswerLines {
-    crossings: Vec<GuardRise>,
+    crossings: Vec<ScriptLine>,
     /// Whether a run has asked for the crossings.
     read: Cell<bool>,
 }
 
 impl Script {
-    /// The crossings of a run that found these events.
-    #[must_use]
-    pub fn of(events: &[Event]) -> Self {
-        let crossing = |event: &Event| GuardRise { t: event.elapsed, guard: event.event };
-        let crossings = events.iter().map(crossing).collect();
-        Self(Rc::new(AnswerLines { crossings, read: Cell::new(false) }))
+    /// Makes a run, and notes the crossings that its search finds.
+    pub fn of_run<T>(run: impl FnOnce() -> T) -> (T, Self) {
+        NOTED.set(Some(Vec::new()));
+        let done = run();
+        let crossings = NOTED.take().unwrap_or_default();
+        (done, Self(Rc::new(AnswerLines { crossings, read: Cell::new(false) })))
     }
 
     /// Makes a run that is told these crossings.
@@ -57,6 +67,15 @@ impl Script {
     }
 }
 
+/// Notes a crossing of the run on this thread, where that is wanted.
+pub(crate) fn note(rise: GuardRise, ends: bool) {
+    NOTED.with_borrow_mut(|noted| {
+        if let Some(lines) = noted {
+            lines.push(ScriptLine { rise, ends });
+        }
+    });
+}
+
 /// The crossings that a run is told, one after another.
 pub(crate) struct ToldCrossings {
     script: Script,
@@ -72,9 +91,9 @@ impl ToldCrossings {
     }
 
     /// The next crossing up to `end`.
-    pub(crate) fn up_to(&self, end: f64) -> Option<GuardRise> {
+    pub(crate) fn up_to(&self, end: f64) -> Option<ScriptLine> {
         let next = self.next.get();
-        let found = self.script.0.crossings.get(next).copied().filter(|it| it.t <= end)?;
+        let found = self.script.0.crossings.get(next).copied().filter(|it| it.rise.t <= end)?;
         self.next.set(next + 1);
         Some(found)
     }

@@ -1,27 +1,33 @@
-//! Event location from step ends, for methods whose states inside a step are expensive: such states
-//! come from a second integration, or from an interpolant that costs right-hand sides.
+//! Event location from step ends ([`GuardSearch::between`]), step after step.
 //!
 //! A method is watched alike whatever library it comes from, so that differences between its rows
-//! are the libraries' own. Steps are at most an eighth of a forcing period and of a turn of the
-//! elastic contact ([`longest_step`]), so that the rates at both ends of a step show a peak inside.
+//! are the libraries' own. Steps are at most an eighth of a forcing period. Where states inside a
+//! step are expensive, because they come from a second integration, steps are at most an eighth of
+//! a turn of the elastic contact too ([`longest_step`]), so that their ends show a peak inside.
 
 use super::cubic::CubicEnd;
+use super::guard_values::GuardValues;
 use super::joining::{Moment, StretchEnd, Times};
-use super::location::{GuardSearch, GuardValues};
+use super::location::GuardSearch;
 use super::sampler::Sampler;
+use super::script::GuardRise;
 use crate::equations::Equations;
 use crate::failure::Failure;
 
-/// The longest step, in forcing periods; for a method whose events are located from step ends, also
-/// in turns of the elastic contact.
+/// The longest step, in forcing periods; for a method whose states inside a step are computed anew,
+/// also in turns of the elastic contact.
 const LONGEST_STEP: f64 = 0.125;
+
+/// A state that a method computes anew is moved on from the last look where that is closer than
+/// this share of the step: the third power of it is far below rounding.
+const CLOSE: f64 = 1e-8;
 
 /// The longest step on a motion of the given period.
 pub(crate) const fn longest_of_period(period: f64) -> f64 {
     LONGEST_STEP * period
 }
 
-/// The longest step of a method whose events are located from step ends.
+/// The longest step of a method whose states inside a step are computed anew.
 pub(crate) fn longest_step(times: &Times) -> f64 {
     longest_of_period(times.period.min(times.turn))
 }
@@ -31,13 +37,15 @@ pub(crate) struct StepEnds<'a, E: Equations> {
     search: GuardSearch<'a, E>,
     at: CubicEnd<E::State>,
     look: GuardValues<E::Guards>,
+    /// Whether a state inside a step takes another integration.
+    anew: bool,
 }
 
 impl<'a, E: Equations> StepEnds<'a, E> {
     /// Starts the search at the beginning of a stretch.
-    pub(crate) fn new(search: GuardSearch<'a, E>, from: &Moment<E>) -> Self {
+    pub(crate) fn new(search: GuardSearch<'a, E>, from: &Moment<E>, anew: bool) -> Self {
         let look = search.look(from.t, &from.state);
-        Self { search, at: (from.t, from.state), look }
+        Self { search, at: (from.t, from.state), look, anew }
     }
 
     /// Goes to the end of the next step, `right`, or to an event before it. Evaluates the guards at
@@ -55,20 +63,33 @@ impl<'a, E: Equations> StepEnds<'a, E> {
     ) -> Result<Option<StretchEnd<E::State>>, Failure> {
         let left = self.at;
         let look = self.search.look(right.0, &right.1);
+        let close = if self.anew { CLOSE * (right.0 - left.0) } else { 0.0 };
+        let mut known = KnownStates { looks: Vec::new(), close };
+        let mut look_state = |t: f64| match t {
+            t if t <= left.0 => Ok(left.1),
+            t if t >= right.0 => Ok(right.1),
+            t => known.at(t, &self.search, || inside(&left, &right, t)),
+        };
+        let counted = sampler.counted.len();
+        let found =
+            self.search.between(&self.look, &look, &mut look_state, &mut sampler.counted)?;
+        // What is answered was not moved from a look: a run that is told its events does not look.
         let mut state_at = |t: f64| match t {
             t if t <= left.0 => Ok(left.1),
             t if t >= right.0 => Ok(right.1),
-            t => inside(&left, &right, t),
+            t => known.computed(t).map_or_else(|| inside(&left, &right, t), Ok),
         };
-        let found = self.search.between(&self.look, &look, &mut state_at, &mut sampler.counted)?;
-        sampler.take(found.map_or(right.0, |it| it.t), &mut state_at)?;
-        if let Some(it) = found {
-            return Ok(Some(StretchEnd::Event {
-                t: it.t,
-                guard: it.guard,
-                state: state_at(it.t)?,
-            }));
+        if known.any_moved() {
+            for crossing in &mut sampler.counted[counted..] {
+                crossing.state = state_at(crossing.t)?;
+            }
         }
+        if let Some(GuardRise { t, guard }) = found {
+            let state = state_at(t)?;
+            sampler.take(t, &mut state_at)?;
+            return Ok(Some(StretchEnd::Event { t, guard, state }));
+        }
+        sampler.take(right.0, &mut state_at)?;
         (self.at, self.look) = (right, look);
         Ok(None)
     }
@@ -79,15 +100,60 @@ impl<'a, E: Equations> StepEnds<'a, E> {
     }
 }
 
+/// The states of the looks inside a step. Asked again for an instant it gives the same state, so
+/// that guards which are each other's negative stay so to the last bit.
+struct KnownStates<S> {
+    looks: Vec<KnownState<S>>,
+    close: f64,
+}
+
+#[derive(Clone, Copy)]
+struct KnownState<S> {
+    at: CubicEnd<S>,
+    /// Whether it was moved there from another look.
+    moved: bool,
+}
+
+impl<S: Copy> KnownStates<S> {
+    fn at<E: Equations<State = S>>(
+        &mut self,
+        t: f64,
+        search: &GuardSearch<'_, E>,
+        inside: impl FnOnce() -> Result<S, Failure>,
+    ) -> Result<S, Failure> {
+        let looks = &self.looks;
+        if let Some(known) = looks.iter().find(|look| look.at.0 == t) {
+            return Ok(known.at.1);
+        }
+        let near = looks.last().filter(|look| (t - look.at.0).abs() <= self.close);
+        let (state, moved) = match near {
+            Some(look) => (search.moved(&look.at, t), true),
+            None => (inside()?, false),
+        };
+        self.looks.push(KnownState { at: (t, state), moved });
+        Ok(state)
+    }
+
+    /// The state at an instant, if it was computed for it.
+    fn computed(&self, t: f64) -> Option<S> {
+        self.looks.iter().find(|look| look.at.0 == t && !look.moved).map(|look| look.at.1)
+    }
+
+    fn any_moved(&self) -> bool {
+        self.looks.iter().any(|look| look.moved)
+    }
+}
+
 /// Locates the first event among steps whose ends are known beforehand.
 pub(crate) fn locate_at_step_ends<E: Equations>(
     search: GuardSearch<'_, E>,
     from: &Moment<E>,
+    anew: bool,
     points: impl IntoIterator<Item = CubicEnd<E::State>>,
     sampler: &mut Sampler<E::State>,
     mut inside: impl FnMut(&CubicEnd<E::State>, &CubicEnd<E::State>, f64) -> Result<E::State, Failure>,
 ) -> Result<StretchEnd<E::State>, Failure> {
-    let mut ends = StepEnds::new(search, from);
+    let mut ends = StepEnds::new(search, from, anew);
     for right in points {
         if let Some(ended) = ends.advance(right, sampler, &mut inside)? {
             return Ok(ended);

@@ -33,7 +33,23 @@ pub struct Timed {
     /// The harness's share of the time: one less the median over the rounds of one round's
     /// quotient, the engine's part alone ([`super::library_part`]) over the whole run. A share that
     /// is next to nothing may come out below zero.
-    pub harness_share: Option<f64>,
+    pub harness_share: Option<HarnessShare>,
+}
+
+/// A share of a time, measured in several rounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HarnessShare {
+    /// One less the median of the rounds' quotients.
+    pub share: f64,
+    /// Half the distance between the least and the largest share of a round.
+    pub spread: f64,
+}
+
+impl HarnessShare {
+    fn of(part: &RoundTimes, whole: &RoundTimes) -> Option<Self> {
+        let (share, spread) = (1.0 - part.ratio_to(whole), part.ratio_spread(whole));
+        (share.is_finite() && spread.is_finite()).then_some(Self { share, spread })
+    }
 }
 
 /// Times the contestants that run the case's system, at all their settings, in interleaved rounds.
@@ -91,10 +107,10 @@ fn timed_runs(
         let ContestEntry { timed, library_part } = entry?;
         let (whole, library_part) = (next(), library_part.map(|_| next()));
         let whole = whole?;
-        let share = library_part.and_then(Result::ok).map(|part| 1.0 - part.ratio_to(&whole));
+        let part = library_part.and_then(Result::ok);
+        let harness_share = part.and_then(|part| HarnessShare::of(&part, &whole));
         let scale = 1.0 / (timed.runs() * periods);
         let series = RoundTimes(whole.0.into_iter().map(|time| time * scale).collect());
-        let harness_share = share.filter(|it| it.is_finite());
         Ok(Timed { score: timed.score()?, work: timed.work(), series, harness_share })
     };
     let result = |PreparedRun { declaration, setting, entry }| {

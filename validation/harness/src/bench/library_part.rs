@@ -15,8 +15,8 @@ use crate::system::Values;
 use percuss::Step;
 use std::hint::black_box;
 
-/// Rounds in which the run alone is timed: as many as a long call takes part in.
-const ROUNDS: usize = 3;
+/// Rounds in which the run alone is timed.
+const ROUNDS: usize = 5;
 
 /// The library's part of an engine's run on a case; nothing for an engine of which nothing is
 /// left out.
@@ -30,23 +30,25 @@ pub fn library_part<'a>(
     limits: Limits,
 ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
     let run = move || engine.run(&case.task, setting, &limits);
-    let answer = contain(run)?;
+    let (answer, script) = Script::of_run(|| contain(run));
+    let answer = answer?;
     if engine.declaration().name == exact().declaration().name {
         let end = answer.end;
         return Ok(Some(Box::new(ExactSteps { case, end, last: end })));
     }
-    told(answer, run)
+    told(answer, script, run)
 }
 
-/// A run that gave this answer, told its events; nothing where nothing is left out then.
+/// A run that gave this answer, told the crossings that its search found; nothing where nothing is
+/// left out then.
 ///
 /// # Errors
 /// Why it is not the same run.
 fn told<'a>(
     answer: Outcome,
+    script: Script,
     run: impl Fn() -> Result<Outcome, Failure> + 'a,
 ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
-    let script = Script::of(&answer.events);
     let last = answer.clone();
     let mut told = ToldRun { run, script, answer, last };
     told.call()?;

@@ -1,7 +1,7 @@
 //! Work-precision of every case, and cost against length and against xi.
 
 use super::contestants;
-use super::report::{Bench, BenchRow, Damped};
+use super::report::{Bench, BenchRow, CaseEntry, Damped, net};
 use crate::bench::history::{History, HistoryRecord};
 use crate::engine::REFERENCE;
 use crate::picture::{
@@ -15,10 +15,13 @@ use crate::score::SCORED_ERROR;
 /// # Errors
 /// [`DrawError`] with the drawing library's reason.
 pub fn pictures(bench: &Bench) -> Result<Vec<Picture>, DrawError> {
-    let cases = bench.cases.iter();
-    let mut drawn: Vec<(String, Curves)> = cases
-        .map(|entry| (format!("work-precision-{}", entry.case), work_precision(bench, &entry.case)))
-        .collect();
+    let of_case = |entry: &CaseEntry| {
+        let case = &entry.case;
+        let name = format!("work-precision-{case}");
+        let gross = (format!("{name}-gross"), work_precision(bench, case, Times::Gross));
+        [(name, work_precision(bench, case, Times::Net)), gross]
+    };
+    let mut drawn: Vec<(String, Curves)> = bench.cases.iter().flat_map(of_case).collect();
     if !bench.length.is_empty() {
         drawn.push(("length".to_owned(), length(bench)));
     }
@@ -38,9 +41,36 @@ pub(super) fn both(drawn: &[(String, Curves)]) -> Result<Vec<Picture>, DrawError
     Ok(files)
 }
 
-fn work_precision(bench: &Bench, case: &str) -> Curves {
+/// Which times are drawn.
+#[derive(Clone, Copy)]
+enum Times {
+    /// Without the harness's own share.
+    Net,
+    /// With it.
+    Gross,
+}
+
+impl Times {
+    fn of(self, row: &BenchRow) -> Option<f64> {
+        match self {
+            // The exact solver is the unit as a whole.
+            Self::Net if row.engine == REFERENCE => row.ns_per_period,
+            Self::Net => row.net_ns_per_period(),
+            Self::Gross => row.ns_per_period,
+        }
+    }
+
+    const fn label(self) -> &'static str {
+        match self {
+            Self::Net => "processor time a forcing period, net of the harness's share, ns",
+            Self::Gross => "processor time a forcing period with the harness's share, ns",
+        }
+    }
+}
+
+fn work_precision(bench: &Bench, case: &str, times: Times) -> Curves {
     let rows: Vec<&BenchRow> = bench.results.iter().filter(|row| row.case == case).collect();
-    let point = |row: &&BenchRow| Some((row.ns_per_period?, row.state_error_max?));
+    let point = |row: &&BenchRow| Some((times.of(row)?, row.state_error_max?));
     let left_out = rows.iter().filter(|row| point(row).is_none()).count();
     let curves = rows.chunk_by(|a, b| a.engine == b.engine);
     let curves =
@@ -49,7 +79,7 @@ fn work_precision(bench: &Bench, case: &str) -> Curves {
     Curves {
         note: left_out_note(left_out, rows.len()),
         title: format!("Work-precision: {case}"),
-        x: logarithmic("processor time a forcing period, ns"),
+        x: logarithmic(times.label()),
         y: logarithmic("largest error of the state"),
         // The exact solver lies on top.
         curves: curves.collect::<Vec<_>>().into_iter().rev().collect(),
@@ -110,7 +140,9 @@ fn damping(bench: &Bench) -> Curves {
             names.push(&row.engine);
         }
     }
-    let point = |row: &Damped| Some((row.xi, row.ns_per_period?));
+    let exact = |row: &Damped| row.engine == REFERENCE;
+    let share = |row: &Damped| row.harness_share.filter(|_| !exact(row));
+    let point = |row: &Damped| Some((row.xi, net(row.ns_per_period?, share(row))));
     let points = |name: &str| {
         let own = bench.damping.iter().filter(|row| row.engine == name);
         own.filter_map(point).collect::<Vec<_>>()
@@ -124,7 +156,7 @@ fn damping(bench: &Bench) -> Curves {
             tolerance.unwrap_or_default()
         ),
         x: logarithmic("xi"),
-        y: logarithmic("processor time a forcing period, ns"),
+        y: logarithmic(Times::Net.label()),
         curves: names.iter().rev().map(|name| curve(name, points(name))).collect(),
     }
 }

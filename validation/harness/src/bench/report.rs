@@ -54,8 +54,17 @@ pub struct BenchRow {
     /// Ratio of times at errors of at most 1e-9.
     #[serde(rename = "ratio_at_1e-9")]
     pub ratio_at_1e_9: Option<f64>,
+    /// The same ratios of times that are net of the harness's own share ([`net`]).
+    pub net_ratio_to_exact: Option<f64>,
+    pub net_ratio_at_comparable_error: Option<f64>,
+    #[serde(rename = "net_ratio_at_1e-6")]
+    pub net_ratio_at_1e_6: Option<f64>,
+    #[serde(rename = "net_ratio_at_1e-9")]
+    pub net_ratio_at_1e_9: Option<f64>,
     /// Share of the time that is the harness's own ([`super::library_part`]).
     pub harness_share: Option<f64>,
+    /// Half the distance between the least and the largest share of a round.
+    pub harness_share_spread: Option<f64>,
     pub rhs_per_period: Option<f64>,
     /// Whether this is the setting at which this engine errs least here.
     pub most_accurate: bool,
@@ -78,7 +87,25 @@ impl BenchRow {
         }
     }
 
-    /// The engine's time over the exact solver's, on the given basis.
+    /// The engine's time without the harness's own share over the exact solver's, on the given
+    /// basis.
+    #[must_use]
+    pub fn net_ratio(&self, basis: Basis) -> Option<f64> {
+        match basis {
+            Basis::MostAccurate => self.net_ratio_to_exact,
+            Basis::Comparable => self.net_ratio_at_comparable_error,
+            Basis::Tight => self.net_ratio_at_1e_9,
+            Basis::Loose => self.net_ratio_at_1e_6,
+        }
+    }
+
+    /// The time of a forcing period without the harness's own share, ns.
+    #[must_use]
+    pub fn net_ns_per_period(&self) -> Option<f64> {
+        self.ns_per_period.map(|time| net(time, self.harness_share))
+    }
+
+    /// The engine's whole time over the exact solver's, on the given basis.
     #[must_use]
     pub fn ratio(&self, basis: Basis) -> Option<f64> {
         match basis {
@@ -100,6 +127,13 @@ impl BenchRow {
             Basis::Loose => errs_at_most(LOOSE),
         }
     }
+}
+
+/// A time without the harness's own share. One whose share is not known, or comes out below zero
+/// because it is next to nothing, is a whole time.
+#[must_use]
+pub fn net(time: f64, harness_share: Option<f64>) -> f64 {
+    time * (1.0 - harness_share.unwrap_or(0.0).max(0.0))
 }
 
 /// The floor, ns an evaluation.
@@ -151,6 +185,7 @@ pub struct Damped {
     pub engine: String,
     pub tolerance: Option<f64>,
     pub ns_per_period: Option<f64>,
+    pub harness_share: Option<f64>,
     pub state_error_max: Option<f64>,
     pub why: Option<String>,
 }
@@ -198,6 +233,11 @@ fn rows(case: &CaseEntry, results: &[SettingResult]) -> Vec<BenchRow> {
     let row = |it: &SettingResult| {
         let timed = it.result.as_ref().ok();
         let best = most_accurate(results, it.name).is_some_and(|best| std::ptr::eq(best, it));
+        let ratio = timed.map(|it| it.series.ratio_to(&unit)).filter(|it| it.is_finite());
+        let harness = timed.and_then(|it| it.harness_share);
+        let share = harness.map(|it| it.share);
+        // The exact solver is the unit as a whole: what it saves without its table is no lead.
+        let is_unit = it.name == REFERENCE;
         BenchRow {
             case: case.case.clone(),
             engine: it.name.to_owned(),
@@ -206,11 +246,16 @@ fn rows(case: &CaseEntry, results: &[SettingResult]) -> Vec<BenchRow> {
             ns_per_period: timed.map(|it| it.series.median()),
             state_error_max: timed.map(|it| it.score.state_error),
             event_time_error_max: timed.map(|it| it.score.event_time_error),
-            ratio_to_exact: timed.map(|it| it.series.ratio_to(&unit)).filter(|it| it.is_finite()),
+            ratio_to_exact: ratio,
             ratio_at_comparable_error: None,
             ratio_at_1e_6: None,
             ratio_at_1e_9: None,
-            harness_share: timed.and_then(|it| it.harness_share),
+            net_ratio_to_exact: ratio.map(|it| net(it, share.filter(|_| !is_unit))),
+            net_ratio_at_comparable_error: None,
+            net_ratio_at_1e_6: None,
+            net_ratio_at_1e_9: None,
+            harness_share: share,
+            harness_share_spread: harness.map(|it| it.spread),
             rhs_per_period: timed
                 .map(|it| it.work.rhs_evaluations)
                 .filter(|it| *it > 0)
@@ -229,14 +274,21 @@ fn rows(case: &CaseEntry, results: &[SettingResult]) -> Vec<BenchRow> {
 /// otherwise in a round is out of them already.
 fn at_equal_accuracy(mut rows: Vec<BenchRow>, comparable: f64) -> Vec<BenchRow> {
     for own in rows.chunk_by_mut(|a, b| a.engine == b.engine) {
-        let corner = |row: &BenchRow| {
-            Some(AccuracyPoint { error: row.state_error_max?, time: row.ratio_to_exact? })
+        let curve = |time: fn(&BenchRow) -> Option<f64>| {
+            let corner = |row: &BenchRow| {
+                Some(AccuracyPoint { error: row.state_error_max?, time: time(row)? })
+            };
+            own.iter().map(corner).collect::<Vec<_>>()
         };
-        let curve: Vec<_> = own.iter().map(corner).collect();
+        let gross = curve(|row| row.ratio_to_exact);
+        let net = curve(|row| row.net_ratio_to_exact);
         for row in own {
-            row.ratio_at_comparable_error = time_at(&curve, comparable);
-            row.ratio_at_1e_6 = time_at(&curve, LOOSE);
-            row.ratio_at_1e_9 = time_at(&curve, TIGHT);
+            row.ratio_at_comparable_error = time_at(&gross, comparable);
+            row.ratio_at_1e_6 = time_at(&gross, LOOSE);
+            row.ratio_at_1e_9 = time_at(&gross, TIGHT);
+            row.net_ratio_at_comparable_error = time_at(&net, comparable);
+            row.net_ratio_at_1e_6 = time_at(&net, LOOSE);
+            row.net_ratio_at_1e_9 = time_at(&net, TIGHT);
         }
     }
     rows
@@ -250,6 +302,7 @@ fn damped(point: &DampingPoint) -> Vec<Damped> {
             engine: it.name.to_owned(),
             tolerance: it.setting.tolerance(),
             ns_per_period: timed.map(|it| it.series.median()),
+            harness_share: timed.and_then(|it| it.harness_share).map(|it| it.share),
             state_error_max: timed.map(|it| it.score.state_error),
             why: it.result.as_ref().err().map(ToString::to_string),
         }

@@ -75,7 +75,20 @@ impl RoundTimes {
     /// The median over the rounds of the quotient of the two times in one round.
     #[must_use]
     pub fn ratio_to(&self, other: &Self) -> f64 {
-        Spread::of(self.0.iter().zip(&other.0).map(|(own, other)| own / other).collect()).median
+        Spread::of(self.quotients(other)).median
+    }
+
+    /// Half the distance between the least and the largest of these quotients.
+    #[must_use]
+    pub fn ratio_spread(&self, other: &Self) -> f64 {
+        let quotients = self.quotients(other);
+        let [least, most] =
+            [f64::min, f64::max].map(|pick| quotients.iter().copied().fold(f64::NAN, pick));
+        0.5 * (most - least)
+    }
+
+    fn quotients(&self, other: &Self) -> Vec<f64> {
+        self.0.iter().zip(&other.0).map(|(own, other)| own / other).collect()
     }
 }
 
@@ -172,6 +185,7 @@ mod tests {
         let engine = RoundTimes(vec![300.0, 600.0, 310.0, 900.0, 290.0]);
         assert_eq!(engine.ratio_to(&exact), 300.0);
         assert_eq!(exact.ratio_to(&exact), 1.0);
+        assert_eq!(engine.ratio_spread(&exact), 305.0);
         assert_eq!(engine.best(), 290.0);
         assert_eq!(engine.median(), 310.0);
         // Neither the quotient of medians nor of least times.

@@ -21,9 +21,10 @@ pub fn summary(bench: &Bench) -> String {
     text.push('\n');
     text.push_str(&competitors(bench));
     text.push_str(
-        "times exact: at an error of at most ten times the exact solver's, 1e-9 and 1e-6\n\
+        "times exact: the engine's time over the exact solver's, net of what the harness adds to the\n\
+         engine's, and gross; at an error of at most ten times the exact solver's, 1e-9 and 1e-6\n\
          interpolated on the work-precision curve;\n\
-         harness: share of the engine's time that is the harness's own\n",
+         harness: share of the engine's whole time that is the harness's own\n",
     );
     text.push_str(&least_error(bench));
     text
@@ -52,7 +53,7 @@ fn events(bench: &Bench) -> String {
             figure(it.evaluations_per_event, |it| format!("{it:.2}")),
             figure(of(|row| row.ns_per_period), |it| format!("{it:.0}")),
             figure(of(|row| row.state_error_max), brief),
-            figure(of(|row| row.harness_share), share),
+            own.map_or("-".to_owned(), share),
         ]);
     }
     shown(table, 1)
@@ -60,7 +61,8 @@ fn events(bench: &Bench) -> String {
 
 /// The closest competitor on each case, on each basis.
 fn competitors(bench: &Bench) -> String {
-    let mut table = plain(["case", "state err", "closest competitor", "times exact", "harness"]);
+    let mut table =
+        plain(["case", "state err", "closest competitor", "times exact, net", "gross", "harness"]);
     for case in bench.cases.iter().map(|it| it.case.as_str()) {
         for (k, basis) in BASES.into_iter().enumerate() {
             let Some(it) = closest_competitor(bench, case, basis) else { continue };
@@ -68,8 +70,9 @@ fn competitors(bench: &Bench) -> String {
                 if k == 0 { case.to_owned() } else { String::new() },
                 it.accuracy(),
                 it.row.engine.clone(),
-                times(it.ratio),
-                figure(it.row.harness_share, share),
+                times(it.net),
+                figure(it.row.ratio(basis), times),
+                share(it.row),
             ]);
         }
     }
@@ -92,9 +95,16 @@ pub(super) fn figure(value: Option<f64>, show: impl Fn(f64) -> String) -> String
     value.filter(|it| it.is_finite()).map_or("-".to_owned(), show)
 }
 
-/// A share in whole per cent.
-pub(super) fn share(value: f64) -> String {
-    format!("{}%", (100.0 * value).round() + 0.0)
+/// The share of the harness in whole per cent; where it is no larger than its rounds differ, or
+/// than half a per cent, with half of what they differ by.
+pub(super) fn share(row: &BenchRow) -> String {
+    let Some(share) = row.harness_share.filter(|it| it.is_finite()) else { return "-".to_owned() };
+    let spread = row.harness_share_spread.unwrap_or(0.0);
+    if share <= spread.max(0.005) {
+        let least = (100.0 * spread).ceil().max(1.0);
+        return format!("about 0 +-{least}%");
+    }
+    format!("{:.0}%", 100.0 * share)
 }
 
 /// A table without lines under the given header.

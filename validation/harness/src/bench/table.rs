@@ -21,7 +21,10 @@ fn engines(bench: &Bench) -> String {
         "state err",
         "time err",
         "rhs/period",
-        "times exact",
+        "times exact, net",
+        "at 1e-9",
+        "at 1e-6",
+        "gross",
         "at 1e-9",
         "at 1e-6",
         "harness",
@@ -56,7 +59,7 @@ fn best<'a>(bench: &'a Bench, case: &str) -> Vec<&'a BenchRow> {
     rows.chunk_by(|a, b| a.engine == b.engine).filter_map(one).collect()
 }
 
-fn cells(case: &str, row: &BenchRow) -> [String; 11] {
+fn cells(case: &str, row: &BenchRow) -> [String; 14] {
     [
         case.to_owned(),
         row.engine.clone(),
@@ -65,10 +68,13 @@ fn cells(case: &str, row: &BenchRow) -> [String; 11] {
         figure(row.state_error_max, brief),
         figure(row.event_time_error_max, brief),
         figure(row.rhs_per_period, |it| format!("{it:.1}")),
+        figure(row.net_ratio_to_exact, ratio),
+        figure(row.net_ratio_at_1e_9, ratio),
+        figure(row.net_ratio_at_1e_6, ratio),
         figure(row.ratio_to_exact, ratio),
         figure(row.ratio_at_1e_9, ratio),
         figure(row.ratio_at_1e_6, ratio),
-        figure(row.harness_share, share),
+        share(row),
     ]
 }
 

@@ -4,9 +4,7 @@ use super::method::{Inside, LibraryMethod};
 use super::{ModeField, reason};
 use crate::equations::Equations;
 use crate::failure::Failure;
-use crate::integration::{
-    Cubic, CubicEnd, GuardRise, GuardSearch, Moment, Sampler, StateAt, StepEnds, StretchEnd,
-};
+use crate::integration::{Cubic, GuardSearch, Moment, Sampler, StepEnds, StretchEnd};
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::solout::Solout;
@@ -17,21 +15,13 @@ use std::marker::PhantomData;
 /// Searches each step for the end of the mode, and takes samples on the way.
 pub(super) struct StepWatch<'a, M, E: Equations> {
     field: ModeField<'a, E>,
-    looks: Looks<'a, E>,
+    ends: StepEnds<'a, E>,
     tolerance: f64,
     span: f64,
     sampler: &'a mut Sampler<E::State>,
     last: E::State,
     ended: Option<Result<StretchEnd<E::State>, Failure>>,
     method: PhantomData<M>,
-}
-
-/// The places inside a step at which the guards are looked at.
-enum Looks<'a, E: Equations> {
-    /// The guards are looked at inside the step, whose interpolant costs nothing.
-    Inside(GuardSearch<'a, E>),
-    /// The guards are looked at at the step's ends, and inside only where these show something.
-    Ends(StepEnds<'a, E>),
 }
 
 impl<'a, M: LibraryMethod, E: Equations<State: State<f64>>> StepWatch<'a, M, E> {
@@ -42,12 +32,9 @@ impl<'a, M: LibraryMethod, E: Equations<State: State<f64>>> StepWatch<'a, M, E> 
         sampler: &'a mut Sampler<E::State>,
     ) -> Self {
         let search = GuardSearch::new(field.equations, from, field.meter);
-        let looks = match M::INSIDE {
-            Inside::Again => Looks::Ends(StepEnds::new(search, from)),
-            Inside::Interpolant | Inside::Cubic => Looks::Inside(search),
-        };
+        let ends = StepEnds::new(search, from, M::INSIDE == Inside::Again);
         let (last, ended, method) = (from.state, None, PhantomData);
-        Self { field, looks, tolerance, span, sampler, last, ended, method }
+        Self { field, ends, tolerance, span, sampler, last, ended, method }
     }
 
     /// The ending of the stretch, once the library has returned.
@@ -59,28 +46,6 @@ impl<'a, M: LibraryMethod, E: Equations<State: State<f64>>> StepWatch<'a, M, E> 
             Some(ended) => ended,
             None => solved.map(|()| StretchEnd::Inside { t: self.span, state: self.last }),
         }
-    }
-
-    fn step(
-        &mut self,
-        begin: f64,
-        right: CubicEnd<E::State>,
-        state_at: &mut StateAt<'_, E::State>,
-    ) -> Result<Option<StretchEnd<E::State>>, Failure> {
-        self.field.meter.steps(1);
-        let search = match &mut self.looks {
-            Looks::Inside(search) => search,
-            Looks::Ends(ends) => {
-                return ends.advance(right, self.sampler, |_, _, t| state_at(t));
-            }
-        };
-        let counted = &mut self.sampler.counted;
-        let Some(GuardRise { t, guard }) = search.step(begin, right.0, state_at, counted)? else {
-            self.sampler.take(right.0, state_at)?;
-            return Ok(None);
-        };
-        self.sampler.take(t, &mut *state_at)?;
-        Ok(Some(StretchEnd::Event { t, guard, state: state_at(t)? }))
     }
 }
 
@@ -107,8 +72,6 @@ impl<M: LibraryMethod, E: Equations<State: State<f64>>> Solout<f64, E::State>
         let (field, tolerance) = (self.field, self.tolerance);
         let mut cubic: Option<Cubic<E::State>> = None;
         let mut state_at = |t: f64| match M::INSIDE {
-            _ if t <= begin => Ok(*before),
-            _ if t >= end => Ok(*state),
             Inside::Interpolant => interpolator.interpolate(t).map_err(|error| reason(&error)),
             Inside::Again => M::again(&field, tolerance, (begin, *before), t),
             Inside::Cubic => Ok(cubic
@@ -120,7 +83,8 @@ impl<M: LibraryMethod, E: Equations<State: State<f64>>> Solout<f64, E::State>
                 })
                 .at(t)),
         };
-        match self.step(begin, (end, *state), &mut state_at).transpose() {
+        field.meter.steps(1);
+        match self.ends.advance((end, *state), self.sampler, |_, _, t| state_at(t)).transpose() {
             None => ControlFlag::Continue,
             ended => {
                 self.ended = ended;

@@ -154,7 +154,7 @@ where
             last.0 = until;
         }
         let search = GuardSearch::new(self.integration.equations, from, self.meter);
-        locate_at_step_ends(search, from, points, sampler, |left, _, t| {
+        locate_at_step_ends(search, from, true, points, sampler, |left, _, t| {
             self.again(from.mode, left, t)
         })
     }

@@ -198,14 +198,16 @@ where
         sampler: &mut Sampler<E::State>,
     ) -> Result<Option<GuardRise>, Failure> {
         let search = GuardSearch::new(self.integration.equations, from, self.meter);
-        let mut begin = stretch.begin;
         let counted = &mut sampler.counted;
+        let mut state_at = |t: f64| stretch.at(t);
+        let mut left = search.look(from.t, &from.state);
         for end in stretch.ends.iter().copied().filter(|end| *end > stretch.begin) {
-            let found = search.step(begin, end, &mut |t| stretch.at(t), counted)?;
+            let right = search.look_at(end, &mut state_at)?;
+            let found = search.between(&left, &right, &mut state_at, counted)?;
             if found.is_some() {
                 return Ok(found);
             }
-            begin = end;
+            left = right;
         }
         Ok(None)
     }

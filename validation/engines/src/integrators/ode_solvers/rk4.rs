@@ -3,7 +3,7 @@
 //!
 //! - Steps are h = step x the system's shortest time, shortened so that a whole number of them
 //!   fills a stretch: the library itself would step past the end.
-//! - Each step is one look: guards that peak inside are found by their rates.
+//! - Guards are looked at at the ends of steps; those that peak inside are found by their rates.
 
 use super::{COLOURS, LIBRARY, TimedField, on_vectors_of, packed, plain};
 use crate::accuracy::{Accuracy, Stepping};
@@ -113,7 +113,7 @@ where
         let points = solver.y_out().iter().enumerate().skip(1);
         let points = points.map(|(k, u)| (time(k), plain(equations, u)));
         let mut cubic: Option<Cubic<E::State>> = None;
-        locate_at_step_ends(search, from, points, sampler, |left, right, t| {
+        locate_at_step_ends(search, from, false, points, sampler, |left, right, t| {
             let known = cubic.take().filter(|known| known.begins_at(left.0));
             let here = known.unwrap_or_else(|| {
                 let ends = [*left, *right];
