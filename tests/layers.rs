@@ -42,6 +42,7 @@ const PACKAGES: [Package; 7] = [
             "number",
             "failure",
             "accuracy",
+            "class",
             "equations",
             "system",
             "case",

@@ -36,6 +36,7 @@ mod own_cases;
 mod power;
 mod project;
 mod readme;
+mod records;
 mod replay;
 mod report;
 mod reproduce;

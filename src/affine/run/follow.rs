@@ -156,9 +156,9 @@ impl<T: Number> Follower<'_, T> {
         run.enter();
     }
 
-    /// Goes past an event of the present continuation as if it had not happened: begins anew at this
-    /// time after it, in the same mode. The guards of `past`, as bits, are outside and fire after
-    /// they have been inside.
+    /// Goes past an event of the present continuation as if it had not happened: begins anew at
+    /// this time after it, in the same mode. The guards of `past`, as bits, are outside and fire
+    /// after they have been inside.
     pub fn go_past(&mut self, elapsed: f64, until: f64, past: u64) {
         let state: Vec<f64> = self.along(elapsed).iter().map(|it| it.to_f64()).collect();
         let node = self.node();

@@ -5,6 +5,7 @@
 
 mod accuracy;
 pub mod case;
+mod class;
 pub mod engine;
 mod equations;
 mod failure;

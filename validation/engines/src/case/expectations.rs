@@ -2,6 +2,7 @@
 
 use super::Case;
 use super::bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
+use super::classes::ClassBounds;
 use super::located::{FileError, FileText};
 use crate::accuracy::Accuracy;
 use regex::Regex;
@@ -23,6 +24,8 @@ pub struct Defaults {
     pub of_systems: Vec<Bound>,
     /// Expected failures on many cases.
     pub shortcomings: Vec<Shortcoming>,
+    /// The largest defects of right engines, by class of method.
+    pub classes: Vec<ClassBounds>,
 }
 
 impl Defaults {
@@ -82,7 +85,7 @@ pub(super) fn read_bounds(file: &str, text: &str) -> Result<Defaults, FileError>
     };
     let (bounds, mut of_systems) = (read(all)?, read(systems)?);
     of_systems.extend(bounds.iter().cloned());
-    Ok(Defaults { bounds, of_systems, shortcomings: Vec::new() })
+    Ok(Defaults { bounds, of_systems, ..Defaults::default() })
 }
 
 /// The tolerances and steps that a bound names.

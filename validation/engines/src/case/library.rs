@@ -2,6 +2,7 @@
 
 use super::Case;
 use super::bound::Shortcoming;
+use super::classes::read_classes;
 use super::expectations::{Defaults, read_bounds};
 use super::located::{FileError, read_text};
 use super::shortcomings::read_shortcomings;
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 static CASES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/cases");
 const BOUNDS: &str = include_str!("../../bounds.toml");
+const CLASSES: &str = include_str!("../../classes.toml");
 const SHORTCOMINGS: &str = include_str!("../../shortcomings.toml");
 
 /// The cases inside the binary: those in the oscillator's own words, then those of systems, each by
@@ -106,7 +108,7 @@ fn is_case(path: &Path) -> bool {
 /// [`FileError`]; a test shows that there is none.
 pub fn defaults() -> Result<Defaults, FileError> {
     let shortcomings = read_shortcomings("shortcomings.toml", SHORTCOMINGS)?;
-    Ok(Defaults { shortcomings, ..read_bounds("bounds.toml", BOUNDS)? })
+    Ok(Defaults { shortcomings, ..defaults_of_own_cases()? })
 }
 
 /// The expected failures in a file of their own, as of engines that are not of this program.
@@ -124,7 +126,8 @@ pub fn shortcomings_of(path: &Path) -> Result<Vec<Shortcoming>, FileError> {
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
 pub fn defaults_of_own_cases() -> Result<Defaults, FileError> {
-    read_bounds("bounds.toml", BOUNDS)
+    let classes = read_classes("classes.toml", CLASSES)?;
+    Ok(Defaults { classes, ..read_bounds("bounds.toml", BOUNDS)? })
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod accepted;
 mod bound;
+mod classes;
 mod expectations;
 mod library;
 mod located;
@@ -16,6 +17,7 @@ mod wire;
 
 pub use accepted::accepted;
 pub use bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
+pub use classes::ClassBounds;
 pub use expectations::Defaults;
 pub use library::{
     defaults, defaults_of_own_cases, embedded, from_directory, parse_case, shortcomings_of,

@@ -1,6 +1,7 @@
 //! An engine's declaration: everything that the rest of the program has to know about the engine.
 
 use crate::accuracy::Stepping;
+pub use crate::class::Class;
 
 /// The name of the exact solver, with which the names of all exact engines begin and no other.
 pub const REFERENCE: &str = "exact";
@@ -15,22 +16,6 @@ pub enum Location {
     Library,
     /// Events are located by this harness on the library's dense output.
     Harness,
-}
-
-/// The class of a method. What a right method's errors are at most, in units of the tolerance, is
-/// measured class by class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Class {
-    /// One step from the last, by right-hand sides alone: Runge-Kutta methods and extrapolation.
-    Explicit,
-    /// One step from the last, by the solution of equations: Radau, Rosenbrock, DIRK and Gauss
-    /// methods.
-    Implicit,
-    /// A step from several before it: Adams methods and BDF.
-    Multistep,
-    /// A step by the derivatives of the solution, to an order that the tolerance chooses.
-    Taylor,
 }
 
 /// In which tests beyond ordinary rows the engine takes part. Each role includes those before it.
@@ -88,6 +73,12 @@ pub struct Declaration {
 }
 
 impl Declaration {
+    /// The method's class and order, where they are declared.
+    #[must_use]
+    pub const fn class_and_order(&self) -> (Option<Class>, Option<u32>) {
+        (self.class, self.order)
+    }
+
     /// Whether stiffness shortens the method's steps: those of a fixed length stay as they are.
     #[must_use]
     pub fn is_slowed_by_stiffness(&self) -> bool {

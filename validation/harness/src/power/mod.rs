@@ -5,8 +5,10 @@
 //! one. A fault that shows in one way of running a case must be caught by the cases that are run in
 //! that way, and by no other ([`examine`]).
 
+mod variants;
 mod ways;
 
+pub use variants::Variant;
 pub use ways::is_run;
 
 use crate::case::{Case, Defaults, Quantity};

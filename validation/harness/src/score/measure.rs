@@ -85,6 +85,7 @@ pub fn measure(by: MeasuredBy<'_>, outcome: &Outcome, scored_by: ScoredBy<'_>) -
         found: own,
         mismatch,
         probed: ProbeResults::default(),
+        local: None,
     }
 }
 

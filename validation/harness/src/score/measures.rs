@@ -1,5 +1,6 @@
 //! The figures of one run, of the oscillator and of any other system.
 
+use super::local::LocalJudgement;
 use super::mismatch::Mismatch;
 use super::occurrence::Occurrence;
 use super::probed::ProbeResults;
@@ -48,6 +49,8 @@ pub struct Measures {
     pub state_constant: f64,
     /// The results of the tests beyond the run itself.
     pub probed: ProbeResults,
+    /// What the exact continuations of the run's records say of it; exact engines have none.
+    pub local: Option<LocalJudgement>,
 }
 
 impl Measures {

@@ -12,6 +12,7 @@ mod graze;
 mod grazes;
 mod histogram;
 mod horizons;
+pub mod local;
 mod matching;
 mod measure;
 mod measures;

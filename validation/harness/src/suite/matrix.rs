@@ -3,9 +3,10 @@
 use super::prepared::{Measured, PreparedCase};
 use super::probes::may_probe;
 use super::scope::{Suite, SuiteScope};
-use crate::case::Defaults;
+use crate::case::{ClassBounds, Defaults};
 use crate::engine::{Accuracy, Engine, Failure, Outcome, Role};
 use crate::number::brief;
+use crate::score::local::{Allowance, LocalJudgement};
 use crate::score::{Expected, Measures, RowJudgement, Subject, Verdict, judge};
 use rayon::prelude::*;
 use std::time::Duration;
@@ -142,12 +143,19 @@ pub fn one(
     }
     let subject = Subject { case: &case.case.name, engine: declaration.name, accuracy, unit };
     let of_classes = defaults.on(&case.case);
+    let class = ClassBounds::of(
+        &defaults.classes,
+        declaration.class_and_order(),
+        declaration.stepping,
+        accuracy,
+    );
     let bounds: Vec<_> = case.case.bounds.iter().chain(of_classes).collect();
     let own = case.case.shortcomings.iter();
     let shortcomings: Vec<_> = own.chain(&defaults.shortcomings).collect();
     let expected = Expected { bounds: &bounds, of_classes, shortcomings: &shortcomings };
     match case.attempt(engine, (accuracy, unit), suite) {
-        Ok(Measured { measures, outcome, wall }) => {
+        Ok(Measured { mut measures, outcome, wall }) => {
+            measures.local = class.and_then(|it| judge_locally(case, &outcome, it, unit));
             let judgement = judge(&subject, &case.as_run(&measures), &expected);
             row(Status::Ok(Box::new(measures), Box::new(outcome)), wall, judgement)
         }
@@ -159,4 +167,17 @@ pub fn one(
             row(Status::Failed(failure), Duration::ZERO, judgement)
         }
     }
+}
+
+/// What the exact continuations of an answer's records say of it.
+fn judge_locally(
+    case: &PreparedCase,
+    outcome: &Outcome,
+    class: &ClassBounds,
+    unit: f64,
+) -> Option<LocalJudgement> {
+    let ClassBounds { time, state, sample, sample_median, .. } = *class;
+    let allowance = Allowance { tolerance: unit, time, state, sample, sample_median };
+    // Both solvers were made ready for the case's start.
+    case.local.judge(&case.task, outcome, allowance).ok()
 }

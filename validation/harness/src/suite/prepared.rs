@@ -4,16 +4,17 @@ use super::probes::{Extent, Probes};
 use super::scope::Suite;
 use crate::case::{Case, FileError, SAMPLES_PER_PERIOD};
 use crate::engine::{
-    Accuracy, Engine, Failure, Limits, OscillatorTask, Outcome, SampleGrid, Task, answer,
+    Accuracy, Ended, Engine, Failure, Limits, OscillatorTask, Outcome, SampleGrid, Task, answer,
     least_work,
 };
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
+use crate::score::local::LocalJudge;
 use crate::score::{
     Decision, ErrorRule, EventNames, Graze, MeasuredBy, Measures, Occurrence, ScoredBy, ScoredRun,
     WINDOW, decisions, grazes, measure,
 };
 use crate::system::SystemProblem;
-use crate::truth::{Library, Truth};
+use crate::truth::{Library, Truth, TruthRow};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -36,6 +37,8 @@ pub struct PreparedCase {
     pub decisions: Vec<Decision>,
     /// The tests beyond the run itself.
     pub probes: Probes,
+    /// The judge of single records.
+    pub local: LocalJudge,
     names: EventNames,
     occurrences: Vec<Occurrence>,
 }
@@ -81,6 +84,18 @@ fn task(case: &Case, truth: &Truth, problem: &Arc<SystemProblem>) -> Result<Task
     Ok(Task { exact: Some(Arc::clone(problem)), ..task })
 }
 
+/// A judge of the runs of a task: where impacts accumulate, down to half of the shortest time
+/// between events in the truth.
+fn local_judge(problem: &Arc<SystemProblem>, task: &Task, truth: &Truth) -> LocalJudge {
+    let judge = LocalJudge::new(problem, task);
+    let Some(last) = truth.events.last().filter(|_| truth.ended == Ended::Accumulation) else {
+        return judge;
+    };
+    let gap = |pair: &[TruthRow]| pair[1].elapsed.minus(pair[0].elapsed).value();
+    let shortest = truth.events.windows(2).map(gap).fold(f64::INFINITY, f64::min);
+    judge.down_to(last.elapsed.value(), 0.5 * shortest)
+}
+
 impl PreparedCase {
     fn new(
         case: Case,
@@ -98,6 +113,7 @@ impl PreparedCase {
         let decisions = decisions(&task.system, &truth, &rule);
         let made = |suite| Probes::new(&case, (&problem, &truth), suite, limits);
         let probes = probes.map(made).transpose()?.unwrap_or_default();
+        let local = local_judge(&problem, &task, &truth);
         let prepared = Self {
             case,
             truth,
@@ -107,6 +123,7 @@ impl PreparedCase {
             grazes,
             decisions,
             probes,
+            local,
             names,
             occurrences,
         };

@@ -1,0 +1,78 @@
+//! The judge of one case's runs.
+
+use super::continuation::Place;
+use super::judgement::{Allowance, LocalJudgement};
+use super::run::JudgedRun;
+use super::units::Units;
+use super::walk::Walk;
+use crate::engine::{Outcome, Task};
+use crate::system::SystemProblem;
+use percuss::affine::SystemError;
+use std::sync::Arc;
+
+/// Judges the answers of engines on one case.
+pub struct LocalJudge(JudgedRun);
+
+impl LocalJudge {
+    /// A judge of the answers to a task, which is that of a problem, up to its horizon.
+    #[must_use]
+    pub fn new(problem: &Arc<SystemProblem>, task: &Task) -> Self {
+        Self(JudgedRun::new(problem, task))
+    }
+
+    /// Judges a run whose impacts accumulate up to a time, and as far as the times between them are
+    /// longer than `shortest`: an engine's own impacts accumulate at another time, so that no time
+    /// alone says where to end.
+    #[must_use]
+    pub fn down_to(self, until: f64, shortest: f64) -> Self {
+        Self(JudgedRun { until, shortest, ..self.0 })
+    }
+
+    /// Judges an answer to the task.
+    ///
+    /// # Errors
+    /// A start that the exact solver does not take.
+    pub fn judge(
+        &self,
+        task: &Task,
+        outcome: &Outcome,
+        allowance: Allowance,
+    ) -> Result<LocalJudgement, SystemError> {
+        let mut walk = self.walk(task, allowance)?;
+        let mut is_over = false;
+        for (n, event) in outcome.events.iter().enumerate() {
+            let duration = event.elapsed - walk.place.elapsed;
+            let accumulates = duration < self.0.shortest && walk.has_next_within(self.0.shortest);
+            is_over = accumulates || event.elapsed > self.0.until;
+            if is_over {
+                break;
+            }
+            walk.record(n, event);
+        }
+        if self.0.shortest == 0.0 || !is_over {
+            walk.end(outcome);
+        }
+        super::samples::judge(&walk.units, &self.0.problem, task, outcome, &mut walk.found);
+        Ok(walk.found)
+    }
+
+    /// A walk at the start.
+    fn walk(&self, task: &Task, allowance: Allowance) -> Result<Walk<'_>, SystemError> {
+        let mut coarse = self.0.problem.solver.follow(&self.0.problem.start)?;
+        let mut place =
+            Place { elapsed: 0.0, mode: task.mode, state: task.state.to_vec(), late: 0 };
+        // A guard that is zero to rounding at the start is zero there.
+        coarse.impose(self.0.guards_at_rounding(&place));
+        place.state = self.0.projected(&mut coarse, &place);
+        Ok(Walk {
+            judge: &self.0,
+            units: Units { motion: &self.0.motion, allowance },
+            coarse,
+            fine: None,
+            place,
+            pending: Vec::new(),
+            at_once: 0,
+            found: LocalJudgement::default(),
+        })
+    }
+}

@@ -1,0 +1,152 @@
+//! Where either answer is right: grazes, successors that hang by little, and the order of events of
+//! one instant.
+
+use super::continuation::Named;
+use super::motion::{Value, value as value_of};
+use super::units::{Stretch, Units};
+use super::walk::Walk;
+use crate::engine::Event;
+use crate::system::Direction;
+use nalgebra::RowDVector;
+
+/// The part of a turn in which an extremum is near.
+const NEAR: f64 = 0.125;
+/// Steps of Newton's method on the way to an extremum.
+const MOST_STEPS: usize = 30;
+/// The part of the distance [`NEAR`] to which an extremum is found.
+const CLOSE: f64 = 1e-12;
+
+impl Walk<'_> {
+    /// Whether the mode after a record hangs by less than the errors that are allowed.
+    pub(super) fn successor_is_open(
+        &self,
+        event: &Event,
+        named: Named,
+        stretch: &Stretch<'_>,
+    ) -> bool {
+        let motion = self.motion();
+        let mode = &motion.system().modes[self.place.mode];
+        let Some(until) = mode.until.get(named.event) else { return false };
+        let growth = motion.weights(&event.state);
+        let grown = self.units.grown_states(stretch, named.event);
+        let sizes: Vec<f64> = growth.iter().zip(grown).map(|(a, b)| a.max(b)).collect();
+        let time = self.units.allowed_time(stretch, named.event);
+        until.next.iter().filter_map(|(when, _)| when.as_ref()).any(|when| {
+            let z = motion.point(event.elapsed, &event.state);
+            let row = RowDVector::from_row_slice(when);
+            let value = value_of(&row, &z);
+            let size: f64 = sizes.iter().zip(when).map(|(size, it)| size * it.abs()).sum();
+            let by_state = self.units.allowance.state * self.units.tolerance() * size;
+            let by_time = motion.rate_of_theta(&row, &z).abs() * time;
+            value.value.abs() <= by_state + by_time + value.rounding
+        })
+    }
+
+    /// Whether a record's own guard may fire at its time.
+    pub(super) fn is_admissible(&mut self, event: &Event, named: Named) -> bool {
+        let guard = named.event;
+        let (mode, place) = (self.place.mode, self.place.clone());
+        let rests = event.elapsed - place.elapsed <= Units::rounding_of_time(event.elapsed);
+        let zeros = self.zeros_of(guard);
+        if rests && zeros > 0 {
+            let motion = self.motion();
+            let signs = self.signs(mode, guard);
+            let leading = motion.value((mode, guard, zeros), place.elapsed, &place.state);
+            return signs.iter().any(|sign| sign * leading.value > -leading.rounding);
+        }
+        let state = self.along(event.elapsed);
+        let stretch = place.stretch(event.elapsed);
+        let motion = self.motion();
+        let value = motion.value((mode, guard, 0), event.elapsed, &state);
+        let rate = motion.value((mode, guard, 1), event.elapsed, &state);
+        let row = motion.guard(mode, guard).clone();
+        let by_state = self.units.allowed_value(&row, &stretch);
+        let by_time = rate.value.abs() * self.units.allowance.time * self.at_once_within();
+        let room = by_state + by_time + value.rounding;
+        let signs = self.signs(mode, guard);
+        let closes = signs.iter().any(|sign| sign * rate.value > -by_state);
+        closes && (value.value.abs() <= room || guard < self.until_count() && value.value > 0.0)
+    }
+
+    /// Whether a guard's derivative at the present record is zero within the errors that are
+    /// allowed: with the derivatives below it, which are zero by the model, it decides whether the
+    /// guard fires at once.
+    fn is_nearly_zero(&self, (mode, guard, order): (usize, usize, usize)) -> bool {
+        let (place, motion) = (&self.place, self.motion());
+        let value = |order| motion.value((mode, guard, order), place.elapsed, &place.state);
+        let by_state = self
+            .units
+            .allowed_value(&motion.derivative(mode, guard, order), &place.stretch(place.elapsed));
+        let time = self.units.allowance.time * self.at_once_within();
+        let by_time = value(order + 1).value.abs() * time;
+        let Value { value, rounding } = value(order);
+        value.abs() <= by_state + by_time + rounding
+    }
+
+    /// The number of a guard's derivatives, its value included, that are zero by the model at the
+    /// present record.
+    fn zeros_of(&mut self, guard: usize) -> usize {
+        let imposed = self.coarse.imposed(self.place.elapsed, &self.place.state);
+        imposed.iter().filter(|it| it.guard == guard).count()
+    }
+
+    /// The signs by which a guard counts.
+    fn signs(&self, mode: usize, guard: usize) -> &'static [f64] {
+        let mode = &self.motion().system().modes[mode];
+        let watch = guard.checked_sub(mode.until.len()).and_then(|it| mode.watch.get(it));
+        match watch.map(|it| it.direction) {
+            None | Some(Direction::Rising) => &[1.0],
+            Some(Direction::Falling) => &[-1.0],
+            Some(Direction::Both) => &[1.0, -1.0],
+        }
+    }
+
+    /// Whether a guard of the present flow has an extremum near a time that is zero within the
+    /// errors that are allowed: either answer is right there.
+    pub(super) fn is_graze(&mut self, elapsed: f64, guard: usize) -> bool {
+        let Some(at) = self.extremum_near(elapsed, guard) else { return false };
+        let (mode, begin) = (self.place.mode, self.place.elapsed);
+        if at <= begin {
+            let zeros = self.zeros_of(guard);
+            if zeros > 0 {
+                return self.is_nearly_zero((mode, guard, zeros));
+            }
+        }
+        let state = self.along(at);
+        let stretch = Stretch { length: (at - begin).max(0.0), ..self.place.stretch(at) };
+        let motion = self.motion();
+        let value = motion.value((mode, guard, 0), at, &state);
+        let row = motion.guard(mode, guard).clone();
+        value.value.abs() <= self.units.allowed_value(&row, &stretch) + value.rounding
+    }
+
+    /// The extremum of a guard along the present flow near a time: what Newton's method finds from
+    /// there, if it stays near.
+    fn extremum_near(&mut self, elapsed: f64, guard: usize) -> Option<f64> {
+        let (mode, begin) = (self.place.mode, self.place.elapsed);
+        let near = NEAR * self.judge.problem.turn();
+        let mut at = elapsed;
+        for _ in 0..MOST_STEPS {
+            let state = self.along(at);
+            let value = |order| self.motion().value((mode, guard, order), at, &state).value;
+            let step = -value(1) / value(2);
+            // The begin is an extremum of what is left of a segment.
+            let next = (at + step).max(begin);
+            if !next.is_finite() || (next - elapsed).abs() > near {
+                return None;
+            }
+            if (next - at).abs() <= CLOSE * near {
+                return Some(next);
+            }
+            at = next;
+        }
+        None
+    }
+
+    /// The state of the present record's flow at a time, in f64.
+    pub(super) fn along(&mut self, elapsed: f64) -> Vec<f64> {
+        let place = self.place.clone();
+        self.coarse.go_on(place.elapsed, &place.state, place.elapsed, place.late);
+        self.coarse.along(elapsed)
+    }
+}

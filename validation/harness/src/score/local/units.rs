@@ -1,0 +1,136 @@
+//! The units in which a record's defects are counted: what errors of one tolerance anywhere along
+//! its segment become at its end.
+
+use super::judgement::Allowance;
+use super::motion::{Motion, Segment};
+use crate::score::worst;
+use nalgebra::RowDVector;
+
+/// A step's error adds up over a segment, which is no matter up to as many time scales.
+const SHORT: f64 = 10.0;
+/// The part of a segment's length that the growth of errors may make of a unit of time: where more
+/// is asked for, events are too close for the growth to be that of small errors.
+const MOST_OF_LENGTH: f64 = 0.1;
+/// Defects smaller than this in units without growth are not asked for their growth.
+const SMALL: f64 = 0.05;
+/// Roundings of the time since the start in an answer's times and in differences of them.
+const ROUNDINGS_OF_TIME: f64 = 4.0 * f64::EPSILON;
+
+/// The units of one engine's answer on one system.
+pub(super) struct Units<'a> {
+    pub(super) motion: &'a Motion,
+    pub(super) allowance: Allowance,
+}
+
+/// A segment of an answer: its begin, its mode and its length.
+#[derive(Clone, Copy)]
+pub(super) struct Stretch<'a> {
+    pub(super) mode: usize,
+    pub(super) elapsed: f64,
+    pub(super) state: &'a [f64],
+    pub(super) length: f64,
+}
+
+impl Units<'_> {
+    pub(super) fn tolerance(&self) -> f64 {
+        self.allowance.tolerance
+    }
+
+    fn time_scale(&self) -> f64 {
+        self.motion.system().time_scale
+    }
+
+    /// The factor of long segments, along which the errors of many steps add up.
+    fn of_length(&self, length: f64) -> f64 {
+        (length / (SHORT * self.time_scale())).max(1.0)
+    }
+
+    fn segment(&self, stretch: &Stretch<'_>) -> Segment {
+        self.motion.segment(stretch.mode, stretch.elapsed, stretch.state, stretch.length)
+    }
+
+    /// The rounding error of a time since the start.
+    pub(super) fn rounding_of_time(elapsed: f64) -> f64 {
+        ROUNDINGS_OF_TIME * elapsed.abs()
+    }
+
+    /// The defect of an event's time, with its sign: the event of a guard ends the stretch.
+    pub(super) fn of_time(&self, off: f64, stretch: &Stretch<'_>, guard: usize) -> f64 {
+        let rounding = Self::rounding_of_time(stretch.elapsed + stretch.length);
+        let beyond = (off.abs() - rounding).max(0.0).copysign(off);
+        let unit = self.tolerance() * self.time_scale() * self.of_length(stretch.length);
+        if (beyond / unit).abs() <= SMALL || stretch.length <= 0.0 {
+            return beyond / unit;
+        }
+        beyond / (unit + self.growth_of_time(stretch, guard))
+    }
+
+    /// What the errors along a stretch make of the time of the event at its end.
+    fn growth_of_time(&self, stretch: &Stretch<'_>, guard: usize) -> f64 {
+        let growth = self.motion.growth_of_time(&self.segment(stretch), guard);
+        let growth = self.tolerance() * self.of_length(stretch.length) * growth;
+        let most = MOST_OF_LENGTH * stretch.length / self.allowance.time;
+        if growth.is_finite() { growth.min(most) } else { most }
+    }
+
+    /// The largest time by which an event of a guard at the end of a stretch may be off.
+    pub(super) fn allowed_time(&self, stretch: &Stretch<'_>, guard: usize) -> f64 {
+        let unit = self.tolerance() * self.time_scale() * self.of_length(stretch.length);
+        let growth = if stretch.length > 0.0 { self.growth_of_time(stretch, guard) } else { 0.0 };
+        let rounding = Self::rounding_of_time(stretch.elapsed + stretch.length);
+        self.allowance.time * (unit + growth) + rounding
+    }
+
+    /// The defect of a state just after the event of a guard that ends a stretch.
+    pub(super) fn of_state(
+        &self,
+        (own, exact): (&[f64], &[f64]),
+        stretch: &Stretch<'_>,
+        guard: usize,
+    ) -> f64 {
+        let grown = |segment: &Segment| self.motion.growth_of_states(segment, guard);
+        self.of_states((own, exact), stretch, grown)
+    }
+
+    /// The changes of the states after the event of a guard that ends a stretch, by errors of size
+    /// one along it.
+    pub(super) fn grown_states(&self, stretch: &Stretch<'_>, guard: usize) -> Vec<f64> {
+        self.motion.growth_of_states(&self.segment(stretch), guard)
+    }
+
+    /// The defect of a state along a stretch.
+    pub(super) fn of_sample(&self, (own, exact): (&[f64], &[f64]), stretch: &Stretch<'_>) -> f64 {
+        self.of_states((own, exact), stretch, |segment| self.motion.growth_of_flow(segment))
+    }
+
+    fn of_states(
+        &self,
+        (own, exact): (&[f64], &[f64]),
+        stretch: &Stretch<'_>,
+        grown: impl FnOnce(&Segment) -> Vec<f64>,
+    ) -> f64 {
+        let weights = self.motion.weights(exact);
+        let unit = self.tolerance() * self.of_length(stretch.length);
+        let rounding = 4.0 * f64::EPSILON;
+        let off = |n: usize| ((own[n] - exact[n]).abs() - rounding * weights[n]).max(0.0);
+        let worst_by = |sizes: &[f64]| {
+            let each =
+                (0..own.len()).map(|n| if own[n].is_nan() { f64::NAN } else { off(n) / sizes[n] });
+            worst(each) / unit
+        };
+        let plain = worst_by(&weights);
+        if plain <= SMALL || stretch.length <= 0.0 || !plain.is_finite() {
+            return plain;
+        }
+        let growth = grown(&self.segment(stretch));
+        let sizes: Vec<f64> = weights.iter().zip(growth).map(|(a, b)| a.max(b)).collect();
+        worst_by(&sizes)
+    }
+
+    /// What the errors that are allowed along a stretch make of a row's value at its end.
+    pub(super) fn allowed_value(&self, row: &RowDVector<f64>, stretch: &Stretch<'_>) -> f64 {
+        let growth = self.motion.growth(&self.segment(stretch), row);
+        let k = self.allowance.time.max(self.allowance.state);
+        k * self.tolerance() * self.of_length(stretch.length) * growth
+    }
+}

@@ -1,0 +1,232 @@
+//! The walk along an engine's records: each is judged from the one before it.
+
+use super::continuation::{Continuation, Exact, Found, Named, Place, continuation, exact};
+use super::judgement::{FirstWrong, LocalJudgement, WrongKind};
+use super::motion::Motion;
+use super::run::JudgedRun;
+use super::units::Units;
+use crate::engine::{Ended, Event, Outcome};
+use percuss::affine::{DoubleDouble, Follower, What};
+
+/// Tolerances below which f64 alone condemns nothing.
+const FINE: f64 = 1e-9;
+/// Exact events after the last record that are counted at the most.
+const MOST_LEFT: usize = 100_000;
+/// Events of one instant after which a run makes no progress.
+const MOST_AT_ONCE: usize = 64;
+
+/// A walk, at one of the records.
+pub(super) struct Walk<'a> {
+    pub(super) judge: &'a JudgedRun,
+    pub(super) units: Units<'a>,
+    pub(super) coarse: Follower<'a, f64>,
+    /// The same follower in 106 bits, once they are asked for.
+    pub(super) fine: Option<Follower<'a, DoubleDouble>>,
+    pub(super) place: Place,
+    pub(super) pending: Vec<Pending>,
+    /// Records of the present instant.
+    pub(super) at_once: usize,
+    pub(super) found: LocalJudgement,
+}
+
+/// An event that is only counted and has to come within its instant.
+pub(super) struct Pending {
+    pub(super) name: String,
+    pub(super) exact: Exact,
+    pub(super) deadline: f64,
+}
+
+/// What is said of a record.
+pub(super) enum Said {
+    /// The record is right.
+    Right,
+    /// Either answer is right.
+    Undecidable,
+    /// What is wrong, what the exact continuation has instead, and the defect in units.
+    Wrong(WrongKind, Option<Exact>, f64),
+}
+
+impl<'a> Walk<'a> {
+    pub(super) fn motion(&self) -> &'a Motion {
+        &self.judge.motion
+    }
+
+    pub(super) fn until_count(&self) -> usize {
+        self.motion().system().modes[self.place.mode].until.len()
+    }
+
+    /// Judges a record, and goes on to it.
+    pub(super) fn record(&mut self, n: usize, event: &Event) {
+        let named = Named { event: event.event, next: event.mode };
+        let continuation = self.continuation((named, event.elapsed));
+        let Continuation { found, passed, decided } = continuation;
+        self.expire(n, event, event.elapsed);
+        for exact in passed {
+            self.missed(n, Some(event), exact);
+        }
+        let rests = event.elapsed - self.place.elapsed
+            <= Units::rounding_of_time(event.elapsed).max(self.at_once_within());
+        self.at_once = if rests { self.at_once + 1 } else { 1 };
+        let mode = &self.motion().system().modes[self.place.mode];
+        let (said, at_entry) = if event.event < mode.until.len() + mode.watch.len() {
+            self.said_of(n, event, found, decided)
+        } else {
+            (Said::Wrong(WrongKind::Spurious, None, f64::NAN), false)
+        };
+        self.count(n, event, said);
+        self.go_on(named, event, at_entry);
+    }
+
+    pub(super) fn at_once_within(&self) -> f64 {
+        self.units.tolerance() * self.motion().system().time_scale
+    }
+
+    /// The exact continuation up to a record: in f64, and in 106 bits where that finds the record
+    /// wrong by little or does not decide.
+    fn continuation(&mut self, record: (Named, f64)) -> Continuation {
+        let found = continuation(&self.units, &mut self.coarse, &self.place, record);
+        let is_good = matches!(found.found, Found::Same(_)) && found.passed.is_empty();
+        if found.decided && (is_good || self.units.tolerance() >= FINE) {
+            return found;
+        }
+        let Some(solver) = self.judge.fine() else { return found };
+        if self.fine.is_none() {
+            self.fine = solver.follow(&self.judge.problem.start).ok();
+        }
+        let Some(fine) = &mut self.fine else { return found };
+        fine.adopt(&self.coarse);
+        continuation(&self.units, fine, &self.place, record)
+    }
+
+    /// Counts an exact event that no record tells, and says whether it had to be told.
+    pub(super) fn missed(&mut self, n: usize, next: Option<&Event>, exact: Exact) -> bool {
+        if self.is_graze(exact.elapsed, exact.named.event) {
+            self.found.undecidable += 1;
+            return false;
+        }
+        self.found.missed += 1;
+        let wrong = FirstWrong {
+            n: n + 1,
+            kind: WrongKind::Missed,
+            elapsed: exact.elapsed,
+            event: None,
+            mode: None,
+            time: next.map(|it| self.judge.problem.clock(it.elapsed)),
+            state: next.map(|it| it.state.to_vec()),
+            exact: self.named(self.place.mode, &exact),
+            defect: f64::NAN,
+        };
+        self.found.wrong(wrong);
+        true
+    }
+
+    fn named(&self, mode: usize, exact: &Exact) -> Option<(String, String, f64)> {
+        let name = self.judge.name(mode, exact.named.event);
+        Some((
+            name,
+            self.judge.mode_name(exact.named.next),
+            self.judge.problem.clock(exact.elapsed),
+        ))
+    }
+
+    fn count(&mut self, n: usize, event: &Event, said: Said) {
+        let (kind, exact, defect) = match said {
+            Said::Right => return self.found.right += 1,
+            Said::Undecidable => return self.found.undecidable += 1,
+            Said::Wrong(kind, exact, defect) => (kind, exact, defect),
+        };
+        let found = &mut self.found;
+        let counter = match kind {
+            WrongKind::Spurious => &mut found.spurious,
+            WrongKind::WrongMode => &mut found.wrong_mode,
+            WrongKind::Inconsistent => &mut found.inconsistent,
+            _ => &mut found.inaccurate,
+        };
+        *counter += 1;
+        let wrong = FirstWrong {
+            n: n + 1,
+            kind,
+            elapsed: event.elapsed,
+            event: Some(self.judge.name(self.place.mode, event.event)),
+            mode: Some(self.judge.mode_name(event.mode)),
+            time: Some(self.judge.problem.clock(event.elapsed)),
+            state: Some(event.state.to_vec()),
+            exact: exact.and_then(|it| self.named(self.place.mode, &it)),
+            defect,
+        };
+        self.found.wrong(wrong);
+    }
+
+    /// After the last record no exact event may lie before the end of what is judged.
+    pub(super) fn end(&mut self, outcome: &Outcome) {
+        let n = outcome.events.len();
+        for pending in std::mem::take(&mut self.pending) {
+            self.missed(n, None, pending.exact);
+        }
+        let early = outcome.ended_at < self.judge.until;
+        if early && outcome.ended == Ended::Horizon {
+            return self.cut_short(n, outcome.ended_at);
+        }
+        if early && outcome.ended == Ended::NoProgress && self.at_once >= MOST_AT_ONCE {
+            return;
+        }
+        let end = self.judge.until - self.units.allowance.time * self.at_once_within();
+        let mut gone_past = self.place.late;
+        self.coarse.go_on(self.place.elapsed, &self.place.state, end, gone_past);
+        let until = self.until_count();
+        for _ in 0..MOST_AT_ONCE {
+            let at_once = self.coarse.fires_at_once();
+            let Some(event) = self.coarse.next() else { return };
+            let Some(own) = exact(&self.coarse, &event, until, at_once) else { return };
+            let allowed =
+                self.units.allowed_time(&self.place.stretch(own.elapsed), own.named.event);
+            if own.elapsed > self.judge.until - allowed {
+                return;
+            }
+            let (elapsed, guard, ends_mode) = (own.elapsed, own.named.event, own.ends_mode);
+            let missed = self.missed(n, None, own);
+            // What may be passed over is, and what is missed tells what else is.
+            self.coarse.go_on(self.place.elapsed, &self.place.state, end, gone_past);
+            if missed && ends_mode {
+                return self.count_left();
+            }
+            gone_past |= if ends_mode { 1 << guard } else { 0 };
+            let after = elapsed + (0.5 * allowed).min(0.5 * (end - elapsed));
+            self.coarse.go_past(after, end, gone_past);
+        }
+    }
+
+    /// Whether the exact continuation of the present record has an event within a time.
+    pub(super) fn has_next_within(&mut self, time: f64) -> bool {
+        let Place { elapsed, ref state, late, .. } = self.place;
+        self.coarse.go_on(elapsed, state, elapsed + time, late);
+        // Only at the start do events come together in such a run.
+        let rests = self.coarse.fires_at_once() && elapsed == 0.0;
+        let next = self.coarse.next();
+        !rests && next.is_some_and(|it| !matches!(it.what, What::End(_)))
+    }
+
+    /// Counts the end of a run as missed that ends before its horizon without a reason.
+    fn cut_short(&mut self, n: usize, ended_at: f64) {
+        self.found.missed += 1;
+        let horizon = self.judge.problem.clock(self.judge.until);
+        self.found.wrong(FirstWrong {
+            n: n + 1,
+            kind: WrongKind::Missed,
+            elapsed: ended_at,
+            event: None,
+            mode: None,
+            time: None,
+            state: None,
+            exact: Some(("end".to_owned(), self.judge.mode_name(self.place.mode), horizon)),
+            defect: f64::NAN,
+        });
+    }
+
+    /// Counts the events of the exact continuation as missed, but for the first, which was.
+    fn count_left(&mut self) {
+        let events = self.coarse.by_ref().take(MOST_LEFT);
+        let is_event = |it: &percuss::affine::Event<f64>| !matches!(it.what, What::End(_));
+        self.found.missed += events.filter(is_event).count().saturating_sub(1);
+    }
+}

@@ -1,0 +1,152 @@
+//! Records judged from the records before them: right answers are right, and each kind of wrong
+//! answer is told for what it is.
+
+use crate::exact;
+use percuss_validation::case::{ClassBounds, defaults};
+use percuss_validation::engine::{Accuracy, Engine, Outcome, answer};
+use percuss_validation::integrators::all;
+use percuss_validation::power::Variant;
+use percuss_validation::score::local::{Allowance, LocalJudgement, WrongKind};
+use percuss_validation::suite::{PreparedCase, Suite, prepare};
+use percuss_validation::truth::Library;
+
+/// Cases of every kind of trouble: impacts, drift, friction, a clock, watched levels, a multiple
+/// zero, accumulation, simultaneous events, a run back in time.
+const CASES: [&str; 12] = [
+    "fig7a-period-4",
+    "table1-first-row",
+    "friction-two-stops",
+    "buck-periodic",
+    "watched-every-direction",
+    "plastic-sticks-and-flies",
+    "ball-geometric",
+    "ball-backward",
+    "cradle-two",
+    "relay-1e-2",
+    "height-crossed-twice",
+    "belt-two-masses",
+];
+
+const ACCURACY: Accuracy = Accuracy::Tolerance(1e-6);
+
+fn cases() -> Vec<PreparedCase> {
+    let chosen = CASES.iter().map(|name| exact::case(name)).collect();
+    let library = Library::embedded().expect("the manifest is read");
+    prepare(chosen, &library, None).expect("the cases are made ready")
+}
+
+fn engine(name: &str) -> &'static dyn Engine {
+    let mut engines = all().iter().copied();
+    engines.find(|it| it.declaration().name == name).expect("it is an engine")
+}
+
+/// The answer of an engine, and what its class of methods is allowed.
+fn answered(engine: &dyn Engine, case: &PreparedCase) -> (Outcome, Allowance) {
+    let declaration = engine.declaration();
+    let limits = Suite::Quick.limits(&case.case);
+    let right = answer(engine, &case.task, ACCURACY, &limits).expect("an answer");
+    let classes = defaults().expect("the limits are read").classes;
+    let class =
+        ClassBounds::of(&classes, declaration.class_and_order(), declaration.stepping, ACCURACY)
+            .expect("a class");
+    let ClassBounds { time, state, sample, sample_median, .. } = *class;
+    let tolerance = declaration.stepping.unit(ACCURACY);
+    (right, Allowance { tolerance, time, state, sample, sample_median })
+}
+
+fn judged(case: &PreparedCase, answer: &Outcome, allowance: Allowance) -> LocalJudgement {
+    case.local.judge(&case.task, answer, allowance).expect("a start that the solver takes")
+}
+
+#[test]
+fn right_answers_are_right_whatever_the_method() {
+    let engines = [
+        "ode_solvers-dopri5",
+        "differential-equations-rkv767e",
+        "differential-equations-radau5",
+        "diffsol-tr_bdf2",
+        "differential-equations-bdf",
+    ];
+    let mut records = 0;
+    for case in cases() {
+        for engine in engines.map(engine) {
+            let name = engine.declaration().name;
+            let (right, allowance) = answered(engine, &case);
+            let found = judged(&case, &right, allowance);
+            assert_eq!(found.first_wrong, None, "{name} on {}", case.case.name);
+            assert!(!found.is_wrong(&allowance), "{name} on {}", case.case.name);
+            assert!(found.right + found.undecidable > 0, "{name} on {}", case.case.name);
+            records += found.right;
+        }
+    }
+    assert!(records > 800, "{records}");
+}
+
+/// On how many cases a variant is caught, and spoils anything; and what is said of it first.
+fn caught(variant: Variant) -> (usize, usize, Vec<WrongKind>) {
+    let engine = engine("ode_solvers-dopri5");
+    let (mut caught, mut spoiled, mut kinds) = (0, 0, Vec::new());
+    for case in cases() {
+        let (right, allowance) = answered(engine, &case);
+        let Some(wrong) = variant.of(&case.task, &right, allowance.tolerance) else { continue };
+        let found = judged(&case, &wrong, allowance);
+        spoiled += 1;
+        caught += usize::from(found.is_wrong(&allowance));
+        kinds.extend(found.first_wrong.map(|it| it.kind));
+    }
+    (caught, spoiled, kinds)
+}
+
+#[test]
+fn late_events_are_seen_where_they_are_located() {
+    for by in [30.0, 100.0] {
+        let (caught, spoiled, kinds) = caught(Variant::Late(by));
+        assert_eq!((caught, spoiled), (CASES.len(), CASES.len()), "{by}");
+        let located = kinds.iter().filter(|it| **it == WrongKind::Location).count();
+        assert!(located + 1 >= CASES.len(), "{by}: {kinds:?}");
+    }
+}
+
+#[test]
+fn wrong_answers_are_caught_wherever_they_are_wrong() {
+    let variants = [
+        Variant::TimesLate(100.0),
+        Variant::OldState,
+        Variant::LinearSamples,
+        Variant::Noise(100.0),
+        Variant::StatesOff,
+        Variant::ColumnsSwapped,
+        Variant::SamplesBehind,
+        Variant::HalfHorizon,
+        Variant::OneNaN,
+        Variant::GarbageAfterAThird,
+        Variant::WrongMode,
+    ];
+    for variant in variants {
+        let (caught, spoiled, kinds) = caught(variant);
+        assert!(spoiled > 0 && caught == spoiled, "{variant:?}: {caught} of {spoiled} {kinds:?}");
+    }
+}
+
+/// An event that is left out is missed, one that is told twice is spurious, and what comes after it
+/// is judged as if nothing had happened.
+#[test]
+fn one_wrong_record_costs_one() {
+    let engine = engine("ode_solvers-dopri5");
+    for case in cases().iter().filter(|it| it.case.name.starts_with("fig7a")) {
+        let (right, allowance) = answered(engine, case);
+        let all = right.events.len();
+        let mut twice = right.clone();
+        twice.events.insert(all / 2, right.events[all / 2]);
+        let found = judged(case, &twice, allowance);
+        assert_eq!((found.right, found.spurious, found.missed), (all, 1, 0), "{found:?}");
+        let first = found.first_wrong.expect("something is wrong");
+        assert_eq!((first.kind, first.n), (WrongKind::Spurious, all / 2 + 2));
+        let mut dropped = right.clone();
+        dropped.events.remove(all / 2);
+        let found = judged(case, &dropped, allowance);
+        assert!(found.missed >= 1, "{found:?}");
+        let first = found.first_wrong.expect("something is wrong");
+        assert_eq!((first.kind, first.n), (WrongKind::Missed, all / 2 + 1));
+    }
+}
