@@ -1,5 +1,6 @@
 //! `errors.csv`: the rows of `report.json`, flat. What is `null` there is empty or `nan` here.
 
+use super::records::JudgedRecords;
 use super::row::{Distance, ValidHorizons};
 use super::{Exporter, Report, ReportEvidence, ReportRow};
 use crate::number::shortest;
@@ -9,7 +10,7 @@ use std::io::{self, Write};
 
 pub(super) struct Csv;
 
-const COLUMNS: [&str; 41] = [
+const COLUMNS: [&str; 56] = [
     "case",
     "trouble",
     "engine",
@@ -22,6 +23,21 @@ const COLUMNS: [&str; 41] = [
     "events_matched",
     "events_missed",
     "events_spurious",
+    "records_judged",
+    "records_right",
+    "records_missed",
+    "records_spurious",
+    "records_wrong_mode",
+    "records_undecidable",
+    "first_wrong_kind",
+    "first_wrong_event",
+    "first_wrong_time",
+    "location_max",
+    "time_defect_max",
+    "time_defect_signed_median",
+    "state_defect_max",
+    "sample_defect_max",
+    "inconsistency_max",
     "phase_word_ok",
     "event_time_error_median",
     "event_time_error_q99",
@@ -82,9 +98,13 @@ fn spread(spread: &Spread) -> [String; 3] {
     [spread.median, spread.q99, spread.max].map(shortest)
 }
 
-fn fields(row: &ReportRow) -> [String; 41] {
+fn fields(row: &ReportRow) -> [String; 56] {
     let [time_median, time_q99, time_max] = spread(&row.event_time_error);
     let [state_median, state_q99, state_max] = spread(&row.state_error);
+    let records = row.records.as_ref();
+    let defect = records.map(|it| it.defect).unwrap_or_default();
+    let first = records.and_then(|it| it.first_wrong.as_ref());
+    let count = |of: fn(&JudgedRecords) -> usize| optional(records.map(of));
     let restart = row.restart.map(|it| spread(&it.error)).unwrap_or_default();
     let [restart_median, restart_q99, restart_max] = restart;
     let horizon = |figure: fn(&ValidHorizons) -> f64| {
@@ -103,6 +123,21 @@ fn fields(row: &ReportRow) -> [String; 41] {
         optional(row.events_matched),
         optional(row.events_missed),
         optional(row.events_spurious),
+        count(|it| it.events_judged),
+        count(|it| it.events_right),
+        count(|it| it.events_missed),
+        count(|it| it.events_spurious),
+        count(|it| it.events_wrong_mode),
+        count(|it| it.events_undecidable),
+        first.map(|it| it.kind.as_str().to_owned()).unwrap_or_default(),
+        first.and_then(|it| it.event.clone().or(it.exact_event.clone())).unwrap_or_default(),
+        optional(first.and_then(|it| it.time.or(it.exact_time)).map(shortest)),
+        optional(defect.location.max.map(shortest)),
+        optional(defect.time.size.max.map(shortest)),
+        optional(defect.time.signed_median.map(shortest)),
+        optional(defect.state.max.map(shortest)),
+        optional(defect.sample.max.map(shortest)),
+        optional(records.and_then(|it| it.inconsistency_max).map(shortest)),
         optional(row.phase_word_ok),
         time_median,
         time_q99,

@@ -1,6 +1,7 @@
 //! The keys of `report.json`.
 
 use super::ranking::{Ranked, ranking};
+use super::records::JudgedRecords;
 use crate::engine::{Declaration, Engine, Work};
 use crate::provenance::{self, Build};
 use crate::score::attractor::Comparison;
@@ -89,6 +90,8 @@ pub struct ReportRow {
     pub events_matched: Option<usize>,
     pub events_missed: Option<usize>,
     pub events_spurious: Option<usize>,
+    /// Each record beside the exact continuation of the one before it; exact engines have none.
+    pub records: Option<JudgedRecords>,
     pub phase_word_ok: Option<bool>,
     pub event_time_error: Spread,
     pub state_error: Spread,
@@ -252,6 +255,7 @@ impl ReportRow {
     fn of(scored: &Scored) -> Self {
         let empty = Self::empty(scored);
         let Status::Ok(measures, outcome) = &scored.status else { return empty };
+        let local = measures.local.as_ref();
         let whole_ns = |time: Duration| u64::try_from(time.as_nanos()).ok();
         // Where nothing at all was counted the work is not known.
         let work = Some(outcome.work).filter(|work| *work != Work::default());
@@ -261,6 +265,7 @@ impl ReportRow {
             events_matched: Some(measures.matched),
             events_missed: Some(measures.mismatch.missed.len()),
             events_spurious: Some(measures.mismatch.spurious.len()),
+            records: local.map(JudgedRecords::of),
             phase_word_ok: Some(measures.phase_sequence_ok),
             event_time_error: measures.event_time,
             state_error: measures.state,
@@ -304,6 +309,7 @@ impl ReportRow {
             events_matched: None,
             events_missed: None,
             events_spurious: None,
+            records: None,
             phase_word_ok: None,
             event_time_error: Spread::NONE,
             state_error: Spread::NONE,

@@ -3,9 +3,9 @@
 
 use percuss_validation::provenance::Build;
 use percuss_validation::report::{
-    CaseNote, EngineEntry, ErrorGrowth, EventMark, EventPicture, FaultRow, GrazeRow, MismatchKind,
-    Ranked, Report, ReportEvidence, ReportRow, RestartHistogram, SectionPair, Summary, Units,
-    ValidHorizons, View, ViewTrajectory,
+    CaseNote, EngineEntry, ErrorGrowth, EventMark, EventPicture, FaultRow, GrazeRow, JudgedRecords,
+    MismatchKind, Ranked, Report, ReportEvidence, ReportRow, RestartHistogram, SectionPair,
+    Summary, Units, ValidHorizons, View, ViewTrajectory,
 };
 use percuss_validation::score::{Spread, Verdict};
 use percuss_validation::suite::Suite;
@@ -60,6 +60,11 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
         events_matched: Some(40),
         events_missed: Some(0),
         events_spurious: Some(0),
+        records: Some(JudgedRecords {
+            events_judged: 40,
+            events_right: 40,
+            ..JudgedRecords::default()
+        }),
         phase_word_ok: Some(true),
         event_time_error: Spread { median: error / 8.0, q99: error / 2.0, max: error },
         state_error: Spread { median: error / 9.0, q99: error / 3.0, max: error / 2.0 },

@@ -1,0 +1,122 @@
+//! The keys of `report.json` that say what became of an engine's records, each judged from the one
+//! before it.
+
+use crate::score::Spread;
+use crate::score::local::{Defects, FirstWrong, LocalJudgement, WrongKind};
+use serde::Serialize;
+
+/// The judgement of a row's records.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[allow(
+    missing_docs,
+    reason = "the keys are those of the command line's contract, explained in the schema"
+)]
+pub struct JudgedRecords {
+    pub events_judged: usize,
+    pub events_right: usize,
+    pub events_missed: usize,
+    pub events_spurious: usize,
+    pub events_wrong_mode: usize,
+    pub events_undecidable: usize,
+    pub first_wrong: Option<FirstWrongRecord>,
+    pub defect: DefectQuantiles,
+    pub inconsistency_max: Option<f64>,
+}
+
+/// The first thing that is wrong in a row.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "the keys are those of the command line's contract")]
+pub struct FirstWrongRecord {
+    pub n: usize,
+    pub kind: WrongKind,
+    pub event: Option<String>,
+    pub mode: Option<String>,
+    pub time: Option<f64>,
+    pub state: Option<Vec<f64>>,
+    pub exact_event: Option<String>,
+    pub exact_mode: Option<String>,
+    pub exact_time: Option<f64>,
+    pub defect: Option<f64>,
+}
+
+/// Quantiles of the defects, in units of the local judgement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "the keys are those of the command line's contract")]
+pub struct DefectQuantiles {
+    pub location: Quantiles,
+    pub time: TimeQuantiles,
+    pub state: Quantiles,
+    pub sample: Quantiles,
+}
+
+/// The quantiles of one kind of defect; nothing where nothing was measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "the keys are those of the command line's contract")]
+pub struct Quantiles {
+    pub median: Option<f64>,
+    pub q99: Option<f64>,
+    pub max: Option<f64>,
+}
+
+/// The quantiles of the defects of times: the signed median is positive where events are late.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "the keys are those of the command line's contract")]
+pub struct TimeQuantiles {
+    #[serde(flatten)]
+    pub size: Quantiles,
+    pub signed_median: Option<f64>,
+}
+
+impl JudgedRecords {
+    pub(super) fn of(local: &LocalJudgement) -> Self {
+        let defects = &local.defects;
+        Self {
+            events_judged: local.judged(),
+            events_right: local.right,
+            events_missed: local.missed,
+            events_spurious: local.spurious,
+            events_wrong_mode: local.wrong_mode,
+            events_undecidable: local.undecidable,
+            first_wrong: local.first_wrong.as_ref().map(FirstWrongRecord::of),
+            defect: DefectQuantiles {
+                location: Quantiles::of(&defects.location),
+                time: TimeQuantiles {
+                    size: Quantiles::of(&defects.time),
+                    signed_median: finite(Spread::of(defects.time.clone()).median),
+                },
+                state: Quantiles::of(&defects.state),
+                sample: Quantiles::of(&defects.sample),
+            },
+            inconsistency_max: Quantiles::of(&defects.inconsistency).max,
+        }
+    }
+}
+
+impl FirstWrongRecord {
+    fn of(first: &FirstWrong) -> Self {
+        let exact = first.exact.clone();
+        Self {
+            n: first.n,
+            kind: first.kind,
+            event: first.event.clone(),
+            mode: first.mode.clone(),
+            time: first.time,
+            state: first.state.clone(),
+            exact_event: exact.as_ref().map(|(event, ..)| event.clone()),
+            exact_mode: exact.as_ref().map(|(_, mode, _)| mode.clone()),
+            exact_time: exact.map(|(.., time)| time),
+            defect: finite(first.defect),
+        }
+    }
+}
+
+impl Quantiles {
+    fn of(defects: &[f64]) -> Self {
+        let Spread { median, q99, max } = Defects::spread(defects);
+        Self { median: finite(median), q99: finite(q99), max: finite(max) }
+    }
+}
+
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|it| it.is_finite())
+}
