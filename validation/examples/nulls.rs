@@ -77,8 +77,7 @@ fn measured(
     let limits = Suite::Quick.limits(&case.case);
     let right = answer(engine, &case.task, accuracy, &limits).ok()?;
     let tolerance = declaration.stepping.unit(accuracy);
-    let ClassBounds { time, state, sample, sample_median, .. } = *class;
-    let allowance = Allowance { tolerance, time, state, sample, sample_median };
+    let allowance = Allowance::of(class, tolerance);
     let judge = |answer: &Outcome| case.local.judge(&case.task, answer, allowance).ok();
     let caught = |variant: &Variant| {
         let wrong = variant.of(&case.task, &right, tolerance)?;

@@ -49,9 +49,7 @@ fn answered(engine: &dyn Engine, case: &PreparedCase) -> (Outcome, Allowance) {
     let class =
         ClassBounds::of(&classes, declaration.class_and_order(), declaration.stepping, ACCURACY)
             .expect("a class");
-    let ClassBounds { time, state, sample, sample_median, .. } = *class;
-    let tolerance = declaration.stepping.unit(ACCURACY);
-    (right, Allowance { tolerance, time, state, sample, sample_median })
+    (right, Allowance::of(class, declaration.stepping.unit(ACCURACY)))
 }
 
 fn judged(case: &PreparedCase, answer: &Outcome, allowance: Allowance) -> LocalJudgement {

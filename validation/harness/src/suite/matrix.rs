@@ -176,8 +176,7 @@ fn judge_locally(
     class: &ClassBounds,
     unit: f64,
 ) -> Option<LocalJudgement> {
-    let ClassBounds { time, state, sample, sample_median, .. } = *class;
-    let allowance = Allowance { tolerance: unit, time, state, sample, sample_median };
+    let allowance = Allowance::of(class, unit);
     // Both solvers were made ready for the case's start.
     case.local.judge(&case.task, outcome, allowance).ok()
 }

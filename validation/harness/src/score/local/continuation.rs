@@ -31,6 +31,8 @@ pub(super) struct Named {
 /// An event of the exact continuation.
 #[derive(Clone, Debug)]
 pub(super) struct Exact {
+    /// The mode of which it is an event.
+    pub(super) mode: usize,
     pub(super) named: Named,
     pub(super) elapsed: f64,
     pub(super) state: Vec<f64>,
@@ -89,14 +91,14 @@ pub(super) fn exact<T: Number>(
     until: usize,
     at_once: bool,
 ) -> Option<Exact> {
-    let (place, ends_mode) = match event.what {
-        What::Until(_, place) => (place, true),
-        What::Watch(_, place) => (until + place, false),
+    let (mode, place, ends_mode) = match event.what {
+        What::Until(mode, place) => (mode, place, true),
+        What::Watch(mode, place) => (mode, until + place, false),
         What::Start | What::End(_) => return None,
     };
     let state = event.state.iter().map(|it| it.to_f64()).collect();
     let named = Named { event: place, next: event.mode };
-    Some(Exact { named, elapsed: follower.elapsed(event), state, ends_mode, at_once })
+    Some(Exact { mode, named, elapsed: follower.elapsed(event), state, ends_mode, at_once })
 }
 
 /// Follows the exact continuation of a place up to a record's event at a time.

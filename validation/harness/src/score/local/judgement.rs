@@ -1,5 +1,6 @@
 //! What the local judgement says of a run.
 
+use crate::case::ClassBounds;
 use crate::number::brief;
 use crate::score::Spread;
 
@@ -16,6 +17,15 @@ pub struct Allowance {
     pub sample: f64,
     /// The largest median of these defects in a run.
     pub sample_median: f64,
+}
+
+impl Allowance {
+    /// What a class of methods is allowed at a unit of error.
+    #[must_use]
+    pub const fn of(class: &ClassBounds, tolerance: f64) -> Self {
+        let ClassBounds { time, state, sample, sample_median, .. } = *class;
+        Self { tolerance, time, state, sample, sample_median }
+    }
 }
 
 /// What is wrong with a record, or with what stands between two of them.

@@ -27,7 +27,7 @@ impl Walk<'_> {
         let said = match found {
             Found::Same(exact) => {
                 let at_once = exact.at_once;
-                self.forget_pending(named);
+                self.take_pending(named);
                 return (self.same(event, named, exact), at_once);
             }
             Found::Another(exact) => self.another(event, named, exact),
@@ -95,7 +95,7 @@ impl Walk<'_> {
 
     /// A record of an event in whose instant the exact continuation has another.
     fn another(&mut self, event: &Event, named: Named, exact: Exact) -> Said {
-        if self.take_pending(event, named) {
+        if self.take_pending(named) {
             return Said::Right;
         }
         if !self.is_admissible(event, named) {
@@ -124,7 +124,7 @@ impl Walk<'_> {
         next: Option<Exact>,
         decided: bool,
     ) -> Said {
-        if self.take_pending(event, named) {
+        if self.take_pending(named) {
             return Said::Right;
         }
         if !decided || self.is_graze(event.elapsed, named.event) {
@@ -158,19 +158,11 @@ impl Walk<'_> {
         Said::Wrong(WrongKind::Time, Some(exact), defect)
     }
 
-    /// Takes an event that has to come from the list of those that do.
-    fn take_pending(&mut self, event: &Event, named: Named) -> bool {
+    /// Takes an event that has to come from the list of those that do, which are in time still.
+    fn take_pending(&mut self, named: Named) -> bool {
         let name = self.judge.name(self.place.mode, named.event);
-        let place =
-            self.pending.iter().position(|it| it.name == name && event.elapsed <= it.deadline);
+        let place = self.pending.iter().position(|it| it.name == name);
         place.map(|it| self.pending.swap_remove(it)).is_some()
-    }
-
-    fn forget_pending(&mut self, named: Named) {
-        let name = self.judge.name(self.place.mode, named.event);
-        if let Some(place) = self.pending.iter().position(|it| it.name == name) {
-            self.pending.swap_remove(place);
-        }
     }
 
     /// Counts the events as missed that had to come by now.

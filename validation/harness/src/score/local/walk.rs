@@ -100,7 +100,9 @@ impl<'a> Walk<'a> {
 
     /// Counts an exact event that no record tells, and says whether it had to be told.
     pub(super) fn missed(&mut self, n: usize, next: Option<&Event>, exact: Exact) -> bool {
-        if self.is_graze(exact.elapsed, exact.named.event) {
+        // An event of a mode that the records have left since is none of the present flow.
+        let is_present = exact.mode == self.place.mode;
+        if is_present && self.is_graze(exact.elapsed, exact.named.event) {
             self.found.undecidable += 1;
             return false;
         }
@@ -113,20 +115,17 @@ impl<'a> Walk<'a> {
             mode: None,
             time: next.map(|it| self.judge.problem.clock(it.elapsed)),
             state: next.map(|it| it.state.to_vec()),
-            exact: self.named(self.place.mode, &exact),
+            exact: Some(self.named(&exact)),
             defect: f64::NAN,
         };
         self.found.wrong(wrong);
         true
     }
 
-    fn named(&self, mode: usize, exact: &Exact) -> Option<(String, String, f64)> {
-        let name = self.judge.name(mode, exact.named.event);
-        Some((
-            name,
-            self.judge.mode_name(exact.named.next),
-            self.judge.problem.clock(exact.elapsed),
-        ))
+    fn named(&self, exact: &Exact) -> (String, String, f64) {
+        let name = self.judge.name(exact.mode, exact.named.event);
+        let next = self.judge.mode_name(exact.named.next);
+        (name, next, self.judge.problem.clock(exact.elapsed))
     }
 
     fn count(&mut self, n: usize, event: &Event, said: Said) {
@@ -151,7 +150,7 @@ impl<'a> Walk<'a> {
             mode: Some(self.judge.mode_name(event.mode)),
             time: Some(self.judge.problem.clock(event.elapsed)),
             state: Some(event.state.to_vec()),
-            exact: exact.and_then(|it| self.named(self.place.mode, &it)),
+            exact: exact.map(|it| self.named(&it)),
             defect,
         };
         self.found.wrong(wrong);
