@@ -50,7 +50,7 @@ impl Engine for Heun {
         let mut entered = equations.enter(None, mode, t, &state);
         while t < task.span || entered.fires.is_some() {
             if heun.work.rhs_evaluations > limits.calls || outcome.events.len() > limits.events {
-                return Err(Failure::beyond_limits(format!("gave up at {t}")));
+                return Err(Failure::new(format!("gave up at {t}")));
             }
             let whole = step.min(task.span - t);
             let found = entered.fires.map(|guard| (guard, 0.0));

@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release --example shortcomings -- REPORT...` prints the file: every bound that
 //! fails in one of the reports becomes a row of its engine's defect, with a range
-//! around the figure that was measured; rows that no report has stay as they are. An engine has one
+//! around the figure that was measured; rows that no report has stay as they are, and so do figures
+//! of probes that were not asked for. An engine has one
 //! defect on the oscillator and one on other systems. Reasons are people's: those of
 //! the present file are kept, a new defect gets an empty one, which the program refuses to read.
 //! Before the reports `--file FILE` names another file than that of the engines in Rust, as
@@ -18,14 +19,26 @@ use std::collections::{BTreeMap, BTreeSet};
 /// there.
 const FACTOR: f64 = 3.0;
 /// Quantities that are counts.
-const COUNTS: [&str; 5] =
-    ["events_missed", "events_spurious", "phase_word", "restarts_failed", "runs_failed"];
+const COUNTS: [&str; 6] = [
+    "events_missed",
+    "events_spurious",
+    "events_wrong_mode",
+    "phase_word",
+    "restarts_failed",
+    "runs_failed",
+];
+
+/// Quantities that are measured by probes, which a report may have been made without.
+const PROBED: [&str; 4] = ["restart_error", "restarts_failed", "valid_gain", "attractor_distance"];
 
 /// Case, setting (a step is negative), quantity and statistic.
 type Key = (String, String, String, String);
 
 /// Engine, case and setting.
 type RowKey = (String, String, String);
+
+/// The rows of the reports, each with the quantities that were measured.
+type Reported = BTreeMap<RowKey, BTreeSet<String>>;
 
 /// An engine and a group of its rows: those of the oscillator, or of other systems the events, the
 /// errors and the runs without a result. Each group has a reason of its own.
@@ -36,7 +49,7 @@ type Defects = BTreeMap<RowGroup, BTreeMap<Key, (f64, f64)>>;
 
 fn main() -> Result<()> {
     let mut defects = Defects::new();
-    let mut reported = BTreeSet::new();
+    let mut reported = Reported::new();
     let mut reports: Vec<String> = std::env::args().skip(1).collect();
     let mut file = concat!(env!("CARGO_MANIFEST_DIR"), "/shortcomings.toml").to_owned();
     if reports.first().is_some_and(|it| it == "--file") && reports.len() > 1 {
@@ -54,7 +67,9 @@ fn main() -> Result<()> {
         // show would be dropped.
         ensure!(report["suite"] == "full", "{path} is no report of the full suite");
         for row in report["results"].as_array().context("a report has results")? {
-            reported.insert(place(row)?);
+            let bounds = row["bounds"].as_array().into_iter().flatten();
+            let quantities = bounds.filter_map(|it| it["quantity"].as_str().map(str::to_owned));
+            reported.entry(place(row)?).or_default().extend(quantities);
             collect(row, &systems, &mut defects)?;
         }
     }
@@ -83,7 +98,7 @@ fn main() -> Result<()> {
 
 /// The group of an engine's row.
 fn group(engine: &str, case: &str, quantity: &str, systems: &BTreeSet<String>) -> RowGroup {
-    let events = ["events_missed", "events_spurious", "phase_word"];
+    let events = ["events_missed", "events_spurious", "events_wrong_mode", "location"];
     let group = match quantity {
         _ if !systems.contains(case) => "",
         "runs_failed" => "runs",
@@ -117,21 +132,18 @@ fn collect(row: &Value, systems: &BTreeSet<String>, defects: &mut Defects) -> Re
         let quantity = text(&bound["quantity"])?;
         let group = group(&engine, &case, &quantity, systems);
         let key = (case, setting, quantity.clone(), text(&bound["statistic"])?);
-        let most = if quantity == "events_missed" { row["events_expected"].as_f64() } else { None };
         let own = defects.entry(group).or_default();
-        own.insert(key, range(&quantity, value, limit, most));
+        own.insert(key, range(&quantity, value, limit));
     }
     Ok(())
 }
 
-/// The range around a figure. One that cannot exceed `most` stays below it by half of what
-/// there is to it, because a limit above it would bound nothing.
-fn range(quantity: &str, value: f64, limit: f64, most: Option<f64>) -> (f64, f64) {
+/// The range around a figure.
+fn range(quantity: &str, value: f64, limit: f64) -> (f64, f64) {
     if ["phase_word", "runs_failed"].contains(&quantity) {
         (1.0, 1.0)
     } else if COUNTS.contains(&quantity) {
-        let halfway = most.map_or(f64::INFINITY, |most| (0.5 * (value + most)).floor());
-        ((value / 2.0).ceil(), (2.0 * value).min(halfway.max(value)))
+        ((value / 2.0).ceil(), 2.0 * value)
     } else {
         let digits = |value: f64| format!("{value:.1e}").parse().unwrap_or(value);
         (digits(value / FACTOR).max(limit), digits(value * FACTOR))
@@ -147,7 +159,7 @@ fn float(value: f64) -> String {
 fn present(
     path: &str,
     systems: &BTreeSet<String>,
-    reported: &BTreeSet<RowKey>,
+    reported: &Reported,
     defects: &mut Defects,
 ) -> Result<BTreeMap<RowGroup, String>> {
     let text = std::fs::read_to_string(path).with_context(|| path.to_owned())?;
@@ -158,7 +170,10 @@ fn present(
             let group = group(&engine, &case, &quantity, systems);
             reasons.entry(group.clone()).or_insert_with(|| why.clone());
             let place = (engine.clone(), case, float(setting));
-            if !reported.contains(&place) {
+            let measured = reported.get(&place);
+            let is_measured =
+                |it: &BTreeSet<String>| !PROBED.contains(&&*quantity) || it.contains(&quantity);
+            if !measured.is_some_and(is_measured) {
                 let key = (place.1, place.2, quantity, statistic);
                 defects.entry(group).or_default().insert(key, (at_least, at_most));
             }

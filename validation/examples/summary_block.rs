@@ -1,8 +1,8 @@
-//! Puts the summary of a run of `validate` into docs/RESULTS.md: the ranking and what follows it in
-//! one block, the details that are printed above it in another.
+//! Puts the summary of a run of `validate --details` into docs/RESULTS.md: the first screen in one
+//! block, the details that are printed above it in another.
 //!
 //! ```sh
-//! cargo run --release -- validate --out target/quick |
+//! cargo run --release -- validate --details --power --out target/quick |
 //!   cargo run --release -p percuss-validation --example summary_block -- \
 //!   target/quick/report.json docs/RESULTS.md
 //! ```
@@ -13,6 +13,8 @@ use std::io::Read;
 
 const SUMMARY: &str = "summary";
 const DETAILS: &str = "details";
+/// What the first screen begins with.
+const FIRST_SCREEN: &str = "Which integrator, at what tolerance?";
 
 fn main() -> Result<()> {
     let usage = "takes the report.json of a run and the page to write; its summary on stdin";
@@ -21,11 +23,12 @@ fn main() -> Result<()> {
     let mut summary = String::new();
     std::io::stdin().read_to_string(&mut summary)?;
     let text = std::fs::read_to_string(&report).with_context(|| report.clone())?;
-    let (details, ranking) = summary.split_once("\n#  engine").context("no summary on stdin")?;
-    let ranking = format!("{}#  engine{ranking}", headline(&serde_json::from_str(&text)?));
+    let place = summary.find(FIRST_SCREEN).context("no summary on stdin")?;
+    let (details, ranking) = summary.split_at(place);
+    let ranking = headline(&serde_json::from_str(&text)?) + ranking;
     let page = std::fs::read_to_string(&page_file).with_context(|| page_file.clone())?;
     let page = spliced(&page, SUMMARY, &ranking)?;
-    std::fs::write(&page_file, spliced(&page, DETAILS, details)?)?;
+    std::fs::write(&page_file, spliced(&page, DETAILS, &format!("{}\n", details.trim_end()))?)?;
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use crate::exact;
 use percuss_validation::case::defaults;
 use percuss_validation::integrators::select;
-use percuss_validation::report::{EventPicture, MismatchKind, View, event_pictures};
+use percuss_validation::report::{EventMark, EventPicture, MismatchKind, View, event_pictures};
 use percuss_validation::suite::{self, Suite};
 use percuss_validation::truth::Library;
 use regex::Regex;
@@ -16,7 +16,7 @@ fn pictures(case: &str, engine: &str) -> Vec<EventPicture> {
     let engines = select(&[engine]).expect("an engine");
     let defaults = defaults().expect("bounds");
     let rows = suite::run(&cases, &engines, &Suite::Quick.into(), &defaults, &|| ());
-    event_pictures(&cases, &rows, Suite::Quick)
+    event_pictures(&cases, &rows)
 }
 
 /// The value at the instant next to `t`.
@@ -33,12 +33,12 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
 /// between two of them, and no look sees it.
 #[test]
 fn a_missed_touch_shows_what_the_root_finder_did_not_see() {
-    let all = pictures("graze-overlap-1e-9", "diffsol-bdf");
-    let picture = all.iter().find(|it| it.tolerance == Some(1e-9)).expect("it misses the touch");
+    let all = pictures("graze-overlap-1e-6", "diffsol-bdf");
+    let picture = all.iter().find(|it| it.tolerance == Some(1e-12)).expect("it misses the touch");
     assert_eq!((picture.kind, picture.guard.as_str()), (MismatchKind::Missed, "guard of impact"));
-    assert!((picture.centre - 0.706_756).abs() < 1e-6, "{}", picture.centre);
+    assert!((picture.centre - 1.068_286).abs() < 1e-6, "{}", picture.centre);
     for view in &picture.views {
-        assert!(view.truth.events.iter().any(|it| it.t.abs() < 1e-15 && !it.matched));
+        assert!(view.truth.events.iter().any(|it| it.t.abs() < 1e-9 && !it.matched));
         assert!(largest(view.looks.iter().map(|look| look[1])) < 0.0);
         assert!(largest(view.truth.values.iter().copied()) < 1e-15);
     }
@@ -47,31 +47,26 @@ fn a_missed_touch_shows_what_the_root_finder_did_not_see() {
     let ends: Vec<_> =
         close.truth.events.iter().map(|it| (it.phase.as_str(), it.matched)).collect();
     assert_eq!(ends, [("contact", false), ("no-contact", false)]);
-    // In contact the gap is closed; the margin of 1e-9 is how far it would have opened beyond.
+    // In contact the gap is closed; the margin of 1e-6 is how far it would have opened beyond.
     let within = at(close, &close.truth.values, close.truth.events[1].t / 2.0);
     assert!(within.abs() < 1e-15, "{within}");
     let risen = largest(close.engine.values.iter().copied());
-    assert!(risen > 1e-9 && risen < 1e-8, "{risen}");
+    assert!(risen > 0.9e-6 && risen < 1.1e-6, "{risen}");
     let wide = &picture.views[0];
     assert!(wide.steps.len() > 3, "{:?}", wide.steps);
 }
 
 #[test]
 fn a_spurious_touch_is_the_engine_s_own() {
-    let all = pictures("graze-miss-1e-12", "ode_solvers-dopri5");
+    let all = pictures("height-missed", "differential-equations-rkv655e-events");
     let picture =
-        all.iter().find(|it| it.tolerance == Some(1e-6)).expect("it has a touch too many");
+        all.iter().find(|it| it.tolerance == Some(1e-6)).expect("it has an event too many");
     assert_eq!(picture.kind, MismatchKind::Spurious);
     let close = &picture.views[picture.telling];
-    assert!(close.truth.events.is_empty() && largest(close.truth.values.iter().copied()) < 0.0);
-    let events: Vec<_> =
-        close.engine.events.iter().map(|it| (it.phase.as_str(), it.matched)).collect();
-    assert_eq!(events, [("contact", false), ("no-contact", false)]);
-    let (touch, end) = (close.engine.events[0].t, close.engine.events[1].t);
-    assert!(touch.abs() < 1e-12 && end > 0.0);
-    let inside = at(close, &close.engine.values, 0.5 * (touch + end));
-    assert!(inside.abs() < 1e-12, "{inside}");
-    assert!(largest(close.looks.iter().map(|look| look[1])) > 0.0);
+    let own = close.engine.events.iter().find(|it| it.t == 0.0).expect("it is shown");
+    assert!(!own.matched && picture.title.starts_with("The first wrong record, "));
+    assert!(close.truth.events.iter().all(|it| it.t.abs() > 1e-12));
+    assert!(at(close, &close.truth.values, 0.0).abs() > 1e-3);
 }
 
 #[test]
@@ -87,18 +82,20 @@ fn a_wrong_event_of_another_system_is_shown_alike() {
     let engines = select(&[Regex::new("^diffsol-tsit45$").expect("a pattern")]).expect("an engine");
     let defaults = defaults().expect("bounds");
     let rows = suite::run(&cases, &engines, &Suite::Quick.into(), &defaults, &|| ());
-    let all = event_pictures(&cases, &rows, Suite::Quick);
+    let all = event_pictures(&cases, &rows);
     let picture = all.first().expect("it misses an event");
     assert_eq!(picture.modes, ["on", "off"]);
     assert!(picture.guard.starts_with("guard of "), "{}", picture.guard);
-    assert!(picture.title.contains("in the mode o"), "{}", picture.title);
+    assert!(picture.title.contains("the mode is o"), "{}", picture.title);
     let close = &picture.views[picture.telling];
     assert!(picture.modes.contains(&close.truth.phase));
     let side = match picture.kind {
         MismatchKind::Missed => &close.truth,
         _ => &close.engine,
     };
-    let wrong = side.events.iter().find(|it| it.t == 0.0).expect("it is shown");
+    // The exact continuation of the engine's own record has it, and the truth hardly elsewhere.
+    let near = |it: &&EventMark| it.t.abs() < 1e-6;
+    let wrong = side.events.iter().find(near).expect("it is shown");
     assert!(!wrong.matched && picture.modes.contains(&wrong.phase));
     // The guard is zero at the event on the side that has it.
     let range = largest(side.values.iter().copied()) + largest(side.values.iter().map(|v| -v));

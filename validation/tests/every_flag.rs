@@ -260,6 +260,10 @@ fn negative_values_belong_to_their_flags() {
     }
 }
 
+/// A `score` that is refused by its flags alone.
+const SCORED: [&str; 7] =
+    ["score", "--name", "mine", "--tolerance", "1e-6", "--answers", "/no/such"];
+
 #[test]
 fn flags_without_effect() {
     let grid = ["--grid", "1x1", "--window", "-1,1,-1,1", "--transient", "1"];
@@ -321,6 +325,11 @@ fn flags_without_effect() {
             &["--size", "figure-7"],
         ),
         (vec!["bench", "--rounds", "2", "record"], &["record"]),
+        (vec!["validate", "--details", "--format", "csv"], &["--details", "table"]),
+        (
+            [&SCORED[..], &["--rows", "--allow-unanswered", "--format", "json"]].concat(),
+            &["--rows", "table"],
+        ),
     ];
     for (words, wanted) in rows {
         refused(&words, wanted);

@@ -162,7 +162,13 @@ fn faults_in_ways_of_running_are_caught_there_and_nowhere_else() {
         let Finding { engine, fault, gates, failed_on, elsewhere, .. } = &finding;
         println!("{engine} ({fault}): {gates:?}, {failed_on:?}, elsewhere {elsewhere:?}");
         assert!(finding.caught(), "{engine}: {fault}");
-        assert!(elsewhere.0 > 0 && elsewhere.1.is_empty(), "{engine} {elsewhere:?}");
+        // An engine's own motion in chaos, which is judged too, may be run in any way.
+        let is_chaotic = |name: &String| {
+            let case = cases.iter().find(|it| it.case.name == *name).expect("a case");
+            case.case.trouble.iter().any(|it| it == "chaos")
+        };
+        let all_chaotic = elsewhere.1.iter().all(is_chaotic);
+        assert!(elsewhere.0 > 0 && all_chaotic, "{engine} {elsewhere:?}");
         // States between events are measured at no event.
         let at_events = gates[&Gate::Events].failed + gates[&Gate::EventErrors].failed;
         if it.way == Some(Way::OutputBetweenEvents) {

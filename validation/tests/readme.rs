@@ -62,11 +62,13 @@ fn row(row: &str, summary: &str) -> String {
     let [engine, .., cause] = &cells[..] else { panic!("{row}") };
     let name = engine.trim_matches('`');
     let mut lines = summary.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
-    let found = lines.find(|words| words.get(1) == Some(&name));
+    let found = lines.find(|words| words.len() == 12 && words[1] == name);
     let found = found.unwrap_or_else(|| panic!("{name} is not in the summary"));
-    let [_, _, events, missed, spurious, .., fail] = &found[..] else { panic!("{found:?}") };
-    let checked = events.split('/').nth(1).expect("found/checked/all");
-    format!("| {engine} | {checked} | {missed} | {spurious} | {fail} | {cause} |\n")
+    let [_, _, judged, missed, spurious, ..] = &found[..] else { panic!("{found:?}") };
+    let failing =
+        summary.split_once(&format!("\n  {name}: ")).and_then(|it| it.1.split(' ').next());
+    let fail = failing.unwrap_or("0");
+    format!("| {engine} | {judged} | {missed} | {spurious} | {fail} | {cause} |\n")
 }
 
 /// The page with the figures of a summary in its table.
@@ -84,8 +86,8 @@ fn with_figures(page: &str, summary: &str) -> String {
 fn its_figures_are_those_of_the_results_and_its_transcript_of_the_program() {
     let readme = transcripts::read(&page());
     let results = transcripts::read(&transcripts::page("RESULTS.md"));
-    let (_, summary) = results.split_once("<!-- begin: summary -->").expect("a summary");
-    let (summary, _) = summary.split_once("<!-- end: summary -->").expect("it ends");
+    let (_, summary) = results.split_once("<!-- begin: details -->").expect("a summary");
+    let (summary, _) = summary.split_once("<!-- end: details -->").expect("it ends");
     let whole = with_figures(&readme, summary);
     if is_splicing() {
         std::fs::write(page(), whole).expect("written");

@@ -3,7 +3,7 @@
 
 use crate::exact;
 use percuss_validation::case::{ClassBounds, defaults};
-use percuss_validation::engine::{Accuracy, Engine, Outcome, answer};
+use percuss_validation::engine::{Accuracy, Ended, Engine, Outcome, answer};
 use percuss_validation::integrators::all;
 use percuss_validation::power::Variant;
 use percuss_validation::score::local::{Allowance, LocalJudgement, WrongKind};
@@ -43,7 +43,7 @@ fn engine(name: &str) -> &'static dyn Engine {
 /// The answer of an engine, and what its class of methods is allowed.
 fn answered(engine: &dyn Engine, case: &PreparedCase) -> (Outcome, Allowance) {
     let declaration = engine.declaration();
-    let limits = Suite::Quick.limits(&case.case);
+    let limits = Suite::limits(&case.case);
     let right = answer(engine, &case.task, ACCURACY, &limits).expect("an answer");
     let classes = defaults().expect("the limits are read").classes;
     let class =
@@ -86,7 +86,11 @@ fn caught(variant: Variant) -> (usize, usize, Vec<WrongKind>) {
     let (mut caught, mut spoiled, mut kinds) = (0, 0, Vec::new());
     for case in cases() {
         let (right, allowance) = answered(engine, &case);
-        let Some(wrong) = variant.of(&case.task, &right, allowance.tolerance) else { continue };
+        let Some(wrong) =
+            variant.of(&case.task, (&right, case.local.judged(&right)), allowance.tolerance)
+        else {
+            continue;
+        };
         let found = judged(&case, &wrong, allowance);
         spoiled += 1;
         caught += usize::from(found.is_wrong(&allowance));
@@ -147,4 +151,32 @@ fn one_wrong_record_costs_one() {
         let first = found.first_wrong.expect("something is wrong");
         assert_eq!((first.kind, first.n), (WrongKind::Missed, all / 2 + 1));
     }
+}
+
+/// The ending of a run is judged too: that it comes, that it comes in time, and that none comes
+/// where the model has none.
+#[test]
+fn an_ending_is_held_against_the_exact_one() {
+    let engine = engine("ode_solvers-dopri5");
+    let cases = cases();
+    let named = |name: &str| cases.iter().find(|it| it.case.name == name).expect("a case");
+    let first = |case: &PreparedCase, spoil: fn(&mut Outcome)| {
+        let (mut answer, allowance) = answered(engine, case);
+        spoil(&mut answer);
+        judged(case, &answer, allowance).first_wrong
+    };
+    let backward = named("ball-backward");
+    assert_eq!(answered(engine, backward).0.ended, Ended::LeavesDomain);
+    let goes_on = first(backward, |it| {
+        (it.ended, it.ended_at) = (Ended::Horizon, 1e9);
+    });
+    let goes_on = goes_on.expect("the ending is missed");
+    let exact = goes_on.exact.map(|it| it.0);
+    assert_eq!((goes_on.kind, exact.as_deref()), (WrongKind::Missed, Some("leaves-domain")));
+    let late = first(backward, |it| it.ended_at += 1e-3).expect("the ending is late");
+    assert_eq!((late.kind, late.event.as_deref()), (WrongKind::Missed, Some("leaves-domain")));
+    let spurious = first(named("friction-two-stops"), |it| {
+        (it.ended, it.ended_at) = (Ended::LeavesDomain, 0.99 * it.ended_at);
+    });
+    assert_eq!(spurious.map(|it| it.kind), Some(WrongKind::Spurious));
 }

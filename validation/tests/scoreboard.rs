@@ -14,6 +14,7 @@ fn row(engine: &str, case: &str, trouble: &[&str], found: Option<[u64; 2]>) -> V
         "events_matched": found.map(|it| it[0]), "events_spurious": found.map(|it| it[1]),
         "rhs_evaluations": 500, "wall_ns": 90_000, "own_ns": 40_000,
         "verdict": if found.is_some() { "pass" } else { "error" },
+        "defect": {"sample": {"max": if found.is_some() { Some(0.5) } else { None }}},
     })
 }
 
@@ -43,7 +44,7 @@ fn a_default_stands_beside_its_expert() {
     let text = page::markdown(&board);
     for line in [
         "2 cases at 1e-6; percuss 0.1.0 at no commit, on a processor.\n",
-        "| lib-bdf 1.0 | Lib | C 17 | 95 | 25 | 0 | 2 | 50 | \u{2013} | 4.0 | 5.0 |\n",
+        "| lib-bdf 1.0 | Lib | C 17 | 100 | 50! | 95 | 25 | 0 | 2 | 50 | \u{2013} | 4.0 | 5.0 |\n",
         "| lib-bdf 1.0 | 100 / 50 | 100 / 50 | 90 / 0 |\n",
     ] {
         assert!(text.contains(line), "{line} is not in {text}");
@@ -51,6 +52,20 @@ fn a_default_stands_beside_its_expert() {
     let html = page::html(&board).expect("a page");
     assert!(html.contains("--share: 90%\">90<") && html.contains("--share: 0%\">0<"), "{html}");
     assert!(!html.contains("http://") && !html.contains("https://"), "it loads nothing");
+}
+
+/// The order is that of the ranking: no unexpected failure, then what is wholly right.
+#[test]
+fn a_line_with_an_unexpected_failure_stands_below() {
+    let mut failing = report("1.0");
+    failing["results"][3]["verdict"] = json!("fail");
+    let mut poor = report("2.0");
+    for at in [1, 3] {
+        poor["results"][at]["verdict"] = json!("known");
+    }
+    let board = board(&[failing, poor]).expect("a board");
+    let lines: Vec<_> = board.lines.iter().map(|it| it.version.as_str()).collect();
+    assert_eq!(lines, ["2.0", "1.0"]);
 }
 
 #[test]
@@ -73,7 +88,7 @@ fn portions_of_other_cases_are_one_run() {
     let text = page::markdown(&both);
     assert!(text.contains("3 cases at 1e-6;"), "{text}");
     // 22 of 30, and by default 5 of 20.
-    assert!(text.contains("| lib-bdf 1.0 | Lib | C 17 | 73 | 25 | 0 | 2 |"), "{text}");
+    assert!(text.contains("| lib-bdf 1.0 | Lib | C 17 | 100 | 50! | 73 | 25 | 0 | 2 |"), "{text}");
 }
 
 #[test]

@@ -61,10 +61,7 @@ fn name(folder: &Path) -> String {
 fn the_exact_solver_has_no_missed_and_no_spurious_events() {
     let summary = stdout(&["validate", "-e", "^exact$", "-c", "^(ball|relay|spheres|plastic|c5)-"]);
     let counts = summary.lines().find(|line| line.contains(" rows: ")).expect("the counts");
-    assert!(
-        counts.contains("rows: 27 pass, 0 not-scored, 0 undecidable, 0 known, 0 fail"),
-        "{counts}"
-    );
+    assert!(counts.contains("rows: 27 pass, 0 fail, 0 error"), "{counts}");
 }
 
 #[test]
@@ -88,7 +85,6 @@ fn a_case_of_ones_own_system_is_held_against_a_run_in_106_bits() {
     let (table, said) = (text(&output.stdout), text(&output.stderr));
     assert_eq!(output.status.code(), Some(0), "{table}{said}");
     assert!(said.contains("warming-up: without tables"), "{said}");
-    assert!(table.contains("hysteresis"), "{table}");
     assert!(table.contains("4 rows: 4 pass"), "{table}");
     let listed = stdout(&["cases", "--cases", &name(folder.path())]);
     assert!(listed.contains("\nwarming-up,hysteresis,heater,"), "{listed}");

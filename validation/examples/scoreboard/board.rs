@@ -37,6 +37,10 @@ pub(crate) struct BoardLine {
 /// What a set-up found, and at what cost.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct SetupResult {
+    /// Whether no row fails or errs unexpectedly.
+    pub(crate) clean: bool,
+    /// The rows that are wholly right, as a share of all.
+    pub(crate) right: f64,
     /// Over all rows.
     pub(crate) all: EventCounts,
     /// For each kind of trouble.
@@ -49,7 +53,7 @@ pub(crate) struct SetupResult {
     pub(crate) overhead: Option<f64>,
 }
 
-/// Events counted as the ranking counts them.
+/// Events of the truth, those that are found, and those that are not in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct EventCounts {
     pub(crate) found: u64,
@@ -70,10 +74,6 @@ impl EventCounts {
     pub(crate) fn percent(&self) -> Option<u64> {
         (self.total > 0).then(|| 100 * self.found.saturating_sub(self.spurious) / self.total)
     }
-
-    fn share(&self) -> f64 {
-        (self.found as f64 - self.spurious as f64) / self.total.max(1) as f64
-    }
 }
 
 impl Board {
@@ -92,7 +92,11 @@ impl Board {
         for (engine, rows) in setups(reports)? {
             put(&mut lines, engine, SetupResult::of(&rows, &kinds));
         }
-        lines.sort_by(|a, b| b.rank().0.cmp(&a.rank().0).then(b.rank().1.total_cmp(&a.rank().1)));
+        let by_rank = |a: &BoardLine, b: &BoardLine| {
+            let ((of_a, right_of_a), (of_b, right_of_b)) = (a.rank(), b.rank());
+            of_b.cmp(&of_a).then(right_of_b.total_cmp(&right_of_a))
+        };
+        lines.sort_by(by_rank);
 
         let made = |it: &ReportJson| {
             let commit = it.commit.as_deref().unwrap_or("no commit");
@@ -151,13 +155,12 @@ fn put(lines: &mut Vec<BoardLine>, engine: &EngineJson, score: SetupResult) {
 }
 
 impl BoardLine {
-    /// Whether it is the reference, and its better share of events.
-    fn rank(&self) -> (bool, f64) {
-        let share = |score: &Option<SetupResult>| {
-            score.as_ref().map_or(f64::NEG_INFINITY, |it| it.all.share())
-        };
-        let best = self.expert.as_ref().map_or(share(&self.default), |it| it.all.share());
-        (self.name.starts_with("exact"), best)
+    /// Whether it is the reference, whether nothing fails unexpectedly, and the share of its rows
+    /// that are wholly right: of the expert's set-up, where there is one.
+    fn rank(&self) -> ([bool; 2], f64) {
+        let own = self.expert.as_ref().or(self.default.as_ref());
+        let (clean, right) = own.map_or((false, 0.0), |it| (it.clean, it.right));
+        ([self.name.starts_with("exact"), clean], right)
     }
 }
 
@@ -179,7 +182,10 @@ impl SetupResult {
             let median = Spread::of(rows.iter().filter(whole).filter_map(of).collect()).median;
             Some(median).filter(|it| it.is_finite())
         };
+        let right = rows.iter().filter(|row| row.is_right()).count();
         Self {
+            clean: !rows.iter().any(|row| row.is_unexpected()),
+            right: right as f64 / rows.len().max(1) as f64,
             all: tally(&mut rows.iter()),
             kinds: kinds.iter().map(of_kind).collect(),
             rhs: each(|row| row.rhs_evaluations.map(|count| count as f64)),

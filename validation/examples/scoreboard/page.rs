@@ -14,6 +14,8 @@ pub(crate) fn markdown(board: &Board) -> String {
         "engine",
         "library",
         "language",
+        "right %",
+        "by default %",
         "found %",
         "by default %",
         "spurious",
@@ -59,13 +61,14 @@ fn named(line: &BoardLine) -> String {
 }
 
 /// The cells of an engine in the first table.
-fn cells(line: &BoardLine) -> [String; 11] {
+fn cells(line: &BoardLine) -> [String; 13] {
     let of = |score: &Option<SetupResult>, figure: fn(&SetupResult) -> String| {
         score.as_ref().map_or(NOTHING.to_owned(), figure)
     };
     let pair =
         |figure: fn(&SetupResult) -> String| [of(&line.expert, figure), of(&line.default, figure)];
     let best = line.expert.as_ref().or(line.default.as_ref());
+    let [right, right_default] = pair(right_percent);
     let [found, found_default] = pair(|it| percent(&it.all));
     let [spurious, spurious_default] = pair(|it| it.all.spurious.to_string());
     let [rhs, rhs_default] = pair(|it| figure(it.rhs));
@@ -73,6 +76,8 @@ fn cells(line: &BoardLine) -> [String; 11] {
         named(line),
         line.library.clone(),
         line.language.clone(),
+        right,
+        right_default,
         found,
         found_default,
         spurious,
@@ -99,6 +104,11 @@ fn percent(tally: &EventCounts) -> String {
     tally.percent().map_or(NOTHING.to_owned(), |it| it.to_string())
 }
 
+/// The share of rows that are wholly right, with a mark where one fails unexpectedly.
+fn right_percent(score: &SetupResult) -> String {
+    format!("{:.0}{}", (100.0 * score.right).floor(), if score.clean { "" } else { "!" })
+}
+
 /// Two digits that tell.
 fn figure(value: Option<f64>) -> String {
     match value {
@@ -119,7 +129,7 @@ struct ScoreboardPage<'a> {
 /// An engine in both tables.
 struct HtmlLine {
     name: String,
-    cells: [String; 11],
+    cells: [String; 13],
     kinds: Vec<[KindCell; 2]>,
 }
 

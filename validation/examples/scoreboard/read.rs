@@ -36,6 +36,36 @@ pub(crate) struct RowJson {
     pub(crate) wall_ns: Option<u64>,
     pub(crate) own_ns: Option<u64>,
     pub(crate) verdict: String,
+    #[serde(default)]
+    pub(crate) step: Option<f64>,
+    #[serde(default)]
+    pub(crate) defect: DefectJson,
+}
+
+/// The defects of a row's records.
+#[derive(Clone, Default, Deserialize)]
+pub(crate) struct DefectJson {
+    pub(crate) sample: QuantilesJson,
+}
+
+/// The quantiles of one kind of defect.
+#[derive(Clone, Default, Deserialize)]
+pub(crate) struct QuantilesJson {
+    pub(crate) max: Option<f64>,
+}
+
+impl RowJson {
+    /// Whether the row is wholly right, as the ranking has it.
+    pub(crate) fn is_right(&self) -> bool {
+        let within = ["pass", "undecidable"].contains(&self.verdict.as_str());
+        let is_exact = self.tolerance.is_none() && self.step.is_none();
+        within && (is_exact || self.defect.sample.max.is_some())
+    }
+
+    /// Whether nothing excuses that it is out of bounds, or without a result.
+    pub(crate) fn is_unexpected(&self) -> bool {
+        ["fail", "error"].contains(&self.verdict.as_str())
+    }
 }
 
 /// Reads a report.

@@ -30,8 +30,7 @@ impl Pool {
     /// A process that did something wrong is ended, and another one started for the next run.
     ///
     /// # Errors
-    /// What the program did wrong, or its own reason for making no run. A run that was late, or
-    /// given up by the program, is one beyond its limits.
+    /// What the program did wrong, that it was late, or its own reason for making no run.
     pub(crate) fn run(
         &self,
         run: &RunAsk<'_>,
@@ -39,10 +38,7 @@ impl Pool {
     ) -> Result<(RunReply, Duration), Failure> {
         let mut process = self.process().map_err(Failure::new)?;
         let began = Instant::now();
-        let answered = process.run(run, wait).map_err(|why| {
-            let is_late = began.elapsed() >= wait;
-            if is_late { Failure::beyond_limits(why) } else { Failure::new(why) }
-        })?;
+        let answered = process.run(run, wait).map_err(Failure::new)?;
         let took = began.elapsed();
         process.still_ready(wait).map_err(Failure::new)?;
         let answered = match answered {
@@ -51,7 +47,7 @@ impl Pool {
                 Err(Failure::new("failed without a reason"))
             }
             ReplyContent::Failure(why) => Err(Failure::new(why)),
-            ReplyContent::GaveUp(why) => Err(Failure::beyond_limits(format!("gave up: {why}"))),
+            ReplyContent::GaveUp(why) => Err(Failure::new(format!("gave up: {why}"))),
             _ => {
                 return Err(Failure::new("answered something else where a run was asked for"));
             }

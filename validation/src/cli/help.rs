@@ -21,6 +21,8 @@ Examples:
       chosen engines on one case, row by row
   percuss validate -e '^exact$' -e dopri5 -c '^small-b$' --out report
       with a report, and close-ups of the first wrong events
+  percuss validate --details
+      with what the first screen leaves out
   percuss validate --power
       with engines that are wrong on purpose, which must fail
 
@@ -41,10 +43,13 @@ Words:
                0.05 forcing periods
   missed       a checked event that the solver does not have
   spurious     an event of the solver that the truth does not have
-  rank         the order of found less spurious events over all events
-               of all cases and settings; what was not run or not
-               scored counts as not found, and right-hand sides per
-               event decide between equals
+  right        a case at a setting that passes or is undecidable, with
+               its sampled states judged; what was not run is not right
+  rank         one more than the number of engines that are better: by
+               no unexpected failure (!), then by the cases right, as a
+               bootstrap over the cases tells at 95 %
+  rhs          right-hand sides, with Jacobians as their columns and
+               linear solves, over the cases that all engines ran
   known        verdict of a row that fails as shortcomings.toml
                expects, with the reason there
   undecidable  verdict of a row at a graze that the method's own error
@@ -69,8 +74,8 @@ Words:
                error of one tolerance has grown to 1e-3
   missed       a checked event that the solver does not have
   spurious     an event of the solver that the truth does not have
-  unavailable  verdict of a case that was not answered; its events
-               count as not found";
+  unavailable  verdict of a case that was not answered, which is not
+               right";
 
 pub(super) const EXPORT: &str = "\
 Examples:

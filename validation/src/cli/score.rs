@@ -139,7 +139,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     evidence.replayed.clone_from(&cases.replayed);
     evidence.folders = [arguments.flags(), judged.folders()].concat();
     if judged.out.is_some() {
-        evidence.events = pool.install(|| event_pictures(all, &rows, SUITE));
+        evidence.events = pool.install(|| event_pictures(all, &rows));
     }
     let report = Report::new(SUITE, &[&arguments.engine("", stepping)], &rows);
     let asked = |it: &RowPlace<'_>| {

@@ -100,7 +100,7 @@ fn evidence(
     let embedded = judged.chosen.cases.is_none();
     let evidence = ReportEvidence::gather(&cases.all, rows, findings, embedded);
     let events = match judged.out {
-        Some(_) => event_pictures(&cases.all, rows, arguments.suite),
+        Some(_) => event_pictures(&cases.all, rows),
         None => evidence.events,
     };
     let (folders, replayed) = (judged.folders(), cases.replayed.clone());

@@ -1,5 +1,6 @@
 //! Earlier reports, to be no worse than the best of them.
 
+use super::row::SCHEMA;
 use super::{Report, ReportRow};
 use crate::number::brief;
 use serde::Deserialize;
@@ -7,8 +8,13 @@ use serde::Deserialize;
 /// An earlier `report.json`, as far as it is compared.
 #[derive(Debug, Deserialize)]
 pub struct Baseline {
-    schema: u32,
     results: Vec<Earlier>,
+}
+
+/// The number of a report's format, whatever else is in it.
+#[derive(Deserialize)]
+struct Schema {
+    schema: u32,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -20,6 +26,7 @@ struct Earlier {
     verdict: String,
     events_missed: Option<usize>,
     events_spurious: Option<usize>,
+    events_wrong_mode: Option<usize>,
     event_time_error: Largest,
     state_error: Largest,
     drift_error: Option<f64>,
@@ -72,12 +79,14 @@ impl Baseline {
     /// # Errors
     /// What is wrong with the text, in one line.
     pub fn read(text: &str) -> Result<Self, String> {
-        let baseline: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        if baseline.schema == 1 {
-            Ok(baseline)
-        } else {
-            Err(format!("schema {} is not accepted: 1", baseline.schema))
+        let Schema { schema } = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        if schema != SCHEMA {
+            return Err(format!(
+                "schema {schema} is not accepted: {SCHEMA}; events are judged otherwise since, so \
+                 make the baseline anew with --out of this version"
+            ));
         }
+        serde_json::from_str(text).map_err(|error| error.to_string())
     }
 
     /// The best of several reports, figure by figure: what has crept from one to the next, each
@@ -106,8 +115,7 @@ impl Baseline {
             match report.results.iter().find(|row| earlier.is(row)) {
                 Some(row) => {
                     compared.common += 1;
-                    let lines = earlier.against(row).into_iter();
-                    compared.worse.extend(lines.map(|it| format!("{who}: {it}")));
+                    compared.worse.extend(earlier.against(row).map(|it| format!("{who}: {it}")));
                     compared.dearer.extend(earlier.dearer(row).map(|it| format!("{who} {it}")));
                 }
                 None if asked(&earlier.place()) => compared.gone.push(who),
@@ -145,6 +153,7 @@ impl Earlier {
         };
         count(&mut self.events_missed, other.events_missed);
         count(&mut self.events_spurious, other.events_spurious);
+        count(&mut self.events_wrong_mode, other.events_wrong_mode);
         self.rhs_evaluations = self.rhs_evaluations.into_iter().chain(other.rhs_evaluations).min();
         let error = |own: &mut Option<f64>, other: Option<f64>| {
             *own = own.iter().copied().chain(other).reduce(f64::min);
@@ -167,7 +176,8 @@ impl Earlier {
             && self.step == row.step
     }
 
-    fn against(&self, row: &ReportRow) -> Vec<String> {
+    /// What is worse in a row, each with the first wrong event of the row.
+    fn against(&self, row: &ReportRow) -> impl Iterator<Item = String> {
         let mut worse = Vec::new();
         let now = row.verdict.as_str();
         let lost = self.verdict == "pass" && now != "pass";
@@ -176,9 +186,11 @@ impl Earlier {
         if lost || newly {
             worse.push(format!("{now}, was {}", self.verdict));
         }
+        let records = &row.records;
         let counts = [
-            ("missed", row.events_missed, self.events_missed),
-            ("spurious", row.events_spurious, self.events_spurious),
+            ("missed", records.events_missed, self.events_missed),
+            ("spurious", records.events_spurious, self.events_spurious),
+            ("in a wrong mode", records.events_wrong_mode, self.events_wrong_mode),
         ];
         for (what, now, then) in counts {
             if let (Some(now), Some(then)) = (now, then)
@@ -199,7 +211,9 @@ impl Earlier {
                 worse.push(format!("{what} {}, was {}", brief(now), brief(then)));
             }
         }
-        worse
+        let first = row.records.first_wrong.as_ref();
+        let first = first.map_or_else(String::new, |it| format!("; {}", it.sentence));
+        worse.into_iter().map(move |it| format!("{it}{first}"))
     }
 }
 

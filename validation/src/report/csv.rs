@@ -1,6 +1,5 @@
 //! `errors.csv`: the rows of `report.json`, flat. What is `null` there is empty or `nan` here.
 
-use super::records::JudgedRecords;
 use super::row::{Distance, ValidHorizons};
 use super::{Exporter, Report, ReportEvidence, ReportRow};
 use crate::number::shortest;
@@ -10,7 +9,7 @@ use std::io::{self, Write};
 
 pub(super) struct Csv;
 
-const COLUMNS: [&str; 56] = [
+const COLUMNS: [&str; 55] = [
     "case",
     "trouble",
     "engine",
@@ -21,14 +20,13 @@ const COLUMNS: [&str; 56] = [
     "events_expected",
     "events_total",
     "events_matched",
+    "events_judged",
+    "events_right",
     "events_missed",
     "events_spurious",
-    "records_judged",
-    "records_right",
-    "records_missed",
-    "records_spurious",
-    "records_wrong_mode",
-    "records_undecidable",
+    "events_wrong_mode",
+    "events_undecidable",
+    "first_wrong_n",
     "first_wrong_kind",
     "first_wrong_event",
     "first_wrong_time",
@@ -98,13 +96,12 @@ fn spread(spread: &Spread) -> [String; 3] {
     [spread.median, spread.q99, spread.max].map(shortest)
 }
 
-fn fields(row: &ReportRow) -> [String; 56] {
+fn fields(row: &ReportRow) -> [String; 55] {
     let [time_median, time_q99, time_max] = spread(&row.event_time_error);
     let [state_median, state_q99, state_max] = spread(&row.state_error);
-    let records = row.records.as_ref();
-    let defect = records.map(|it| it.defect).unwrap_or_default();
-    let first = records.and_then(|it| it.first_wrong.as_ref());
-    let count = |of: fn(&JudgedRecords) -> usize| optional(records.map(of));
+    let records = &row.records;
+    let defect = records.defect;
+    let first = records.first_wrong.as_ref();
     let restart = row.restart.map(|it| spread(&it.error)).unwrap_or_default();
     let [restart_median, restart_q99, restart_max] = restart;
     let horizon = |figure: fn(&ValidHorizons) -> f64| {
@@ -121,14 +118,13 @@ fn fields(row: &ReportRow) -> [String; 56] {
         optional(row.events_expected),
         row.events_total.to_string(),
         optional(row.events_matched),
-        optional(row.events_missed),
-        optional(row.events_spurious),
-        count(|it| it.events_judged),
-        count(|it| it.events_right),
-        count(|it| it.events_missed),
-        count(|it| it.events_spurious),
-        count(|it| it.events_wrong_mode),
-        count(|it| it.events_undecidable),
+        optional(records.events_judged),
+        optional(records.events_right),
+        optional(records.events_missed),
+        optional(records.events_spurious),
+        optional(records.events_wrong_mode),
+        optional(records.events_undecidable),
+        optional(first.map(|it| it.n)),
         first.map(|it| it.kind.as_str().to_owned()).unwrap_or_default(),
         first.and_then(|it| it.event.clone().or(it.exact_event.clone())).unwrap_or_default(),
         optional(first.and_then(|it| it.time.or(it.exact_time)).map(shortest)),
@@ -137,7 +133,7 @@ fn fields(row: &ReportRow) -> [String; 56] {
         optional(defect.time.signed_median.map(shortest)),
         optional(defect.state.max.map(shortest)),
         optional(defect.sample.max.map(shortest)),
-        optional(records.and_then(|it| it.inconsistency_max).map(shortest)),
+        optional(records.inconsistency_max.map(shortest)),
         optional(row.phase_word_ok),
         time_median,
         time_q99,

@@ -103,7 +103,7 @@ fn of_rows(report: &Report, evidence: &ReportEvidence) -> Vec<GrazingEntry> {
         evidence.cases.iter().filter_map(|note| Some((note.name.as_str(), note.margin?))).collect();
     let entry = |row: &super::ReportRow| {
         let margin = *margins.get(row.case.as_str())?;
-        let seen = match (row.verdict, row.events_missed, row.events_spurious) {
+        let seen = match (row.verdict, row.records.events_missed, row.records.events_spurious) {
             (Verdict::NotScored, ..) => Seen::Nothing,
             (Verdict::Undecidable, ..) => Seen::Undecidable,
             (_, Some(missed), Some(spurious)) => seen(missed, spurious),

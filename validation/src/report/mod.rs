@@ -18,14 +18,16 @@ mod notes;
 mod orders;
 mod pictures;
 mod ranking;
-mod ranking_formats;
 mod records;
 mod row;
 mod screen;
 mod setting;
 mod summary;
+#[cfg(test)]
+pub(crate) mod synthetic;
 mod table;
 mod trouble;
+mod unanswered;
 mod work_precision;
 
 pub use annotations::{annotations, under_the_service};
@@ -37,12 +39,14 @@ pub use evidence::{
 };
 pub use orders::{Order, orders};
 pub use pictures::{PictureFile, pictures};
-pub use ranking::{COMPARED_AT, Ranked, Units};
-pub use ranking_formats::{RankingFormat, ranking_text};
+pub use ranking::{
+    Cost, DefectUnits, Ranked, RankingFormat, RightRows, SettingCounts, ranking, ranking_text,
+};
 pub use records::{DefectQuantiles, FirstWrongRecord, JudgedRecords, Quantiles, TimeQuantiles};
 pub use row::{EngineEntry, Report, ReportRow, Summary, ValidHorizons};
-pub use screen::screen;
+pub use screen::{MOST_LINES, ScreenParts, screen};
 pub use table::WIDTH;
+pub use unanswered::Unanswered;
 
 use std::io::{self, Write};
 

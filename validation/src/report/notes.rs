@@ -1,8 +1,8 @@
-//! What `validate` prints above its ranking: rows that were not run, engines that are not
+//! What `validate --details` prints: rows that were not run, engines that are not
 //! installed, orders, valid horizons, and the power of the gates.
 
 use super::table::wrapped;
-use super::{Order, Report, ReportEvidence, ReportRow, orders};
+use super::{FaultRow, Order, Report, ReportEvidence, ReportRow, orders};
 use crate::engine::REFERENCE;
 use crate::integration::ELSEWHERE;
 use crate::score::Verdict;
@@ -15,7 +15,7 @@ pub(super) fn notes(report: &Report, evidence: &ReportEvidence) -> String {
         unavailable(&report.results),
         short_orders(report),
         valid_horizons(&report.results),
-        power(evidence),
+        not_caught(evidence),
     ];
     let notes = parts.concat();
     if notes.is_empty() { notes } else { notes + "\n" }
@@ -92,13 +92,22 @@ fn valid_horizons(rows: &[ReportRow]) -> String {
     wrapped(&format!("valid horizon: {}", horizons.join("; ")))
 }
 
-fn power(evidence: &ReportEvidence) -> String {
-    let Some(_) = evidence.faults.first() else { return String::new() };
-    let caught = |it: &&super::FaultRow| it.gates.iter().any(|gate| gate.1);
-    let missed = evidence.faults.iter().filter(|it| !caught(it));
-    let missed: String = missed
+/// How many of the engines that are wrong on purpose are caught; nothing where none was run.
+pub(super) fn power(evidence: &ReportEvidence) -> Option<String> {
+    let all = evidence.faults.len();
+    let count = evidence.faults.iter().filter(|it| is_caught(it)).count();
+    let said = format!("power: {count} of {all} engines that are wrong on purpose are caught");
+    (all > 0).then_some(said)
+}
+
+/// The engines that are wrong on purpose and that no gate catches.
+fn not_caught(evidence: &ReportEvidence) -> String {
+    let missed = evidence.faults.iter().filter(|it| !is_caught(it));
+    missed
         .map(|it| wrapped(&format!("power: no gate catches {}: {}", it.engine, it.fault)))
-        .collect();
-    let (count, all) = (evidence.faults.iter().filter(caught).count(), evidence.faults.len());
-    format!("power: {count} of {all} engines that are wrong on purpose are caught\n{missed}")
+        .collect()
+}
+
+fn is_caught(it: &FaultRow) -> bool {
+    it.gates.iter().any(|gate| gate.1)
 }

@@ -1,23 +1,24 @@
 //! The keys of `report.json` that say what became of an engine's records, each judged from the one
 //! before it.
 
-use crate::score::Spread;
 use crate::score::local::{Defects, FirstWrong, LocalJudgement, WrongKind};
+use crate::score::{Measures, Spread};
 use serde::Serialize;
 
-/// The judgement of a row's records.
+/// The judgement of a row's records; of an exact engine, which is judged by the tables alone, the
+/// events that are those of the table, missed and spurious.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[allow(
     missing_docs,
     reason = "the keys are those of the command line's contract, explained in the schema"
 )]
 pub struct JudgedRecords {
-    pub events_judged: usize,
-    pub events_right: usize,
-    pub events_missed: usize,
-    pub events_spurious: usize,
-    pub events_wrong_mode: usize,
-    pub events_undecidable: usize,
+    pub events_judged: Option<usize>,
+    pub events_right: Option<usize>,
+    pub events_missed: Option<usize>,
+    pub events_spurious: Option<usize>,
+    pub events_wrong_mode: Option<usize>,
+    pub events_undecidable: Option<usize>,
     pub first_wrong: Option<FirstWrongRecord>,
     pub defect: DefectQuantiles,
     pub inconsistency_max: Option<f64>,
@@ -37,6 +38,9 @@ pub struct FirstWrongRecord {
     pub exact_mode: Option<String>,
     pub exact_time: Option<f64>,
     pub defect: Option<f64>,
+    /// The same in a sentence, for people.
+    #[serde(skip)]
+    pub sentence: String,
 }
 
 /// Quantiles of the defects, in units of the local judgement.
@@ -68,15 +72,32 @@ pub struct TimeQuantiles {
 }
 
 impl JudgedRecords {
-    pub(super) fn of(local: &LocalJudgement) -> Self {
+    pub(super) fn of(measures: &Measures) -> Self {
+        measures.local.as_ref().map_or_else(|| Self::by_table(measures), Self::by_continuations)
+    }
+
+    fn by_table(measures: &Measures) -> Self {
+        let (missed, spurious) = (measures.mismatch.missed.len(), measures.mismatch.spurious.len());
+        Self {
+            events_judged: Some(measures.matched + missed + spurious),
+            events_right: Some(measures.matched),
+            events_missed: Some(missed),
+            events_spurious: Some(spurious),
+            events_wrong_mode: Some(0),
+            events_undecidable: Some(0),
+            ..Self::default()
+        }
+    }
+
+    fn by_continuations(local: &LocalJudgement) -> Self {
         let defects = &local.defects;
         Self {
-            events_judged: local.judged(),
-            events_right: local.right,
-            events_missed: local.missed,
-            events_spurious: local.spurious,
-            events_wrong_mode: local.wrong_mode,
-            events_undecidable: local.undecidable,
+            events_judged: Some(local.judged()),
+            events_right: Some(local.right),
+            events_missed: Some(local.missed),
+            events_spurious: Some(local.spurious),
+            events_wrong_mode: Some(local.wrong_mode),
+            events_undecidable: Some(local.undecidable),
             first_wrong: local.first_wrong.as_ref().map(FirstWrongRecord::of),
             defect: DefectQuantiles {
                 location: Quantiles::of(&defects.location),
@@ -106,6 +127,7 @@ impl FirstWrongRecord {
             exact_mode: exact.as_ref().map(|(_, mode, _)| mode.clone()),
             exact_time: exact.map(|(.., time)| time),
             defect: finite(first.defect),
+            sentence: first.sentence(),
         }
     }
 }

@@ -6,10 +6,13 @@ use crate::engine::{Declaration, Engine, Work};
 use crate::provenance::{self, Build};
 use crate::score::attractor::Comparison;
 use crate::score::{Checked, Horizons, Restart, Spread, Verdict, order};
-use crate::suite::{Scored, Status, Suite};
+use crate::suite::{CaseTraits, Scored, Status, Suite};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Duration;
+
+/// The number of the format: 2 since each record is judged from the one before it.
+pub(super) const SCHEMA: u32 = 2;
 
 /// A whole report.
 #[derive(Clone, Debug, Serialize)]
@@ -23,7 +26,7 @@ pub struct Report {
     pub engines: Vec<EngineEntry>,
     /// A row for each case, engine and tolerance.
     pub results: Vec<ReportRow>,
-    /// The engines by how many of all events they find; exact ones come first, as the reference.
+    /// The engines, the best first; exact ones stand above, as the reference.
     pub ranking: Vec<Ranked>,
     /// The number of rows per verdict.
     pub summary: Summary,
@@ -79,6 +82,9 @@ pub struct ReportRow {
     pub case: String,
     /// The kinds of trouble that the case makes; none on the oscillator's.
     pub trouble: Vec<String>,
+    /// What of the case decides where the row is counted in the ranking.
+    #[serde(skip)]
+    pub traits: CaseTraits,
     pub engine: &'static str,
     pub tolerance: Option<f64>,
     pub step: Option<f64>,
@@ -88,10 +94,8 @@ pub struct ReportRow {
     /// The truth's events on the case's horizon, scored or not.
     pub events_total: usize,
     pub events_matched: Option<usize>,
-    pub events_missed: Option<usize>,
-    pub events_spurious: Option<usize>,
-    /// Each record beside the exact continuation of the one before it; exact engines have none.
-    pub records: Option<JudgedRecords>,
+    #[serde(flatten)]
+    pub records: JudgedRecords,
     pub phase_word_ok: Option<bool>,
     pub event_time_error: Spread,
     pub state_error: Spread,
@@ -159,11 +163,11 @@ impl Report {
         let mut results: Vec<ReportRow> = rows.iter().map(ReportRow::of).collect();
         fill_orders(&mut results);
         Self {
-            build: provenance::this(),
+            build: Build { schema: SCHEMA, ..provenance::this() },
             suite,
             engines: engines.iter().map(|engine| EngineEntry::of(*engine)).collect(),
             summary: Summary::of(&results),
-            ranking: ranking(rows, &results),
+            ranking: ranking(&results),
             results,
         }
     }
@@ -249,13 +253,12 @@ impl ReportRow {
     /// Whether its errors are over all events of the truth, and it has no others.
     #[must_use]
     pub fn is_of_all_events(&self) -> bool {
-        self.events_matched == Some(self.events_total) && self.events_spurious == Some(0)
+        self.events_matched == Some(self.events_total) && self.records.events_spurious == Some(0)
     }
 
     fn of(scored: &Scored) -> Self {
         let empty = Self::empty(scored);
         let Status::Ok(measures, outcome) = &scored.status else { return empty };
-        let local = measures.local.as_ref();
         let whole_ns = |time: Duration| u64::try_from(time.as_nanos()).ok();
         // Where nothing at all was counted the work is not known.
         let work = Some(outcome.work).filter(|work| *work != Work::default());
@@ -263,9 +266,7 @@ impl ReportRow {
             horizon_periods: measures.horizon_periods,
             events_expected: Some(measures.expected),
             events_matched: Some(measures.matched),
-            events_missed: Some(measures.mismatch.missed.len()),
-            events_spurious: Some(measures.mismatch.spurious.len()),
-            records: local.map(JudgedRecords::of),
+            records: JudgedRecords::of(measures),
             phase_word_ok: Some(measures.phase_sequence_ok),
             event_time_error: measures.event_time,
             state_error: measures.state,
@@ -294,6 +295,7 @@ impl ReportRow {
         Self {
             case: scored.case.clone(),
             trouble: scored.trouble.clone(),
+            traits: scored.traits,
             engine: scored.engine,
             tolerance: scored.accuracy.tolerance(),
             step: scored.accuracy.step(),
@@ -307,9 +309,7 @@ impl ReportRow {
             events_expected: None,
             events_total: scored.events,
             events_matched: None,
-            events_missed: None,
-            events_spurious: None,
-            records: None,
+            records: JudgedRecords::default(),
             phase_word_ok: None,
             event_time_error: Spread::NONE,
             state_error: Spread::NONE,

@@ -77,7 +77,7 @@ impl SettingSummary {
             expected: sum(|row| row.events_expected),
             total: rows.iter().map(|row| row.events_total).sum(),
             matched: sum(|row| row.events_matched),
-            spurious: sum(|row| row.events_spurious),
+            spurious: sum(|row| row.records.events_spurious),
             time_error: error(|row| row.event_time_error.max, has_other_events),
             state_error: error(|row| row.state_error.max, |_| false),
             rhs: work(|row| row.rhs_evaluations),
@@ -104,7 +104,8 @@ fn are_most(ran: usize, rows: usize) -> bool {
 /// Whether a run has other events than the truth where only one answer is right.
 fn has_other_events(row: &ReportRow) -> bool {
     let some = |count: Option<usize>| count.is_some_and(|it| it > 0);
-    row.verdict != Verdict::Undecidable && (some(row.events_missed) || some(row.events_spurious))
+    row.verdict != Verdict::Undecidable
+        && (some(row.records.events_missed) || some(row.records.events_spurious))
 }
 
 fn is_comparable(rows: &[&ReportRow], ran: usize) -> bool {
@@ -118,7 +119,7 @@ fn is_comparable(rows: &[&ReportRow], ran: usize) -> bool {
 fn over(rows: &[&ReportRow], ran: usize) -> String {
     let [row] = rows else { return format!("{ran} of {} rows", rows.len()) };
     let found = row.events_matched.unwrap_or_default();
-    let spurious = match row.events_spurious {
+    let spurious = match row.records.events_spurious {
         None | Some(0) => String::new(),
         Some(count) => format!(", {count} spurious"),
     };

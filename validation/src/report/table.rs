@@ -67,7 +67,7 @@ fn cells(row: &ReportRow) -> [String; 8] {
         found.map_or("-".to_owned(), |(found, checked)| {
             format!("{found}/{checked}/{}", row.events_total)
         }),
-        count(row.events_spurious),
+        count(row.records.events_spurious),
         figure(row.event_time_error.max),
         figure(row.state_error.max),
         row.rhs_evaluations.map_or("-".to_owned(), |count| count.to_string()),
@@ -76,7 +76,7 @@ fn cells(row: &ReportRow) -> [String; 8] {
 }
 
 /// The tolerance or step, a dash where there is none.
-fn setting(row: &ReportRow) -> String {
+pub(super) fn setting(row: &ReportRow) -> String {
     let setting = row.setting();
     if setting.is_empty() { "-".to_owned() } else { setting }
 }
@@ -93,6 +93,16 @@ pub(super) fn wrapped(text: &str) -> String {
         .subsequent_indent("    ")
         .word_splitter(textwrap::WordSplitter::NoHyphenation);
     textwrap::fill(text, options) + "\n"
+}
+
+/// A text in one line of at most [`WIDTH`] columns, cut where it is longer.
+pub(super) fn one_line(text: &str) -> String {
+    let text = text.replace(char::is_control, " ");
+    if text.chars().count() <= WIDTH {
+        return text;
+    }
+    let kept: String = text.chars().take(WIDTH - 1).collect();
+    format!("{}\u{2026}", kept.trim_end())
 }
 
 /// A table's lines without the blanks at their ends.

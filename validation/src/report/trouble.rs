@@ -6,11 +6,11 @@ use crate::score::Verdict;
 /// An engine's events on the cases of one kind of trouble.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct TroubleCell {
-    /// The truth's events that were scored.
-    pub checked: usize,
-    /// The events that were checked and that the engine has.
-    pub found: usize,
-    /// The engine's events that the truth does not have.
+    /// The engine's own events and those that it missed.
+    pub judged: usize,
+    /// The events that are those of the exact continuation.
+    pub right: usize,
+    /// The engine's events that the exact continuation does not have.
     pub spurious: usize,
     /// Rows without a result, and rows that fail, expected failures included.
     pub failing: usize,
@@ -18,28 +18,27 @@ pub(super) struct TroubleCell {
 
 impl TroubleCell {
     fn add(&mut self, row: &ReportRow) {
-        let judged = !matches!(row.verdict, Verdict::NotScored | Verdict::NotRun);
-        let count = |count: Option<usize>| count.filter(|_| judged).unwrap_or_default();
-        self.checked += count(row.events_expected);
-        self.found += count(row.events_matched);
-        self.spurious += row.events_spurious.unwrap_or_default();
+        let records = &row.records;
+        self.judged += records.events_judged.unwrap_or_default();
+        self.right += records.events_right.unwrap_or_default();
+        self.spurious += records.events_spurious.unwrap_or_default();
         let fails = matches!(row.verdict, Verdict::Error | Verdict::Fail | Verdict::Known);
         self.failing += usize::from(fails);
     }
 
-    /// Events found less spurious ones in per cent of those that were scored, rounded down: 100 is
-    /// all of them and none besides. Nothing where nothing was scored.
+    /// Right events less spurious ones in per cent of those that were judged, rounded down: 100 is
+    /// all of them and none besides. Nothing where nothing was judged.
     pub fn percent(&self) -> Option<usize> {
-        let right = self.found.saturating_sub(self.spurious);
-        (self.checked > 0).then(|| 100 * right / self.checked)
+        let right = self.right.saturating_sub(self.spurious);
+        (self.judged > 0).then(|| 100 * right / self.judged)
     }
 }
 
 /// Kinds of trouble by engines, in the order of the ranking.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Trouble {
-    /// The engines with their ranks.
-    pub engines: Vec<(&'static str, usize)>,
+    /// The engines with their places, which number the columns: ranks may be shared.
+    pub engines: Vec<(&'static str, String)>,
     /// A kind of trouble, the number of its cases, and one cell per engine.
     pub lines: Vec<(String, usize, Vec<TroubleCell>)>,
 }
@@ -50,7 +49,8 @@ impl Trouble {
         let mut kinds: Vec<&String> = evidence.cases.iter().flat_map(|it| &it.trouble).collect();
         kinds.sort();
         kinds.dedup();
-        let engines = report.ranking.iter().map(|it: &Ranked| (it.engine, it.rank)).collect();
+        let engines =
+            report.ranking.iter().zip(1..).map(|(it, place)| (it.engine, place.to_string()));
         let line = |kind: &String| {
             let cases = evidence.cases.iter().filter(|case| case.trouble.contains(kind));
             let cases: Vec<&str> = cases.map(|case| case.name.as_str()).collect();
@@ -62,6 +62,6 @@ impl Trouble {
             };
             (kind.clone(), cases.len(), report.ranking.iter().map(cell).collect())
         };
-        Self { engines, lines: kinds.into_iter().map(line).collect() }
+        Self { engines: engines.collect(), lines: kinds.into_iter().map(line).collect() }
     }
 }

@@ -3,12 +3,13 @@
 
 use percuss_validation::provenance::Build;
 use percuss_validation::report::{
-    CaseNote, EngineEntry, ErrorGrowth, EventMark, EventPicture, FaultRow, GrazeRow, JudgedRecords,
-    MismatchKind, Ranked, Report, ReportEvidence, ReportRow, RestartHistogram, SectionPair,
-    Summary, Units, ValidHorizons, View, ViewTrajectory,
+    CaseNote, Cost, DefectQuantiles, DefectUnits, EngineEntry, ErrorGrowth, EventMark,
+    EventPicture, FaultRow, GrazeRow, JudgedRecords, MismatchKind, Quantiles, Ranked, Report,
+    ReportEvidence, ReportRow, RestartHistogram, RightRows, SectionPair, SettingCounts, Summary,
+    ValidHorizons, View, ViewTrajectory,
 };
 use percuss_validation::score::{Spread, Verdict};
-use percuss_validation::suite::Suite;
+use percuss_validation::suite::{CaseTraits, Suite};
 
 pub const NASTY: &str = "</script><script>alert(1)</script> & \"50 %\", a::b\r\n<!-- \u{1}";
 
@@ -41,6 +42,21 @@ fn margins() -> impl Iterator<Item = (String, f64)> {
     misses.into_iter().chain(touches)
 }
 
+/// The records of a row, all of them right.
+fn judged() -> JudgedRecords {
+    let sample = Quantiles { median: Some(0.1), q99: Some(0.4), max: Some(0.7) };
+    JudgedRecords {
+        events_judged: Some(40),
+        events_right: Some(40),
+        events_missed: Some(0),
+        events_spurious: Some(0),
+        events_wrong_mode: Some(0),
+        events_undecidable: Some(0),
+        defect: DefectQuantiles { sample, ..DefectQuantiles::default() },
+        ..JudgedRecords::default()
+    }
+}
+
 pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize) -> ReportRow {
     let unit = tolerance.unwrap_or(1e-15);
     let order = 3.0 + (seed % 5) as f64;
@@ -50,6 +66,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
     ReportRow {
         case: case.to_owned(),
         trouble: Vec::new(),
+        traits: CaseTraits { states: 3, ..CaseTraits::default() },
         engine,
         tolerance,
         step: None,
@@ -58,13 +75,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
         events_expected: Some(40),
         events_total: 40,
         events_matched: Some(40),
-        events_missed: Some(0),
-        events_spurious: Some(0),
-        records: Some(JudgedRecords {
-            events_judged: 40,
-            events_right: 40,
-            ..JudgedRecords::default()
-        }),
+        records: judged(),
         phase_word_ok: Some(true),
         event_time_error: Spread { median: error / 8.0, q99: error / 2.0, max: error },
         state_error: Spread { median: error / 9.0, q99: error / 3.0, max: error / 2.0 },
@@ -109,8 +120,8 @@ fn results() -> Vec<ReportRow> {
         row.verdict = Verdict::Fail;
         row.why = NASTY.to_owned();
         row.events_matched = Some(31);
-        row.events_missed = Some(9);
-        row.events_spurious = Some(2);
+        row.records.events_missed = Some(9);
+        row.records.events_spurious = Some(2);
     });
     spoil(5, &|row| {
         row.verdict = Verdict::Error;
@@ -149,24 +160,33 @@ fn results() -> Vec<ReportRow> {
     rows
 }
 
-/// The engines in their order, the first as the reference; the last one found nothing.
+/// The engines in their order, the first as the reference; the last one is not installed.
 fn ranking() -> Vec<Ranked> {
-    let ranked = |(rank, (engine, _)): (usize, &(&'static str, &str))| {
-        let found = 2000 - 180 * rank;
-        Ranked {
-            engine,
-            rank,
-            events_found: found,
-            events_checked: 2300 - 180 * rank,
-            events_total: 2400,
-            events_missed: 300 * rank.min(1),
-            events_spurious: rank / 2,
-            fails_on: vec!["periodic-00".to_owned(); rank.min(9)],
-            event_time_error_units: Units { median: 0.1 * rank as f64, max: f64::NAN },
-            rhs_per_event: (rank < 9).then_some(1.0 + 97.4 * rank as f64),
-        }
+    ENGINES.iter().enumerate().map(|(rank, (engine, _))| ranked(rank, engine)).collect()
+}
+
+fn ranked(rank: usize, engine: &'static str) -> Ranked {
+    let counts = |count: usize| match rank {
+        0 => SettingCounts(vec![("exact".to_owned(), count)]),
+        _ => SettingCounts(TOLERANCES.map(|it| (format!("{it:e}"), count)).to_vec()),
     };
-    ENGINES.iter().enumerate().map(ranked).collect()
+    let figure = |per_rank: f64| (rank < 9).then_some(per_rank * rank as f64);
+    Ranked {
+        engine,
+        rank: (rank + 1 < ENGINES.len()).then_some(rank),
+        clean: rank != 3,
+        cases_right: counts(26 - 2 * rank),
+        cases_total: counts(26),
+        stiff: RightRows { cases_right: 9 - rank.min(9), cases_total: 9 },
+        events_judged: 2300,
+        events_right: 2300 - 20 * rank,
+        events_missed: 15 * rank,
+        events_spurious: 4 * rank,
+        events_wrong_mode: rank,
+        fails_on: vec!["periodic-00".to_owned(); rank.min(9)],
+        defect_units: DefectUnits { median: figure(0.1), q99: None },
+        cost: Cost { area: figure(0.1), within_twice: figure(0.1), rhs_per_event: figure(97.4) },
+    }
 }
 
 pub fn report() -> Report {

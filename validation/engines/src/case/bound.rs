@@ -8,10 +8,27 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
-    /// Events of the truth that the engine does not have.
+    /// Events that the engine does not have: of the exact continuations of its records, or of the
+    /// truth for an exact engine.
     EventsMissed,
-    /// Events of the engine that the truth does not have.
+    /// Events of the engine that the exact continuations, or the truth, do not have.
     EventsSpurious,
+    /// Events that are followed by another mode than in the exact continuations.
+    EventsWrongMode,
+    /// Largest |guard| at a state before a reset, in tolerances of the guard's size.
+    Location,
+    /// Largest contradiction between the states before and after a reset, in tolerances.
+    Inconsistency,
+    /// Largest defect of an event's time beside the exact continuation of the record before it, in
+    /// units of the local judgement.
+    TimeDefect,
+    /// Largest defect of a state just after an event, in units of the local judgement.
+    StateDefect,
+    /// Largest defect of a state at an instant of output, in units of the local judgement.
+    SampleDefect,
+    /// Time by which states at instants of output are ahead of the exact continuations of the
+    /// records before them, in tolerances of the time scale.
+    SampleDelay,
     /// Number of differences between the engine's sequence of phases and the truth's (0 or 1).
     #[serde(rename = "phase_word")]
     PhaseSequence,
@@ -53,6 +70,13 @@ impl Quantity {
         match self {
             Self::EventsMissed => "events missed",
             Self::EventsSpurious => "spurious events",
+            Self::EventsWrongMode => "wrong modes",
+            Self::Location => "location of events",
+            Self::Inconsistency => "inconsistency",
+            Self::TimeDefect => "defect of event times",
+            Self::StateDefect => "defect of states after events",
+            Self::SampleDefect => "defect of sampled states",
+            Self::SampleDelay => "delay of sampled states",
             Self::PhaseSequence => "phase word",
             Self::EventTimeError => "event time error",
             Self::StateError => "state error",
@@ -82,7 +106,10 @@ impl Quantity {
 
     /// Whether other statistics than the largest are measured.
     const fn has_a_median(self) -> bool {
-        matches!(self, Self::EventTimeError | Self::StateError | Self::RestartError)
+        matches!(
+            self,
+            Self::EventTimeError | Self::StateError | Self::RestartError | Self::SampleDelay
+        )
     }
 
     /// Whether a bound on the quantity is a lower limit.
@@ -109,6 +136,8 @@ pub enum Statistic {
 /// The names of engines or cases that something is said of.
 #[derive(Clone, Debug)]
 pub enum NamePattern {
+    /// Every name.
+    Any,
     /// The one name. Thousands of rows say theirs, and a comparison costs less than an expression.
     Exactly(String),
     /// The names that a regular expression matches.
@@ -120,6 +149,7 @@ impl NamePattern {
     #[must_use]
     pub fn includes(&self, name: &str) -> bool {
         match self {
+            Self::Any => true,
             Self::Exactly(own) => own == name,
             Self::Matching(pattern) => pattern.is_match(name),
         }
@@ -129,6 +159,7 @@ impl NamePattern {
 impl fmt::Display for NamePattern {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Any => f.write_str(".*"),
             Self::Exactly(name) => f.write_str(name),
             Self::Matching(pattern) => f.write_str(pattern.as_str()),
         }

@@ -1,5 +1,6 @@
 //! `classes.toml`: the largest defects of right engines, by class of method.
 
+use super::bound::{Bound, NamePattern, Quantity, Statistic};
 use super::located::{FileError, FileText};
 use crate::accuracy::{Accuracy, Stepping};
 use crate::class::Class;
@@ -21,7 +22,8 @@ struct ClassTable {
     time: f64,
     state: f64,
     sample: f64,
-    sample_median: f64,
+    delay: f64,
+    constant: f64,
     why: String,
 }
 
@@ -56,8 +58,11 @@ pub struct ClassBounds {
     pub state: f64,
     /// The largest defect of a state at an instant of output.
     pub sample: f64,
-    /// The largest median of these defects in a run.
-    pub sample_median: f64,
+    /// The largest median time in a run by which these states are ahead or behind, in tolerances of
+    /// the time scale.
+    pub delay: f64,
+    /// The largest error beside the truth of the start, over unit x (1 + size) x growth.
+    pub constant: f64,
     /// The set-ups on which they were measured, and the margin.
     pub why: String,
 }
@@ -77,7 +82,8 @@ pub(super) fn read_classes(file: &str, text: &str) -> Result<Vec<ClassBounds>, F
         time: it.time,
         state: it.state,
         sample: it.sample,
-        sample_median: it.sample_median,
+        delay: it.delay,
+        constant: it.constant,
         why: it.why,
     };
     Ok(wire.class.into_iter().map(class).collect())
@@ -107,5 +113,42 @@ impl ClassBounds {
                 && (it.order[0]..=it.order[1]).contains(&order)
                 && accuracy.tolerance().unwrap_or(0.0) < it.below
         })
+    }
+
+    /// The bounds as those of any quantity are held.
+    #[must_use]
+    pub fn bounds(&self) -> Vec<Bound> {
+        let bound = |quantity, limit, why: &str| Bound {
+            engine: NamePattern::Any,
+            at: Vec::new(),
+            quantity,
+            statistic: Statistic::Max,
+            limit,
+            times_tolerance: false,
+            why: why.to_owned(),
+        };
+        let counted =
+            |quantity, why| Bound { statistic: Statistic::Value, ..bound(quantity, 0.0, why) };
+        let located = "the guard is zero at an event to one tolerance of its size";
+        let of_a_record = "the state after a reset is the reset of the state before it";
+        let of_a_run = "states between events lag as far as the times of events are off: three times the largest median of a right set-up of the class in one run";
+        let since_the_start = "three times the largest of a right set-up of the class";
+        vec![
+            counted(
+                Quantity::EventsWrongMode,
+                "the mode after an event is the one that the guard decides",
+            ),
+            bound(Quantity::Location, 1.0, located),
+            bound(Quantity::Inconsistency, 1.0, of_a_record),
+            bound(Quantity::TimeDefect, self.time, &self.why),
+            bound(Quantity::StateDefect, self.state, &self.why),
+            bound(Quantity::SampleDefect, self.sample, &self.why),
+            Bound {
+                statistic: Statistic::Median,
+                ..bound(Quantity::SampleDelay, self.delay, of_a_run)
+            },
+            bound(Quantity::EventConstant, self.constant, since_the_start),
+            bound(Quantity::StateConstant, self.constant, since_the_start),
+        ]
     }
 }

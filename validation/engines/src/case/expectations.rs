@@ -1,6 +1,5 @@
 //! The bounds and expected failures in a case file.
 
-use super::Case;
 use super::bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
 use super::classes::ClassBounds;
 use super::located::{FileError, FileText};
@@ -18,22 +17,12 @@ struct BoundsFile {
 /// The bounds and expected failures on every case, which come after the case's own.
 #[derive(Clone, Debug, Default)]
 pub struct Defaults {
-    /// Bounds on the oscillator's cases, after the case's own.
+    /// Bounds on every case, after the case's own.
     pub bounds: Vec<Bound>,
-    /// Bounds on cases of other systems, after the case's own.
-    pub of_systems: Vec<Bound>,
     /// Expected failures on many cases.
     pub shortcomings: Vec<Shortcoming>,
     /// The largest defects of right engines, by class of method.
     pub classes: Vec<ClassBounds>,
-}
-
-impl Defaults {
-    /// The bounds that come after a case's own.
-    #[must_use]
-    pub fn on(&self, case: &Case) -> &[Bound] {
-        if case.oscillator.is_some() { &self.bounds } else { &self.of_systems }
-    }
 }
 
 /// A key's value that is one number or a list of numbers.
@@ -48,9 +37,6 @@ enum Several {
 #[serde(deny_unknown_fields, expecting = "a table, [[bounds]]")]
 pub(super) struct BoundTable {
     engine: Spanned<String>,
-    /// Whether it is for cases of other systems than the oscillator alone.
-    #[serde(default)]
-    systems: bool,
     tolerance: Option<Several>,
     step: Option<Several>,
     quantity: Quantity,
@@ -75,17 +61,12 @@ pub(super) struct ShortcomingTable {
     why: String,
 }
 
-/// Reads the bounds of every case: those that are for other systems alone come first there.
+/// Reads the bounds of every case.
 pub(super) fn read_bounds(file: &str, text: &str) -> Result<Defaults, FileError> {
     let source = FileText { file, text };
     let wire: BoundsFile = source.parse()?;
-    let (systems, all): (Vec<_>, Vec<_>) = wire.bounds.into_iter().partition(|it| it.systems);
-    let read = |tables: Vec<BoundTable>| {
-        tables.into_iter().map(|it| source.bound(it)).collect::<Result<Vec<_>, _>>()
-    };
-    let (bounds, mut of_systems) = (read(all)?, read(systems)?);
-    of_systems.extend(bounds.iter().cloned());
-    Ok(Defaults { bounds, of_systems, ..Defaults::default() })
+    let bounds = wire.bounds.into_iter().map(|it| source.bound(it));
+    Ok(Defaults { bounds: bounds.collect::<Result<_, _>>()?, ..Defaults::default() })
 }
 
 /// The tolerances and steps that a bound names.

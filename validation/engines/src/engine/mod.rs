@@ -68,6 +68,21 @@ pub enum Ended {
     Undecided,
 }
 
+impl Ended {
+    /// The ending's word in files and messages.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Horizon => "end",
+            Self::NoProgress => "no-progress",
+            Self::Accumulation => "accumulation",
+            Self::LeavesDomain => "leaves-domain",
+            Self::BeyondGuard => "beyond-guard",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
 /// The counted work of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {

@@ -81,10 +81,10 @@ impl Meter {
         let calls = self.calls.get() + 1;
         self.calls.set(calls);
         if calls > self.limits.calls {
-            stop(Failure::beyond_limits(format!("gave up after {} calls", self.limits.calls)));
+            stop(Failure::new(format!("gave up after {} calls", self.limits.calls)));
         }
         if calls.is_multiple_of(CLOCK_EVERY) && self.began.elapsed() > self.limits.wall {
-            stop(Failure::beyond_limits(format!("gave up after {} s", self.limits.wall.as_secs())));
+            stop(Failure::new(format!("gave up after {} s", self.limits.wall.as_secs())));
         }
     }
 
@@ -93,7 +93,7 @@ impl Meter {
         if self.calls.get() as f64 + calls <= self.limits.calls as f64 {
             Ok(())
         } else {
-            Err(Failure::beyond_limits(format!(
+            Err(Failure::new(format!(
                 "gave up after {} right-hand sides: {calls:.0} more would pass the limit of {}",
                 self.calls.get(),
                 self.limits.calls
@@ -194,7 +194,7 @@ mod tests {
                 meter.rhs(&[0.0]);
             }
         };
-        assert_eq!(contain(endless), Err(Failure::beyond_limits("gave up after 10 calls")));
+        assert_eq!(contain(endless), Err(Failure::new("gave up after 10 calls")));
     }
 
     #[test]

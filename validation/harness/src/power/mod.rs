@@ -5,15 +5,17 @@
 //! one. A fault that shows in one way of running a case must be caught by the cases that are run in
 //! that way, and by no other ([`examine`]).
 
+mod trials;
 mod variants;
 mod ways;
 
+pub use trials::{Tally, Trial, sets_limits, tallies, trial, trials};
 pub use variants::Variant;
 pub use ways::is_run;
 
-use crate::case::{Case, Defaults, Quantity};
+use crate::case::{Case, ClassBounds, Defaults, Quantity};
 use crate::engine::{Accuracy, Limits, REFERENCE};
-use crate::integrators::{SOUND, Way, WrongEngine, faulty, wrong};
+use crate::integrators::{self, SOUND, Way, WrongEngine, faulty, wrong};
 use crate::number::brief;
 use crate::score::{Checked, Expected, Subject, Verdict, judge};
 use crate::suite::{Extent, PreparedCase};
@@ -67,10 +69,18 @@ impl Gate {
         match quantity {
             Quantity::EventsMissed
             | Quantity::EventsSpurious
+            | Quantity::EventsWrongMode
+            | Quantity::Inconsistency
             | Quantity::PhaseSequence
             | Quantity::RunsFailed => Self::Events,
-            Quantity::EventTimeError | Quantity::EventConstant => Self::EventErrors,
-            Quantity::StateError
+            Quantity::EventTimeError
+            | Quantity::EventConstant
+            | Quantity::Location
+            | Quantity::TimeDefect
+            | Quantity::StateDefect => Self::EventErrors,
+            Quantity::SampleDefect
+            | Quantity::SampleDelay
+            | Quantity::StateError
             | Quantity::DriftError
             | Quantity::StateConstant
             | Quantity::ValidPeriods => Self::StateErrors,
@@ -192,6 +202,13 @@ impl Standard {
         })
     }
 
+    /// The class whose bounds apply; none to the exact solver.
+    fn class<'a>(&self, classes: &'a [ClassBounds]) -> Option<&'a ClassBounds> {
+        let mut all = integrators::all().iter().map(|it| it.declaration());
+        let it = all.find(|it| it.name == self.engine)?;
+        ClassBounds::of(classes, it.class_and_order(), it.stepping, self.accuracy)
+    }
+
     /// A wrong engine's name, with the tolerance where there is one.
     fn who(&self, name: &str) -> String {
         match self.accuracy.tolerance() {
@@ -259,10 +276,12 @@ fn held(
         limits.calls = MOST_CALLS;
     }
     let extent = |_| standard.extent(&case.case);
-    let measured = case.measured(wrong.engine, (accuracy, unit), &limits, extent).ok()?;
+    let mut measured = case.measured(wrong.engine, (accuracy, unit), &limits, extent).ok()?;
+    let class = standard.class(&defaults.classes);
+    let of_class = class.map(ClassBounds::bounds).unwrap_or_default();
+    measured.measures.local = class.and_then(|it| case.judge_records(&measured.outcome, it, unit));
     let subject = Subject { case: &case.case.name, engine, accuracy, unit };
-    let of_classes = defaults.on(&case.case);
-    let bounds: Vec<_> = case.case.bounds.iter().chain(of_classes).collect();
-    let expected = Expected { bounds: &bounds, of_classes, shortcomings: &[] };
+    let bounds: Vec<_> = case.case.bounds.iter().chain(&of_class).chain(&defaults.bounds).collect();
+    let expected = Expected { bounds: &bounds, of_every_case: &defaults.bounds, shortcomings: &[] };
     Some(judge(&subject, &case.as_run(&measured.measures), &expected).bounds)
 }

@@ -104,13 +104,19 @@ impl Variant {
         }
     }
 
-    /// The wrong answer; none where this mistake changes nothing by more than a tolerance.
+    /// The wrong answer; none where this mistake changes nothing by more than a tolerance in the
+    /// samples or in the first `judged` events.
     #[must_use]
-    pub fn of(self, task: &Task, right: &Outcome, tolerance: f64) -> Option<Outcome> {
+    pub fn of(
+        self,
+        task: &Task,
+        (right, judged): (&Outcome, usize),
+        tolerance: f64,
+    ) -> Option<Outcome> {
         let mut answer = right.clone();
         let spoiled = Spoiled { task, system: task.system.system(), tolerance };
         spoiled.apply(self, &mut answer);
-        spoiled.differs(right, &answer).then_some(answer)
+        spoiled.differs((right, judged), &answer).then_some(answer)
     }
 }
 
@@ -291,8 +297,8 @@ impl Spoiled<'_> {
         }
     }
 
-    /// Whether two answers differ by more than a tolerance.
-    fn differs(&self, right: &Outcome, wrong: &Outcome) -> bool {
+    /// Whether two answers differ by more than a tolerance where they are judged.
+    fn differs(&self, (right, judged): (&Outcome, usize), wrong: &Outcome) -> bool {
         let states = |a: &Values, b: &Values| {
             let pairs = a.iter().zip(b.iter()).zip(&self.system.scales);
             pairs.into_iter().any(|((a, b), scale)| {
@@ -305,8 +311,10 @@ impl Spoiled<'_> {
                 || (a.elapsed - b.elapsed).abs() > self.unit_of_time()
                 || states(&a.state, &b.state)
         };
-        right.events.len() != wrong.events.len()
-            || right.events.iter().zip(&wrong.events).any(events)
+        let is_whole = judged == right.events.len();
+        is_whole && right.events.len() != wrong.events.len()
+            || wrong.events.len() < judged
+            || right.events.iter().zip(&wrong.events).take(judged).any(events)
             || right.samples.iter().zip(&wrong.samples).any(|(a, b)| states(a, b))
             || right.ended_at != wrong.ended_at
     }

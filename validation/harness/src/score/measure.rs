@@ -7,7 +7,7 @@ use super::measures::Measures;
 use super::mismatch::{Excused, Mismatch};
 use super::occurrence::Occurrence;
 use super::probed::ProbeResults;
-use super::rule::ErrorRule;
+use super::rule::{ErrorRule, of_length};
 use super::scored_horizon::ScoredBy;
 use super::statistics::{Spread, worst};
 use crate::engine::{Outcome, Task};
@@ -35,6 +35,7 @@ struct MeasuredRun<'a> {
     /// The truth's events, and the engine's.
     events: [&'a [Occurrence]; 2],
     pairs: &'a [(usize, usize)],
+    /// What an error of one tolerance becomes along the longest segment.
     unit: f64,
 }
 
@@ -55,7 +56,7 @@ pub fn measure(by: MeasuredBy<'_>, outcome: &Outcome, scored_by: ScoredBy<'_>) -
     let matching = Matching::of(&all[..rows], &own[..found], window);
     let mismatch = Mismatch::of(&matching, (rows, expected), (found, counted));
     let pairs: Vec<_> = matching.pairs.iter().copied().filter(|(i, _)| *i < expected).collect();
-    let unit = scored_by.unit;
+    let unit = scored_by.unit * of_length(longest_segment(truth, horizon), task.system.system());
     let run = MeasuredRun { by, outcome, events: [&all, &own], pairs: &pairs, unit };
     let scored = truth.samples.iter().take_while(|it| it.elapsed.value() <= horizon).count();
     let errors = sample_errors(truth, rule, outcome);
@@ -89,6 +90,18 @@ pub fn measure(by: MeasuredBy<'_>, outcome: &Outcome, scored_by: ScoredBy<'_>) -
     }
 }
 
+/// The longest time without an event, up to a time.
+fn longest_segment(truth: &Truth, until: f64) -> f64 {
+    let events = truth.events.iter().map(|it| it.elapsed.value());
+    let mut before = 0.0;
+    let lengths = events.take_while(|it| *it < until).chain([until]).map(|it| {
+        let length = it - before;
+        before = it;
+        length
+    });
+    lengths.fold(0.0, f64::max)
+}
+
 /// The largest error of a state at each sample of the truth; NaN at one that the engine did not
 /// deliver.
 #[must_use]
@@ -110,12 +123,10 @@ impl MeasuredRun<'_> {
         })
     }
 
-    /// The error of each matched event's time in units of error x (1 + size) x growth x events so
-    /// far.
+    /// The error of each matched event's time in units of error x (1 + size) x growth.
     fn time_units(&self) -> impl Iterator<Item = f64> {
         let MeasuredBy { truth, rule, .. } = self.by;
-        let unit = |n: usize| self.unit * (n + 1) as f64;
-        self.times().map(move |(n, time, own)| rule.time_units(truth, n, (time, own)) / unit(n))
+        self.times().map(move |(n, time, own)| rule.time_units(truth, n, (time, own)) / self.unit)
     }
 
     fn event_constant(&self) -> f64 {
@@ -127,7 +138,7 @@ impl MeasuredRun<'_> {
         let placed = self.pairs.iter().filter(|(i, _)| all[*i].mode.is_some());
         let states = placed.filter_map(|(i, j)| {
             let (row, event) = (self.by.truth.events.get(*i)?, self.outcome.events.get(*j)?);
-            Some(self.by.rule.state_units(row, &event.state) / (self.unit * (i + 1) as f64))
+            Some(self.by.rule.state_units(row, &event.state) / self.unit)
         });
         worst(self.time_units().chain(states))
     }
@@ -138,14 +149,10 @@ impl MeasuredRun<'_> {
             return f64::NAN;
         }
         let MeasuredBy { truth, rule, .. } = self.by;
-        let mut events = 0;
         worst((1..scored).map(|k| {
-            let row = &truth.samples[k];
-            let passed = |it: &&TruthRow| it.elapsed.minus(row.elapsed).value() <= 0.0;
-            events += truth.events[events..].iter().take_while(passed).count();
             let state = self.outcome.samples.get(k);
-            let units = state.map_or(f64::NAN, |state| rule.state_units(row, state));
-            units / (self.unit * events.max(1) as f64)
+            let units = state.map_or(f64::NAN, |state| rule.state_units(&truth.samples[k], state));
+            units / self.unit
         }))
     }
 

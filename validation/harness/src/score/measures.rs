@@ -1,6 +1,6 @@
 //! The figures of one run, of the oscillator and of any other system.
 
-use super::local::LocalJudgement;
+use super::local::{Defects, LocalJudgement};
 use super::mismatch::Mismatch;
 use super::occurrence::Occurrence;
 use super::probed::ProbeResults;
@@ -62,9 +62,21 @@ impl Measures {
             Statistic::Q99 => spread.q99,
             Statistic::Max | Statistic::Value => spread.max,
         };
+        if let Some(figure) =
+            self.local.as_ref().and_then(|it| local_figure(it, quantity, statistic))
+        {
+            return figure;
+        }
         match quantity {
             Quantity::EventsMissed => self.mismatch.missed.len() as f64,
             Quantity::EventsSpurious => self.mismatch.spurious.len() as f64,
+            Quantity::EventsWrongMode
+            | Quantity::Location
+            | Quantity::Inconsistency
+            | Quantity::TimeDefect
+            | Quantity::StateDefect
+            | Quantity::SampleDefect
+            | Quantity::SampleDelay => f64::NAN,
             Quantity::PhaseSequence => f64::from(u8::from(!self.phase_sequence_ok)),
             Quantity::EventTimeError => of(&self.event_time),
             Quantity::StateError => of(&self.state),
@@ -90,7 +102,27 @@ impl Measures {
     /// nor where the suite did not ask for the probe that measures it.
     #[must_use]
     pub fn concerns(&self, quantity: Quantity) -> bool {
+        let measured = |of: fn(&Defects) -> &[f64]| {
+            self.local.as_ref().is_some_and(|it| !of(&it.defects).is_empty())
+        };
         match quantity {
+            Quantity::EventsWrongMode => self.local.is_some(),
+            // An exact engine is judged by the tables alone.
+            Quantity::PhaseSequence => self.local.is_none(),
+            Quantity::Location => measured(|it| &it.location),
+            Quantity::Inconsistency => measured(|it| &it.inconsistency),
+            Quantity::TimeDefect => measured(|it| &it.time),
+            Quantity::StateDefect => measured(|it| &it.state),
+            Quantity::SampleDefect => measured(|it| &it.sample),
+            Quantity::SampleDelay => measured(|it| &it.delay),
+            Quantity::EventTimeError
+            | Quantity::EventConstant
+            | Quantity::StateError
+            | Quantity::StateConstant
+                if self.local.is_some() && self.lacks(quantity) =>
+            {
+                false
+            }
             Quantity::EventTimeError | Quantity::EventConstant => self.total > 0,
             Quantity::StateError | Quantity::StateConstant => self.samples > 0,
             Quantity::ValidGain => self.probed.horizons.is_some(),
@@ -113,10 +145,37 @@ impl Measures {
         }
     }
 
-    /// Whether enough was scored for a row to pass: a twentieth of the truth's events, or the whole
-    /// horizon where it has none.
+    /// Whether enough was scored for a row to pass: a record or a sample, or of an exact engine a
+    /// twentieth of the truth's events, and the whole horizon where it has none.
     #[must_use]
     pub fn is_scored(&self) -> bool {
+        if let Some(local) = &self.local {
+            return local.judged() > 0 || !local.defects.sample.is_empty();
+        }
         if self.total == 0 { self.whole } else { 20 * self.expected >= self.total }
     }
+}
+
+/// A figure of the local judgement; none of what it does not measure.
+fn local_figure(local: &LocalJudgement, quantity: Quantity, statistic: Statistic) -> Option<f64> {
+    let of = |defects: &[f64]| {
+        let spread = Defects::spread(defects);
+        match statistic {
+            Statistic::Median => spread.median,
+            Statistic::Q99 => spread.q99,
+            Statistic::Max | Statistic::Value => spread.max,
+        }
+    };
+    Some(match quantity {
+        Quantity::EventsMissed => local.missed as f64,
+        Quantity::EventsSpurious => local.spurious as f64,
+        Quantity::EventsWrongMode => local.wrong_mode as f64,
+        Quantity::Location => of(&local.defects.location),
+        Quantity::Inconsistency => of(&local.defects.inconsistency),
+        Quantity::TimeDefect => of(&local.defects.time),
+        Quantity::StateDefect => of(&local.defects.state),
+        Quantity::SampleDefect => of(&local.defects.sample),
+        Quantity::SampleDelay => of(&local.defects.delay),
+        _ => return None,
+    })
 }

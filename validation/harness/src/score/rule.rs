@@ -108,6 +108,14 @@ impl ErrorRule {
     }
 }
 
+/// A step's error adds up over a segment, which is no matter up to as many time scales.
+const SHORT: f64 = 10.0;
+
+/// The factor of long segments, along which the errors of many steps add up.
+pub(super) fn of_length(length: f64, system: &System) -> f64 {
+    (length / (SHORT * system.time_scale)).max(1.0)
+}
+
 /// The distance of a value from the truth.
 pub(crate) fn off(truth: TwoWord, value: f64) -> f64 {
     truth.minus(TwoWord::new(value)).value().abs()

@@ -4,6 +4,7 @@
 //! A row has one class, the first that applies of: unavailable, not-run, error, fail, known,
 //! undecidable, not-scored, pass.
 
+use super::local::FirstWrong;
 use super::measures::Measures;
 use super::mismatch::Excused;
 use super::scored::{Checked, ScoredRun, Verdict};
@@ -76,9 +77,9 @@ pub struct Subject<'a> {
 pub struct Expected<'a> {
     /// Bounds in order: the first for a quantity and statistic counts.
     pub bounds: &'a [&'a Bound],
-    /// Bounds of classes of methods alone, whose constants decide which grazes are undecidable:
-    /// what a case allows besides excuses no event.
-    pub of_classes: &'a [Bound],
+    /// Bounds on every case, whose constant decides which grazes leave an exact engine either
+    /// answer: what a case allows besides excuses no event.
+    pub of_every_case: &'a [Bound],
     /// The expected failures of engines.
     pub shortcomings: &'a [&'a Shortcoming],
 }
@@ -86,7 +87,10 @@ pub struct Expected<'a> {
 /// Judges a run.
 #[must_use]
 pub fn judge(subject: &Subject<'_>, run: &ScoredRun<'_>, expected: &Expected<'_>) -> RowJudgement {
-    let excused = excused(subject, run, expected.of_classes);
+    // The local judgement leaves grazes open by itself.
+    let is_local = run.measures.local.is_some();
+    let excused =
+        if is_local { Excused::default() } else { excused(subject, run, expected.of_every_case) };
     let mut checked = check(subject, run, &excused, expected.bounds);
     // A probe that the suite does not ask for can show no shortcoming.
     let of = |it: &&&Shortcoming| {
@@ -124,11 +128,17 @@ impl Reasons {
     ) -> (Verdict, String) {
         let unmeasured = checked.iter().find(|it| it.verdict == Verdict::NotScored);
         if !self.failed.is_empty() {
-            (Verdict::Fail, self.failed.join("; "))
+            let first = run.measures.local.as_ref().and_then(|it| it.first_wrong.as_ref());
+            let why = self.failed.into_iter().chain(first.map(FirstWrong::sentence));
+            (Verdict::Fail, why.collect::<Vec<_>>().join("; "))
         } else if !self.known.is_empty() {
             (Verdict::Known, self.known.join("; "))
         } else if !excused.grazes.is_empty() {
             (Verdict::Undecidable, undecidable(excused))
+        } else if let Some(open) =
+            run.measures.local.as_ref().map(|it| it.undecidable).filter(|it| *it > 0)
+        {
+            (Verdict::Undecidable, left_open(open))
         } else if !run.measures.is_scored() {
             (Verdict::NotScored, little_scored(run.measures))
         } else if let Some(it) = unmeasured {
@@ -151,6 +161,13 @@ fn undecidable(excused: &Excused) -> String {
     excused.grazes.iter().map(graze).collect::<Vec<_>>().join("; ")
 }
 
+fn left_open(events: usize) -> String {
+    format!(
+        "either answer is right at {events} of its events: a guard's extremum, or the value that \
+         chooses the next mode, is zero within the errors that are allowed"
+    )
+}
+
 fn little_scored(measures: &Measures) -> String {
     format!(
         "{} of {} events are scored: beyond, one unit of this setting's error has grown past 1e-3",
@@ -158,9 +175,9 @@ fn little_scored(measures: &Measures) -> String {
     )
 }
 
-/// The grazes that the bound on errors of the engine's class leaves undecided.
-fn excused(subject: &Subject<'_>, run: &ScoredRun<'_>, of_classes: &[Bound]) -> Excused {
-    let constant = of_classes.iter().find(|it| {
+/// The grazes that the bound on an exact engine's errors leaves undecided.
+fn excused(subject: &Subject<'_>, run: &ScoredRun<'_>, of_every_case: &[Bound]) -> Excused {
+    let constant = of_every_case.iter().find(|it| {
         it.quantity == Quantity::EventConstant
             && it.statistic == Statistic::Max
             && it.is_for(subject.engine, subject.accuracy)

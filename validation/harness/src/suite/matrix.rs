@@ -3,10 +3,9 @@
 use super::prepared::{Measured, PreparedCase};
 use super::probes::may_probe;
 use super::scope::{Suite, SuiteScope};
-use crate::case::{ClassBounds, Defaults};
+use crate::case::{Case, ClassBounds, Defaults, Regime};
 use crate::engine::{Accuracy, Engine, Failure, Outcome, Role};
 use crate::number::brief;
-use crate::score::local::{Allowance, LocalJudgement};
 use crate::score::{Expected, Measures, RowJudgement, Subject, Verdict, judge};
 use rayon::prelude::*;
 use std::time::Duration;
@@ -22,6 +21,31 @@ pub enum Status {
     Unavailable,
     /// The run was left out: its cost is beyond the suite's budget.
     NotRun,
+}
+
+/// What of a case decides where its rows are counted in the ranking.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CaseTraits {
+    /// Whether some of its rates are much faster than the motion.
+    pub is_stiff: bool,
+    /// Whether errors grow for ever.
+    pub is_chaotic: bool,
+    /// The number of states, which is that of a Jacobian's columns.
+    pub states: usize,
+}
+
+impl CaseTraits {
+    /// The traits of a case, by its trouble, or by the regime of one of the oscillator's.
+    #[must_use]
+    pub fn of(case: &Case) -> Self {
+        let regime = case.oscillator.as_ref().map(|it| &it.regime);
+        let makes = |kind: &str| case.trouble.iter().any(|it| it == kind);
+        Self {
+            is_stiff: makes("stiffness") || regime == Some(&Regime::StiffnessSeries),
+            is_chaotic: makes("chaos") || regime.is_some_and(Regime::is_chaotic),
+            states: case.system.states.len(),
+        }
+    }
 }
 
 /// A row of the report with its measures.
@@ -41,6 +65,8 @@ pub struct Scored {
     pub events: usize,
     /// The kinds of trouble that the case makes for integrators.
     pub trouble: Vec<String>,
+    /// What of the case decides where the row is counted in the ranking.
+    pub traits: CaseTraits,
     /// The ending of the run.
     pub status: Status,
     /// Wall time.
@@ -131,6 +157,7 @@ pub fn one(
         unit,
         events: case.events(),
         trouble: case.case.trouble.clone(),
+        traits: CaseTraits::of(&case.case),
         status,
         wall,
         judgement,
@@ -142,41 +169,27 @@ pub fn one(
         return without(status, verdict, reason);
     }
     let subject = Subject { case: &case.case.name, engine: declaration.name, accuracy, unit };
-    let of_classes = defaults.on(&case.case);
     let class = ClassBounds::of(
         &defaults.classes,
         declaration.class_and_order(),
         declaration.stepping,
         accuracy,
     );
-    let bounds: Vec<_> = case.case.bounds.iter().chain(of_classes).collect();
+    let of_class = class.map(ClassBounds::bounds).unwrap_or_default();
+    let bounds: Vec<_> = case.case.bounds.iter().chain(&of_class).chain(&defaults.bounds).collect();
     let own = case.case.shortcomings.iter();
     let shortcomings: Vec<_> = own.chain(&defaults.shortcomings).collect();
-    let expected = Expected { bounds: &bounds, of_classes, shortcomings: &shortcomings };
+    let expected =
+        Expected { bounds: &bounds, of_every_case: &defaults.bounds, shortcomings: &shortcomings };
     match case.attempt(engine, (accuracy, unit), suite) {
         Ok(Measured { mut measures, outcome, wall }) => {
-            measures.local = class.and_then(|it| judge_locally(case, &outcome, it, unit));
+            measures.local = class.and_then(|it| case.judge_records(&outcome, it, unit));
             let judgement = judge(&subject, &case.as_run(&measures), &expected);
             row(Status::Ok(Box::new(measures), Box::new(outcome)), wall, judgement)
-        }
-        Err(failure) if failure.is_beyond_limits => {
-            without(Status::NotRun, Verdict::NotRun, failure.reason)
         }
         Err(failure) => {
             let judgement = RowJudgement::failed(&subject, &failure.reason, &shortcomings);
             row(Status::Failed(failure), Duration::ZERO, judgement)
         }
     }
-}
-
-/// What the exact continuations of an answer's records say of it.
-fn judge_locally(
-    case: &PreparedCase,
-    outcome: &Outcome,
-    class: &ClassBounds,
-    unit: f64,
-) -> Option<LocalJudgement> {
-    let allowance = Allowance::of(class, unit);
-    // Both solvers were made ready for the case's start.
-    case.local.judge(&case.task, outcome, allowance).ok()
 }

@@ -2,13 +2,13 @@
 
 use super::probes::{Extent, Probes};
 use super::scope::Suite;
-use crate::case::{Case, FileError, SAMPLES_PER_PERIOD};
+use crate::case::{Case, ClassBounds, FileError, SAMPLES_PER_PERIOD};
 use crate::engine::{
     Accuracy, Ended, Engine, Failure, Limits, OscillatorTask, Outcome, SampleGrid, Task, answer,
     least_work,
 };
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
-use crate::score::local::LocalJudge;
+use crate::score::local::{Allowance, LocalJudge, LocalJudgement};
 use crate::score::{
     Decision, ErrorRule, EventNames, Graze, MeasuredBy, Measures, Occurrence, ScoredBy, ScoredRun,
     WINDOW, decisions, grazes, measure,
@@ -165,7 +165,19 @@ impl PreparedCase {
     ) -> Result<Measured, Failure> {
         let role = engine.declaration().role;
         let extent = |work| self.probes.extent(suite, (&self.case, &self.task), role, asked, work);
-        self.measured(engine, asked, &suite.limits(&self.case), extent)
+        self.measured(engine, asked, &Suite::limits(&self.case), extent)
+    }
+
+    /// What the exact continuations of an answer's records say of it, for an engine of a class.
+    #[must_use]
+    pub fn judge_records(
+        &self,
+        outcome: &Outcome,
+        class: &ClassBounds,
+        unit: f64,
+    ) -> Option<LocalJudgement> {
+        // Both solvers were made ready for the case's start.
+        self.local.judge(&self.task, outcome, Allowance::of(class, unit)).ok()
     }
 
     /// The measured run in the form in which it is judged.

@@ -8,8 +8,8 @@ use super::terminal::{note, say};
 use super::{parse, reports};
 use crate::case::{self, Case, Defaults};
 use crate::report::{
-    Baseline, CASES_FLAG, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary,
-    ranking_text, screen,
+    Baseline, CASES_FLAG, Compared, RankingFormat, Report, ReportEvidence, RowPlace, ScreenParts,
+    Summary, ranking_text, screen,
 };
 use crate::suite::{self, PreparedCase, Suite};
 use crate::truth::Library;
@@ -39,6 +39,13 @@ pub(in crate::cli) struct JudgedFlags {
     /// Prints every row above the summary, as is done for at most three cases
     #[arg(long)]
     rows: bool,
+    /// Prints above the summary what it leaves out: kinds of trouble, rows that were not run, all
+    /// engines with their events and costs, failing cases, and every reason
+    #[arg(long)]
+    details: bool,
+    /// That more than half of the rows asked are unanswered or not scored is no failure
+    #[arg(long)]
+    allow_unanswered: bool,
     /// Format of the summary on stdout
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
@@ -61,7 +68,7 @@ pub(in crate::cli) struct CaseFlags {
 /// The summary's formats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// For people: the ranking, where each engine fails, and the number of rows of each class
+    /// For people: which integrator, at what tolerance, at what cost, and what goes wrong
     Table,
     /// A Markdown table, for a wiki or a comment
     Markdown,
@@ -177,8 +184,10 @@ pub(in crate::cli) struct PreparedCases {
 impl JudgedFlags {
     /// Refuses flags without effect.
     pub(in crate::cli) fn check(&self) -> Result<()> {
-        if self.rows && self.format != Format::Table {
-            bail!("--rows has no effect with this --format; accepted with --rows is table");
+        for (flag, is_given) in [("--rows", self.rows), ("--details", self.details)] {
+            if is_given && self.format != Format::Table {
+                bail!("{flag} has no effect with this --format; accepted with {flag} is table");
+            }
         }
         Ok(())
     }
@@ -248,15 +257,16 @@ impl JudgedFlags {
             reports::write(report, evidence, folder)?;
         }
         reports::annotate(report, evidence, self.require);
-        let with_rows = self.rows || cases <= FEW_CASES;
+        let parts = ScreenParts { rows: self.rows || cases <= FEW_CASES, details: self.details };
         let text = match self.format {
-            Format::Table => screen(report, evidence, with_rows),
+            Format::Table => screen(report, evidence, parts),
             Format::Markdown => ranking_text(report, RankingFormat::Markdown)?,
             Format::Csv => ranking_text(report, RankingFormat::Csv)?,
             Format::Json => ranking_text(report, RankingFormat::Json)?,
         };
         if self.format != Format::Table {
             evidence.worse.iter().for_each(|it| say(&format!("worse than --baseline: {it}")));
+            report.unanswered().iter().for_each(|it| say(&it.sentence()));
         }
         let shown = Destination::Stdout.write(|out| Ok(out.write_all(text.as_bytes())?));
         // A reader that leaves early does not turn a failure into a success.
@@ -267,7 +277,8 @@ impl JudgedFlags {
     fn code(&self, report: &Report, evidence: &ReportEvidence) -> u8 {
         let Summary { fail, error, unavailable, .. } = report.summary;
         let lacking = self.require && unavailable > 0;
-        let out_of_bounds = fail + error > 0 || lacking || !evidence.worse.is_empty();
+        let unanswered = !self.allow_unanswered && report.unanswered().is_some();
+        let out_of_bounds = fail + error > 0 || lacking || unanswered || !evidence.worse.is_empty();
         if out_of_bounds { OUT_OF_BOUNDS } else { DONE }
     }
 }
@@ -278,4 +289,36 @@ fn read_baseline(path: &Path) -> Result<Baseline> {
         .map_err(|error| anyhow!("--baseline {}: {error}; {accepted}", path.display()))?;
     Baseline::read(&text)
         .map_err(|error| anyhow!("--baseline {}: {error}; {accepted}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::synthetic::{report, row};
+    use crate::score::Verdict;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Words {
+        #[command(flatten)]
+        judged: JudgedFlags,
+    }
+
+    /// The exit code of a run of ten cases of which some hold nothing to judge.
+    fn code(empty: usize, flags: &[&str]) -> Option<u8> {
+        let mut rows: Vec<_> =
+            (0..10).map(|case| row(&format!("case-{case}"), "one", Some(1e-6))).collect();
+        for row in rows.iter_mut().take(empty) {
+            row.verdict = Verdict::NotScored;
+        }
+        let words = ["percuss"].iter().chain(flags);
+        let judged = Words::try_parse_from(words).ok()?.judged;
+        Some(judged.code(&report(rows), &ReportEvidence::default()))
+    }
+
+    #[test]
+    fn most_unanswered_is_out_of_bounds_unless_that_is_allowed() {
+        assert_eq!([code(5, &[]), code(6, &[])], [Some(DONE), Some(OUT_OF_BOUNDS)]);
+        assert_eq!(code(6, &["--allow-unanswered"]), Some(DONE));
+    }
 }

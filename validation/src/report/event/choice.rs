@@ -25,10 +25,10 @@ struct RowChoice<'a> {
 /// Pictures of rows with a missed or a spurious event, or with a displaced one and out of bounds;
 /// of more rows than can be shown those out of bounds come first, then one row per case in turn.
 #[must_use]
-pub fn event_pictures(cases: &[PreparedCase], rows: &[Scored], suite: Suite) -> Vec<EventPicture> {
+pub fn event_pictures(cases: &[PreparedCase], rows: &[Scored]) -> Vec<EventPicture> {
     let candidates: Vec<_> = rows.par_iter().filter_map(|row| candidate(cases, row)).collect();
     let draw = |it: RowChoice<'_>| {
-        let limits = suite.limits(&it.prepared.case);
+        let limits = Suite::limits(&it.prepared.case);
         picture(it.prepared, it.row, &it.mismatch, (it.engine, it.mean_step, &limits))
     };
     chosen(candidates).into_par_iter().with_max_len(1).filter_map(draw).collect()
@@ -51,7 +51,10 @@ fn chosen(candidates: Vec<RowChoice<'_>>) -> Vec<RowChoice<'_>> {
 fn candidate<'a>(cases: &'a [PreparedCase], row: &'a Scored) -> Option<RowChoice<'a>> {
     let Status::Ok(measures, outcome) = &row.status else { return None };
     let mismatch = &measures.mismatch;
-    let wrong = !(mismatch.missed.is_empty() && mismatch.spurious.is_empty());
+    let wrong = match &measures.local {
+        Some(local) => local.first_wrong.is_some(),
+        None => !(mismatch.missed.is_empty() && mismatch.spurious.is_empty()),
+    };
     let affordable = outcome.work.rhs_evaluations <= MOST_WORK;
     if !affordable || !(wrong || row.judgement.verdict == Verdict::Fail) {
         return None;

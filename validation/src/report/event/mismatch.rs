@@ -5,6 +5,7 @@ use super::scene::{Scene, SceneCurve, in_order, telling};
 use super::{EventPicture, View};
 use crate::case::Case;
 use crate::engine::{Engine, Equations, GuardSample, Limits, Outcome, Task, Watched, contain};
+use crate::score::local::{FirstWrong, WrongKind};
 use crate::score::{Matching, Measures, Verdict, WINDOW};
 use crate::suite::{PreparedCase, Scored};
 use crate::system::{Affine, Direction, Row, System};
@@ -36,6 +37,8 @@ pub(super) struct EventMismatch {
     event: (usize, usize),
     /// Indices of the truth's and the engine's events that are the same.
     pairs: Vec<(usize, usize)>,
+    /// What is wrong by the judgement of records, in a sentence.
+    sentence: Option<String>,
 }
 
 /// Room for the rounding of a horizon that is kept in forcing periods.
@@ -45,10 +48,56 @@ const HORIZON_ROUNDING: f64 = 1e-12;
 type Events = Vec<(f64, (usize, usize))>;
 
 impl EventMismatch {
-    /// The first missed or spurious event before the scored horizon; in a row that is out of bounds
-    /// without one, the event that is farthest from its place. An ending that is missed has no
-    /// picture.
+    /// The first wrong event before the scored horizon, up to which the truth of the start can be
+    /// drawn beside the run; in a row that is out of bounds without one, the event that is farthest
+    /// from its place. An ending that is missed has no picture.
     pub(super) fn first(
+        prepared: &PreparedCase,
+        measures: &Measures,
+        outcome: &Outcome,
+        row: &Scored,
+    ) -> Option<Self> {
+        let first = measures.local.as_ref().and_then(|it| it.first_wrong.as_ref());
+        if let Some(first) = first {
+            let is_scored = first.elapsed <= measures.horizon_periods * prepared.period();
+            let pairs = pairs(prepared, measures, outcome);
+            return Self::of_record(prepared, outcome, first, pairs).filter(|_| is_scored);
+        }
+        Self::beside_the_truth(prepared, measures, outcome, row)
+    }
+
+    /// The first wrong event by the judgement of records.
+    fn of_record(
+        prepared: &PreparedCase,
+        outcome: &Outcome,
+        first: &FirstWrong,
+        pairs: Vec<(usize, usize)>,
+    ) -> Option<Self> {
+        let engine = of_engine(&prepared.task, outcome);
+        let (kind, event) = match first.kind {
+            WrongKind::Missed => {
+                let before = first.n.checked_sub(2).and_then(|it| outcome.events.get(it));
+                let mode = before.map_or(prepared.task.mode, |it| it.mode);
+                let (name, ..) = first.exact.as_ref()?;
+                (MismatchKind::Missed, (mode, number(prepared, mode, name)?))
+            }
+            WrongKind::Sample => {
+                let next = engine.iter().find(|it| it.0 > first.elapsed).or(engine.last())?;
+                (MismatchKind::Displaced, next.1)
+            }
+            WrongKind::Spurious => (MismatchKind::Spurious, engine.get(first.n - 1)?.1),
+            _ => (MismatchKind::Displaced, engine.get(first.n - 1)?.1),
+        };
+        let exact = first.exact.as_ref().map(|it| it.2).zip(first.time);
+        let off = exact.map_or(f64::INFINITY, |(exact, own)| (exact - own).abs());
+        let others = engine.iter().map(|it| (it.0 - first.elapsed).abs());
+        let apart = others.filter(|apart| *apart > 0.0).fold(f64::INFINITY, f64::min);
+        let reach = if off > 0.0 { off.min(apart) } else { apart };
+        let sentence = Some(first.sentence());
+        Some(Self { kind, at: first.elapsed, reach, event, pairs, sentence })
+    }
+
+    fn beside_the_truth(
         prepared: &PreparedCase,
         measures: &Measures,
         outcome: &Outcome,
@@ -80,10 +129,16 @@ impl EventMismatch {
     fn of(kind: MismatchKind, events: &Events, i: usize, pairs: Vec<(usize, usize)>) -> Self {
         let (at, event) = events[i];
         let others = events.iter().map(|it| (it.0 - at).abs()).filter(|apart| *apart > 0.0);
-        Self { kind, at, reach: others.fold(f64::INFINITY, f64::min), event, pairs }
+        let reach = others.fold(f64::INFINITY, f64::min);
+        Self { kind, at, reach, event, pairs, sentence: None }
     }
 
     fn title(&self, prepared: &PreparedCase, event: &str) -> String {
+        if let Some(sentence) = &self.sentence {
+            let mut letters = sentence.chars();
+            let first = letters.next().into_iter().flat_map(char::to_uppercase);
+            return first.chain(letters).collect::<String>() + ".";
+        }
         let system = prepared.task.system.system();
         let mode = &system.modes[self.event.0].name;
         let Self { at, .. } = self;
@@ -100,6 +155,14 @@ impl EventMismatch {
             MismatchKind::Displaced => format!("The event farthest from its place is {when}."),
         }
     }
+}
+
+/// The number of an event of a mode by its name.
+fn number(prepared: &PreparedCase, mode: usize, name: &str) -> Option<usize> {
+    let system = prepared.task.system.system();
+    let own = system.modes.get(mode)?;
+    let all = 0..own.until.len() + own.watch.len();
+    all.into_iter().find(|it| system.event_name(mode, *it) == Some(name))
 }
 
 fn of_truth(truth: &Truth) -> Events {

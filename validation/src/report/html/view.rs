@@ -192,7 +192,7 @@ pub(super) struct SeenCell {
 
 /// The kinds of trouble by engines.
 pub(super) struct TroubleTable {
-    pub engines: Vec<(&'static str, usize)>,
+    pub engines: Vec<(&'static str, String)>,
     pub lines: Vec<TroubleLine>,
 }
 
@@ -217,7 +217,7 @@ pub(super) struct TroubleSign {
 /// The matrix of kinds of trouble, as it is shown.
 pub(super) fn trouble(report: &Report, evidence: &ReportEvidence) -> TroubleTable {
     let trouble = Trouble::of(report, evidence);
-    let sign = |(cell, (engine, _)): (&TroubleCell, &(&'static str, usize))| {
+    let sign = |(cell, (engine, _)): (&TroubleCell, &(&'static str, String))| {
         let level = match cell.percent() {
             None => 5,
             Some(100) if cell.failing == 0 => 4,
@@ -226,7 +226,7 @@ pub(super) fn trouble(report: &Report, evidence: &ReportEvidence) -> TroubleTabl
             Some(1..) => 1,
             Some(0) => 0,
         };
-        let TroubleCell { checked, found, spurious, failing } = cell;
+        let TroubleCell { judged, right, spurious, failing } = cell;
         let shown = cell.percent().map_or("\u{2013}".to_owned(), |it| it.to_string());
         TroubleSign {
             engine,
@@ -234,7 +234,7 @@ pub(super) fn trouble(report: &Report, evidence: &ReportEvidence) -> TroubleTabl
             short: if cell.percent() == Some(100) { String::new() } else { shown.clone() },
             shown,
             title: format!(
-                "{found} of {checked} scored events found, {spurious} spurious, {failing} rows fail"
+                "{right} of {judged} judged events right, {spurious} spurious, {failing} rows fail"
             ),
         }
     };

@@ -78,7 +78,7 @@ struct StepperRun<'a> {
 
 impl StepperRun<'_> {
     fn all(&mut self, limits: &Limits) -> Result<Outcome, Failure> {
-        let mut outcome = Outcome::default();
+        let mut outcome = Outcome { ended_at: self.task.span, ..Outcome::default() };
         let mut sampler = Sampler::new(self.task.sample_times());
         let end;
         let (mut t, mut phase, mut state) = (0.0, self.task.phase, self.task.state);

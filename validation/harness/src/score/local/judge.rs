@@ -4,7 +4,7 @@ use super::continuation::Place;
 use super::judgement::{Allowance, LocalJudgement};
 use super::run::JudgedRun;
 use super::units::Units;
-use super::walk::Walk;
+use super::walk::{Samples, Walk};
 use crate::engine::{Outcome, Task};
 use crate::system::SystemProblem;
 use percuss::affine::SystemError;
@@ -38,7 +38,7 @@ impl LocalJudge {
         outcome: &Outcome,
         allowance: Allowance,
     ) -> Result<LocalJudgement, SystemError> {
-        let mut walk = self.walk(task, allowance)?;
+        let mut walk = self.walk(task, outcome, allowance)?;
         let mut is_over = false;
         for (n, event) in outcome.events.iter().enumerate() {
             let duration = event.elapsed - walk.place.elapsed;
@@ -56,8 +56,26 @@ impl LocalJudge {
         Ok(walk.found)
     }
 
+    /// The number of an answer's events that are judged: of impacts that accumulate, those that are
+    /// far enough apart.
+    #[must_use]
+    pub fn judged(&self, outcome: &Outcome) -> usize {
+        let JudgedRun { until, shortest, .. } = self.0;
+        let mut before = 0.0;
+        let mut is_judged = |elapsed: f64| {
+            let duration = elapsed - std::mem::replace(&mut before, elapsed);
+            elapsed <= until && duration >= shortest
+        };
+        outcome.events.iter().take_while(|it| is_judged(it.elapsed)).count()
+    }
+
     /// A walk at the start.
-    fn walk(&self, task: &Task, allowance: Allowance) -> Result<Walk<'_>, SystemError> {
+    fn walk<'a>(
+        &'a self,
+        task: &'a Task,
+        outcome: &'a Outcome,
+        allowance: Allowance,
+    ) -> Result<Walk<'a>, SystemError> {
         let mut coarse = self.0.problem.solver.follow(&self.0.problem.start)?;
         let mut place =
             Place { elapsed: 0.0, mode: task.mode, state: task.state.to_vec(), late: 0 };
@@ -70,6 +88,8 @@ impl LocalJudge {
             coarse,
             fine: None,
             place,
+            until: 0.0,
+            answer: Samples { times: &task.samples, states: &outcome.samples },
             pending: Vec::new(),
             at_once: 0,
             found: LocalJudgement::default(),

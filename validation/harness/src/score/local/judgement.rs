@@ -15,16 +15,16 @@ pub struct Allowance {
     pub state: f64,
     /// The largest defect of a state at an instant of output.
     pub sample: f64,
-    /// The largest median of these defects in a run.
-    pub sample_median: f64,
+    /// The largest median delay of these states in a run.
+    pub delay: f64,
 }
 
 impl Allowance {
     /// What a class of methods is allowed at a unit of error.
     #[must_use]
     pub const fn of(class: &ClassBounds, tolerance: f64) -> Self {
-        let ClassBounds { time, state, sample, sample_median, .. } = *class;
-        Self { tolerance, time, state, sample, sample_median }
+        let ClassBounds { time, state, sample, delay, .. } = *class;
+        Self { tolerance, time, state, sample, delay }
     }
 }
 
@@ -115,6 +115,9 @@ pub struct Defects {
     pub state: Vec<f64>,
     /// States at the instants of output.
     pub sample: Vec<f64>,
+    /// The times by which states at the instants of output are ahead of the exact continuations of
+    /// the records before them, in tolerances of the time scale.
+    pub delay: Vec<f64>,
     /// Contradictions between the parts of a record.
     pub inconsistency: Vec<f64>,
 }
@@ -195,11 +198,12 @@ impl LocalJudgement {
             + self.inaccurate
     }
 
-    /// Whether anything is wrong, or states are worse on the whole than is allowed.
+    /// Whether anything is wrong, or the states at instants of output say that the times of events
+    /// are off on the whole.
     #[must_use]
     pub fn is_wrong(&self, allowance: &Allowance) -> bool {
-        let median = Defects::spread(&self.defects.sample).median;
-        self.first_wrong.is_some() || median > allowance.sample_median
+        let delay = Defects::spread(&self.defects.delay).median;
+        self.first_wrong.is_some() || delay > allowance.delay
     }
 
     /// Keeps what is wrong, if nothing was before: what is found comes in the order of the run.

@@ -6,6 +6,7 @@
 //! judged from that record.
 
 mod continuation;
+mod ending;
 mod judge;
 mod judgement;
 mod motion;

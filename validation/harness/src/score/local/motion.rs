@@ -108,6 +108,12 @@ impl Motion {
         self.system().omega * (row[sin] * point[cos] - row[cos] * point[sin])
     }
 
+    /// The rates of the states.
+    pub(super) fn rates(&self, mode: usize, elapsed: f64, state: &[f64]) -> Vec<f64> {
+        let rates = &self.modes[mode] * self.point(elapsed, state);
+        rates.iter().take(state.len()).copied().collect()
+    }
+
     /// The weight of each state at a point: its scale and its size.
     pub(super) fn weights(&self, point: &[f64]) -> Vec<f64> {
         self.system().scales.iter().zip(point).map(|(scale, it)| scale + it.abs()).collect()

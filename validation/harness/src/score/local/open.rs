@@ -11,6 +11,10 @@ use nalgebra::RowDVector;
 
 /// The part of a turn in which an extremum is near.
 const NEAR: f64 = 0.125;
+/// Time scales around a graze within which samples show the error there.
+const SHOWN_WITHIN: f64 = 2.0;
+/// How many times the error that samples show may be at a graze near them.
+const ROOM: f64 = 3.0;
 /// Steps of Newton's method on the way to an extremum.
 const MOST_STEPS: usize = 30;
 /// The part of the distance [`NEAR`] to which an extremum is found.
@@ -117,7 +121,32 @@ impl Walk<'_> {
         let motion = self.motion();
         let value = motion.value((mode, guard, 0), at, &state);
         let row = motion.guard(mode, guard).clone();
-        value.value.abs() <= self.units.allowed_value(&row, &stretch) + value.rounding
+        let by_class = self.units.allowed_value(&row, &stretch);
+        let allowed = self.shown_near(at, &row, &state).map_or(by_class, |it| it.min(by_class));
+        value.value.abs() <= allowed + value.rounding
+    }
+
+    /// The error of a guard that the answer's own samples on the present flow show near a time,
+    /// with room; none where no sample is near.
+    fn shown_near(&mut self, at: f64, row: &RowDVector<f64>, state: &[f64]) -> Option<f64> {
+        let system = self.motion().system();
+        let (begin, near) = (self.place.elapsed, SHOWN_WITHIN * system.time_scale);
+        let (from, to) = (begin.max(at - near), self.until.min(at + near));
+        let answer = self.answer;
+        let all = answer.times.iter().zip(answer.states);
+        let shown: Vec<_> = all.filter(|(time, _)| **time > from && **time < to).collect();
+        if shown.is_empty() {
+            return None;
+        }
+        let errors = shown.into_iter().map(|(time, own)| {
+            let flow = self.along(*time);
+            let off = own.iter().zip(&flow).zip(row.iter()).map(|((own, it), by)| by * (own - it));
+            off.sum::<f64>().abs()
+        });
+        let error = errors.fold(0.0, f64::max);
+        let k = self.units.allowance.time.max(self.units.allowance.state);
+        let least = k * self.units.tolerance() * self.motion().size(row, state);
+        Some(ROOM * error + least)
     }
 
     /// The extremum of a guard along the present flow near a time: what Newton's method finds from
@@ -128,8 +157,12 @@ impl Walk<'_> {
         let mut at = elapsed;
         for _ in 0..MOST_STEPS {
             let state = self.along(at);
-            let value = |order| self.motion().value((mode, guard, order), at, &state).value;
-            let step = -value(1) / value(2);
+            let value = |order| self.motion().value((mode, guard, order), at, &state);
+            let rate = value(1);
+            if rate.value.abs() <= rate.rounding {
+                return Some(at);
+            }
+            let step = -rate.value / value(2).value;
             // The begin is an extremum of what is left of a segment.
             let next = (at + step).max(begin);
             if !next.is_finite() || (next - elapsed).abs() > near {

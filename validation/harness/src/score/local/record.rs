@@ -39,7 +39,13 @@ impl Walk<'_> {
                 self.unexpected(event, named, None, decided)
             }
             Found::Nothing(next) => self.unexpected(event, named, next, decided),
-            Found::Ended(Ending::Undecided) => Said::Undecidable,
+            Found::Ended(Ending::Undecided) => {
+                if self.take_pending(named) {
+                    Said::Right
+                } else {
+                    Said::Undecidable
+                }
+            }
             Found::Ended(_) => self.unexpected(event, named, None, decided),
         };
         (said, false)
@@ -98,15 +104,18 @@ impl Walk<'_> {
         if self.take_pending(named) {
             return Said::Right;
         }
-        if !self.is_admissible(event, named) {
-            return self.unexpected(event, named, Some(exact), true);
-        }
         if !exact.ends_mode {
             // An event that is only counted does not change what follows: it has to come too.
             let stretch = self.place.stretch(exact.elapsed);
             let deadline = exact.elapsed + self.units.allowed_time(&stretch, exact.named.event);
             let name = self.judge.name(self.place.mode, exact.named.event);
-            self.pending.push(Pending { name, exact, deadline });
+            // The record before may have waited for the same one.
+            if !self.pending.iter().any(|it| it.name == name) {
+                self.pending.push(Pending { name, exact: exact.clone(), deadline });
+            }
+        }
+        if !self.is_admissible(event, named) {
+            return self.unexpected(event, named, Some(exact), true);
         }
         let location = self.location(event, named);
         self.found.defects.location.extend(location);
@@ -148,7 +157,7 @@ impl Walk<'_> {
         if let Some(location) = location.filter(|it| exceeds(*it, LOCATION)) {
             return Said::Wrong(WrongKind::Location, Some(exact), location);
         }
-        let on_flow = self.off_the_flow(event).is_none_or(|it| it <= self.units.allowance.state);
+        let on_flow = self.off_the_flow(event).is_none_or(|it| it <= self.units.allowance.sample);
         if on_flow && self.is_graze(exact.elapsed, named.event) {
             return Said::Undecidable;
         }

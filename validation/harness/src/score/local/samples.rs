@@ -37,13 +37,13 @@ pub(super) fn judge(
         while outcome.events.get(last).is_some_and(|it| near(it.elapsed)) {
             last += 1;
         }
-        let defect = |from: usize| {
+        let judged = |from: usize| {
             let (mode, since, state) = match from.checked_sub(1).map(|it| &outcome.events[it]) {
                 Some(event) => (event.mode, event.elapsed, &event.state),
                 None => (task.mode, 0.0, &task.state),
             };
             if state.iter().any(|it| !it.is_finite()) {
-                return f64::NAN;
+                return (f64::NAN, None);
             }
             let clock =
                 |elapsed: f64| begin.after(if problem.backward { -elapsed } else { elapsed });
@@ -57,11 +57,14 @@ pub(super) fn judge(
             let exact = problem.solver.state_at(&event, &clock(*elapsed));
             let length = (elapsed - since).max(0.0);
             let stretch = Stretch { mode, elapsed: since, state, length };
-            units.of_sample((own, &exact), &stretch)
+            let both = (&own[..], &exact[..]);
+            let delay = units.delay(both, &stretch).filter(|_| from > 0);
+            (units.of_sample(both, &stretch), delay)
         };
-        let defects = (first..=last).map(defect);
-        let defect = defects.fold(f64::NAN, f64::min);
+        let nearest = (first..=last).map(judged).min_by(|a, b| a.0.total_cmp(&b.0));
+        let (defect, delay) = nearest.unwrap_or((f64::NAN, None));
         found.defects.sample.push(defect);
+        found.defects.delay.extend(delay);
         if exceeds(defect, units.allowance.sample) {
             let mode = record.checked_sub(1).map_or(task.mode, |it| outcome.events[it].mode);
             found.wrong_sample(FirstWrong {

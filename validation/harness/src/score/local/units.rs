@@ -3,11 +3,10 @@
 
 use super::judgement::Allowance;
 use super::motion::{Motion, Segment};
+use crate::score::rule::of_length;
 use crate::score::worst;
 use nalgebra::RowDVector;
 
-/// A step's error adds up over a segment, which is no matter up to as many time scales.
-const SHORT: f64 = 10.0;
 /// The part of a segment's length that the growth of errors may make of a unit of time: where more
 /// is asked for, events are too close for the growth to be that of small errors.
 const MOST_OF_LENGTH: f64 = 0.1;
@@ -15,6 +14,15 @@ const MOST_OF_LENGTH: f64 = 0.1;
 const SMALL: f64 = 0.05;
 /// Roundings of the time since the start in an answer's times and in differences of them.
 const ROUNDINGS_OF_TIME: f64 = 4.0 * f64::EPSILON;
+
+/// The rounding of a state in parts of its weight.
+const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+
+/// The part of its weight by which a state moves in a time scale that is slow.
+const SLOW: f64 = 0.1;
+
+/// Time scales after an event within which states tell how late it is.
+const NEAR: f64 = 2.0;
 
 /// The units of one engine's answer on one system.
 pub(super) struct Units<'a> {
@@ -40,9 +48,8 @@ impl Units<'_> {
         self.motion.system().time_scale
     }
 
-    /// The factor of long segments, along which the errors of many steps add up.
     fn of_length(&self, length: f64) -> f64 {
-        (length / (SHORT * self.time_scale())).max(1.0)
+        of_length(length, self.motion.system())
     }
 
     fn segment(&self, stretch: &Stretch<'_>) -> Segment {
@@ -103,6 +110,34 @@ impl Units<'_> {
         self.of_states((own, exact), stretch, |segment| self.motion.growth_of_flow(segment))
     }
 
+    /// The time by which a state along a stretch is ahead of the exact one, in tolerances of the
+    /// time scale: its error along the flow over the rate. None where the motion is slow, and far
+    /// from the begin of the stretch, where errors since then hide it.
+    pub(super) fn delay(
+        &self,
+        (own, exact): (&[f64], &[f64]),
+        stretch: &Stretch<'_>,
+    ) -> Option<f64> {
+        let end = stretch.elapsed + stretch.length;
+        let (weights, scale) = (self.motion.weights(exact), self.time_scale());
+        let rates = self.motion.rates(stretch.mode, end, exact);
+        let parts = rates.iter().zip(&weights).map(|(rate, weight)| scale * rate / weight);
+        let parts: Vec<f64> = parts.collect();
+        let square: f64 = parts.iter().map(|it| it * it).sum();
+        if square < SLOW * SLOW || stretch.length > NEAR * scale {
+            return None;
+        }
+        let off = own.iter().zip(exact).zip(&weights).map(|((own, exact), weight)| {
+            let off = (own - exact) / weight;
+            (off.abs() - ROUNDINGS).max(0.0).copysign(off)
+        });
+        let along: f64 = off.zip(&parts).map(|(off, part)| off * part).sum();
+        let rounding = Self::rounding_of_time(end) / scale;
+        let delay = along / square;
+        let beyond = (delay.abs() - rounding).max(0.0).copysign(delay);
+        Some(beyond / self.tolerance())
+    }
+
     fn of_states(
         &self,
         (own, exact): (&[f64], &[f64]),
@@ -111,8 +146,12 @@ impl Units<'_> {
     ) -> f64 {
         let weights = self.motion.weights(exact);
         let unit = self.tolerance() * self.of_length(stretch.length);
-        let rounding = 4.0 * f64::EPSILON;
-        let off = |n: usize| ((own[n] - exact[n]).abs() - rounding * weights[n]).max(0.0);
+        let end = stretch.elapsed + stretch.length;
+        let rates = self.motion.rates(stretch.mode, end, exact);
+        // No state is known better than its time.
+        let rounding =
+            |n: usize| ROUNDINGS * weights[n] + Self::rounding_of_time(end) * rates[n].abs();
+        let off = |n: usize| ((own[n] - exact[n]).abs() - rounding(n)).max(0.0);
         let worst_by = |sizes: &[f64]| {
             let each =
                 (0..own.len()).map(|n| if own[n].is_nan() { f64::NAN } else { off(n) / sizes[n] });

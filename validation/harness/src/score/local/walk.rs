@@ -6,6 +6,7 @@ use super::motion::Motion;
 use super::run::JudgedRun;
 use super::units::Units;
 use crate::engine::{Ended, Event, Outcome};
+use crate::system::Values;
 use percuss::affine::{DoubleDouble, Follower, What};
 
 /// Tolerances below which f64 alone condemns nothing.
@@ -23,10 +24,20 @@ pub(super) struct Walk<'a> {
     /// The same follower in 106 bits, once they are asked for.
     pub(super) fine: Option<Follower<'a, DoubleDouble>>,
     pub(super) place: Place,
+    /// The time up to which the present flow is the answer's: that of the record in hand.
+    pub(super) until: f64,
+    pub(super) answer: Samples<'a>,
     pub(super) pending: Vec<Pending>,
     /// Records of the present instant.
     pub(super) at_once: usize,
     pub(super) found: LocalJudgement,
+}
+
+/// The states at the instants of output in an answer.
+#[derive(Clone, Copy)]
+pub(super) struct Samples<'a> {
+    pub(super) times: &'a [f64],
+    pub(super) states: &'a [Values],
 }
 
 /// An event that is only counted and has to come within its instant.
@@ -57,6 +68,7 @@ impl<'a> Walk<'a> {
 
     /// Judges a record, and goes on to it.
     pub(super) fn record(&mut self, n: usize, event: &Event) {
+        self.until = event.elapsed;
         let named = Named { event: event.event, next: event.mode };
         let continuation = self.continuation((named, event.elapsed));
         let Continuation { found, passed, decided } = continuation;
@@ -159,6 +171,7 @@ impl<'a> Walk<'a> {
     /// After the last record no exact event may lie before the end of what is judged.
     pub(super) fn end(&mut self, outcome: &Outcome) {
         let n = outcome.events.len();
+        self.until = outcome.ended_at;
         for pending in std::mem::take(&mut self.pending) {
             self.missed(n, None, pending.exact);
         }
@@ -176,7 +189,9 @@ impl<'a> Walk<'a> {
         for _ in 0..MOST_AT_ONCE {
             let at_once = self.coarse.fires_at_once();
             let Some(event) = self.coarse.next() else { return };
-            let Some(own) = exact(&self.coarse, &event, until, at_once) else { return };
+            let Some(own) = exact(&self.coarse, &event, until, at_once) else {
+                return self.ending(n, outcome, &event);
+            };
             let allowed =
                 self.units.allowed_time(&self.place.stretch(own.elapsed), own.named.event);
             if own.elapsed > self.judge.until - allowed {

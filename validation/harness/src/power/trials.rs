@@ -1,0 +1,126 @@
+//! How many wrong answers the judgement of records catches, and how many right ones it condemns.
+//!
+//! Each answer of a right set-up is spoiled in every way that there is ([`Variant`]). The set-ups
+//! and cases are none of those whose defects set the limits of `classes.toml`.
+
+use super::variants::Variant;
+use crate::case::ClassBounds;
+use crate::engine::{Accuracy, Engine, Outcome, answer};
+use crate::integrators;
+use crate::score::local::{Allowance, LocalJudgement};
+use crate::suite::{PreparedCase, Suite};
+use rayon::prelude::*;
+
+/// Right set-ups whose defects set no limit: explicit methods of two orders, an implicit one and a
+/// multistep one.
+const SET_UPS: [&str; 4] = [
+    "differential-equations-rkv767e",
+    "differential-equations-dop853",
+    "diffsol-tr_bdf2",
+    "diffsol-bdf",
+];
+/// The tolerances of the trials.
+const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
+
+/// A right answer and the wrong ones that are made of it.
+pub struct Trial {
+    /// The set-up.
+    pub engine: &'static str,
+    /// The accuracy that it was asked for.
+    pub accuracy: Accuracy,
+    /// The case.
+    pub case: String,
+    /// What is said of the right answer.
+    pub right: LocalJudgement,
+    /// Whether the right answer is condemned.
+    pub is_condemned: bool,
+    /// Whether each variant is caught; none where it spoils nothing.
+    pub caught: Vec<Option<bool>>,
+}
+
+/// How often one kind of wrong answer is caught.
+#[derive(Clone, Debug)]
+pub struct Tally {
+    /// The kind.
+    pub variant: Variant,
+    /// Answers that it spoils.
+    pub spoiled: usize,
+    /// Those of them that are condemned.
+    pub caught: usize,
+    /// The cases of the others.
+    pub missed_on: Vec<String>,
+}
+
+/// Whether a case, by its place among all, is one that limits are set from.
+#[must_use]
+pub const fn sets_limits(place: usize) -> bool {
+    place.is_multiple_of(2)
+}
+
+/// The trials of set-ups that set no limit, on cases that set none.
+#[must_use]
+pub fn trials(cases: &[PreparedCase], classes: &[ClassBounds], variants: &[Variant]) -> Vec<Trial> {
+    let chosen =
+        |name: &&'static str| integrators::all().iter().find(|it| it.declaration().name == *name);
+    let engines: Vec<&'static dyn Engine> = SET_UPS.iter().filter_map(chosen).copied().collect();
+    let others = cases.iter().enumerate().filter(|(n, _)| !sets_limits(*n));
+    let asked = others.flat_map(|(_, case)| {
+        let engines = engines.iter();
+        engines.flat_map(move |engine| TOLERANCES.map(|tolerance| (case, *engine, tolerance)))
+    });
+    let asked: Vec<_> = asked.collect();
+    let one = |(case, engine, tolerance)| {
+        trial(case, (engine, Accuracy::Tolerance(tolerance)), classes, variants)
+    };
+    asked.into_par_iter().filter_map(one).collect()
+}
+
+/// One answer of an engine, judged, with the variants of it; none where the engine has no answer.
+#[must_use]
+pub fn trial(
+    case: &PreparedCase,
+    (engine, accuracy): (&'static dyn Engine, Accuracy),
+    classes: &[ClassBounds],
+    variants: &[Variant],
+) -> Option<Trial> {
+    let declaration = engine.declaration();
+    let class =
+        ClassBounds::of(classes, declaration.class_and_order(), declaration.stepping, accuracy)?;
+    let is_affordable = case.least_work(engine, accuracy) <= Suite::Quick.budget();
+    if !is_affordable || engine.takes(&case.task).is_err() {
+        return None;
+    }
+    let limits = Suite::limits(&case.case);
+    let right = answer(engine, &case.task, accuracy, &limits).ok()?;
+    let unit = declaration.stepping.unit(accuracy);
+    let allowance = Allowance::of(class, unit);
+    let judge = |answer: &Outcome| case.judge_records(answer, class, unit);
+    let caught = |variant: &Variant| {
+        let wrong = variant.of(&case.task, (&right, case.local.judged(&right)), unit)?;
+        Some(judge(&wrong)?.is_wrong(&allowance))
+    };
+    let found = judge(&right)?;
+    Some(Trial {
+        engine: declaration.name,
+        accuracy,
+        case: case.case.name.clone(),
+        is_condemned: found.is_wrong(&allowance),
+        caught: variants.iter().map(caught).collect(),
+        right: found,
+    })
+}
+
+/// How often each variant is caught, where the right answer is not condemned.
+#[must_use]
+pub fn tallies(trials: &[Trial], variants: &[Variant]) -> Vec<Tally> {
+    let tally = |(n, variant): (usize, &Variant)| {
+        let right = trials.iter().filter(|it| !it.is_condemned);
+        let spoiled: Vec<_> = right.filter(|it| it.caught[n].is_some()).collect();
+        let missed = spoiled.iter().filter(|it| it.caught[n] == Some(false));
+        let mut missed_on: Vec<String> = missed.map(|it| it.case.clone()).collect();
+        let caught = spoiled.len() - missed_on.len();
+        missed_on.dedup();
+        Tally { variant: *variant, spoiled: spoiled.len(), caught, missed_on }
+    };
+    variants.iter().enumerate().map(tally).collect()
+}

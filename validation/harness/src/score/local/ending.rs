@@ -1,0 +1,91 @@
+//! The way in which a run ended, beside the ending of the exact continuation.
+
+use super::judgement::{FirstWrong, WrongKind};
+use super::units::Units;
+use super::walk::Walk;
+use crate::engine::{Ended, Outcome};
+use percuss::affine::{Ending, Event, What};
+
+impl Walk<'_> {
+    /// Holds the ending of a run, of which `n` records tell, against that of the exact
+    /// continuation: one that it lacks is missed, and one that the continuation lacks is spurious.
+    pub(super) fn ending(&mut self, n: usize, outcome: &Outcome, end: &Event<f64>) {
+        let What::End(ref ending) = end.what else { return };
+        // What follows an accumulation is no part of a case.
+        let Some(exact) = before_the_horizon(ending) else { return };
+        let own = Some(outcome.ended).filter(|it| is_of_the_model(*it));
+        let elapsed = self.coarse.elapsed(end);
+        let is_in_time = (outcome.ended_at - elapsed).abs() <= self.allowed_at(end);
+        match (exact, own) {
+            (None, None) => {}
+            (Some(exact), Some(own)) if exact == own && is_in_time => {}
+            // The ending may come just after the horizon, where it is not looked for.
+            (None, Some(_)) if is_in_time => {}
+            (Some(exact), _) => {
+                self.found.missed += 1;
+                self.wrong_ending(n, WrongKind::Missed, own, (Some(exact), elapsed), outcome);
+            }
+            (None, own) => {
+                self.found.spurious += 1;
+                self.wrong_ending(n, WrongKind::Spurious, own, (None, elapsed), outcome);
+            }
+        }
+    }
+
+    /// The time by which the ending may be off: that of the guard which is nearest to zero.
+    fn allowed_at(&self, end: &Event<f64>) -> f64 {
+        let elapsed = self.coarse.elapsed(end);
+        let motion = self.motion();
+        let nearness = |guard: &usize| {
+            let value = motion.value((self.place.mode, *guard, 0), elapsed, &end.state).value;
+            value.abs() / motion.size(motion.guard(self.place.mode, *guard), &end.state)
+        };
+        let guards = 0..self.until_count();
+        let nearest = guards.min_by(|a, b| nearness(a).total_cmp(&nearness(b)));
+        let plain = self.units.allowance.time * self.at_once_within();
+        let allowed = |guard| self.units.allowed_time(&self.place.stretch(elapsed), guard);
+        nearest.map_or(plain + Units::rounding_of_time(elapsed), allowed)
+    }
+
+    fn wrong_ending(
+        &mut self,
+        n: usize,
+        kind: WrongKind,
+        own: Option<Ended>,
+        (exact, elapsed): (Option<Ended>, f64),
+        outcome: &Outcome,
+    ) {
+        let clock = |elapsed| self.judge.problem.clock(elapsed);
+        let mode = self.judge.mode_name(self.place.mode);
+        let word = |it: Ended| it.as_str().to_owned();
+        let exact = exact.map_or_else(|| word(Ended::Horizon), word);
+        let wrong = FirstWrong {
+            n: n + 1,
+            kind,
+            elapsed: elapsed.min(outcome.ended_at),
+            event: own.map(word),
+            mode: own.map(|_| mode.clone()),
+            time: own.map(|_| clock(outcome.ended_at)),
+            state: None,
+            exact: Some((exact, mode, clock(elapsed))),
+            defect: f64::NAN,
+        };
+        self.found.wrong(wrong);
+    }
+}
+
+/// An ending that the model decides before a horizon.
+const fn is_of_the_model(ended: Ended) -> bool {
+    matches!(ended, Ended::LeavesDomain | Ended::NoProgress | Ended::BeyondGuard)
+}
+
+/// The ending before the horizon, or none at it; nothing where it cannot be told.
+const fn before_the_horizon(ending: &Ending<f64>) -> Option<Option<Ended>> {
+    match ending {
+        Ending::Horizon => Some(None),
+        Ending::LeavesDomain => Some(Some(Ended::LeavesDomain)),
+        Ending::NoProgress => Some(Some(Ended::NoProgress)),
+        Ending::BeyondGuard => Some(Some(Ended::BeyondGuard)),
+        Ending::Accumulation(..) | Ending::Undecided => None,
+    }
+}
