@@ -8,7 +8,7 @@ use crate::score::Verdict;
 pub(super) struct TroubleCell {
     /// The engine's own events and those that it missed.
     pub judged: usize,
-    /// The events that are those of the exact continuation.
+    /// The events that are those of the exact continuation, or at which either answer is right.
     pub right: usize,
     /// The engine's events that the exact continuation does not have.
     pub spurious: usize,
@@ -21,16 +21,16 @@ impl TroubleCell {
         let records = &row.records;
         self.judged += records.events_judged.unwrap_or_default();
         self.right += records.events_right.unwrap_or_default();
+        self.right += records.events_undecidable.unwrap_or_default();
         self.spurious += records.events_spurious.unwrap_or_default();
         let fails = matches!(row.verdict, Verdict::Error | Verdict::Fail | Verdict::Known);
         self.failing += usize::from(fails);
     }
 
-    /// Right events less spurious ones in per cent of those that were judged, rounded down: 100 is
-    /// all of them and none besides. Nothing where nothing was judged.
+    /// Right events in per cent of those that were judged, rounded down: 100 is all of them and
+    /// none besides. Nothing where nothing was judged.
     pub fn percent(&self) -> Option<usize> {
-        let right = self.right.saturating_sub(self.spurious);
-        (self.judged > 0).then(|| 100 * right / self.judged)
+        (self.judged > 0).then(|| 100 * self.right / self.judged)
     }
 }
 

@@ -95,8 +95,8 @@ fn trouble_table(report: &Report, evidence: &ReportEvidence) -> String {
     let engines: Vec<String> =
         trouble.engines.iter().map(|(name, place)| format!("{place} {name}")).collect();
     let legend = format!(
-        "trouble: right events less spurious ones, in per cent of the judged events of the cases \
-         of each kind, rounded down; the columns are the engines: {}.",
+        "trouble: right events, and those where either answer is right, in per cent of the judged \
+         events of the cases of each kind, rounded down; the columns are the engines: {}.",
         engines.join(", ")
     );
     tables + &wrapped(&legend) + "\n"
