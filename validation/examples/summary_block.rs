@@ -13,7 +13,7 @@ use std::io::Read;
 
 const SUMMARY: &str = "summary";
 const DETAILS: &str = "details";
-/// What the first screen begins with.
+/// The words with which the first screen begins.
 const FIRST_SCREEN: &str = "Which integrator, at what tolerance?";
 
 fn main() -> Result<()> {

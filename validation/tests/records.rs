@@ -2,12 +2,12 @@
 //! answer is told for what it is.
 
 use crate::exact;
-use percuss_validation::case::{ClassBounds, defaults};
+use percuss_validation::case::defaults;
 use percuss_validation::engine::{Accuracy, Ended, Engine, Outcome, answer};
 use percuss_validation::integrators::all;
 use percuss_validation::power::Variant;
 use percuss_validation::score::local::{Allowance, LocalJudgement, WrongKind};
-use percuss_validation::suite::{PreparedCase, Suite, prepare};
+use percuss_validation::suite::{PreparedCase, Suite, class_of, prepare};
 use percuss_validation::truth::Library;
 
 /// Cases of every kind of trouble: impacts, drift, friction, a clock, watched levels, a multiple
@@ -46,9 +46,7 @@ fn answered(engine: &dyn Engine, case: &PreparedCase) -> (Outcome, Allowance) {
     let limits = Suite::limits(&case.case);
     let right = answer(engine, &case.task, ACCURACY, &limits).expect("an answer");
     let classes = defaults().expect("the limits are read").classes;
-    let class =
-        ClassBounds::of(&classes, declaration.class_and_order(), declaration.stepping, ACCURACY)
-            .expect("a class");
+    let class = class_of(&classes, &declaration, ACCURACY).expect("a class");
     (right, Allowance::of(class, declaration.stepping.unit(ACCURACY)))
 }
 

@@ -38,7 +38,7 @@ pub struct FirstWrongRecord {
     pub exact_mode: Option<String>,
     pub exact_time: Option<f64>,
     pub defect: Option<f64>,
-    /// The same in a sentence, for people.
+    /// What is wrong, in a sentence for people.
     #[serde(skip)]
     pub sentence: String,
 }
@@ -139,6 +139,7 @@ impl Quantiles {
     }
 }
 
-fn finite(value: f64) -> Option<f64> {
+/// The figure as JSON has it: nothing where it is not finite.
+pub(super) fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|it| it.is_finite())
 }

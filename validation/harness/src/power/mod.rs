@@ -18,7 +18,7 @@ use crate::engine::{Accuracy, Limits, REFERENCE};
 use crate::integrators::{self, SOUND, Way, WrongEngine, faulty, wrong};
 use crate::number::brief;
 use crate::score::{Checked, Expected, Subject, Verdict, judge};
-use crate::suite::{Extent, PreparedCase};
+use crate::suite::{Extent, PreparedCase, class_of};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use ways::{MOST_CALLS, is_affordable};
@@ -205,8 +205,7 @@ impl Standard {
     /// The class whose bounds apply; none to the exact solver.
     fn class<'a>(&self, classes: &'a [ClassBounds]) -> Option<&'a ClassBounds> {
         let mut all = integrators::all().iter().map(|it| it.declaration());
-        let it = all.find(|it| it.name == self.engine)?;
-        ClassBounds::of(classes, it.class_and_order(), it.stepping, self.accuracy)
+        class_of(classes, &all.find(|it| it.name == self.engine)?, self.accuracy)
     }
 
     /// A wrong engine's name, with the tolerance where there is one.

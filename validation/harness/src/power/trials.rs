@@ -1,4 +1,5 @@
-//! How many wrong answers the judgement of records catches, and how many right ones it condemns.
+//! The shares of wrong answers that the judgement of records catches, and of right ones that it
+//! condemns.
 //!
 //! Each answer of a right set-up is spoiled in every way that there is ([`Variant`]). The set-ups
 //! and cases are none of those whose defects set the limits of `classes.toml`.
@@ -8,7 +9,7 @@ use crate::case::ClassBounds;
 use crate::engine::{Accuracy, Engine, Outcome, answer};
 use crate::integrators;
 use crate::score::local::{Allowance, LocalJudgement};
-use crate::suite::{PreparedCase, Suite};
+use crate::suite::{PreparedCase, Suite, class_of};
 use rayon::prelude::*;
 
 /// Right set-ups whose defects set no limit: explicit methods of two orders, an implicit one and a
@@ -30,7 +31,7 @@ pub struct Trial {
     pub accuracy: Accuracy,
     /// The case.
     pub case: String,
-    /// What is said of the right answer.
+    /// The judgement of the right answer.
     pub right: LocalJudgement,
     /// Whether the right answer is condemned.
     pub is_condemned: bool,
@@ -38,7 +39,7 @@ pub struct Trial {
     pub caught: Vec<Option<bool>>,
 }
 
-/// How often one kind of wrong answer is caught.
+/// The count of answers of one wrong kind, and of those that are caught.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// The kind.
@@ -84,8 +85,7 @@ pub fn trial(
     variants: &[Variant],
 ) -> Option<Trial> {
     let declaration = engine.declaration();
-    let class =
-        ClassBounds::of(classes, declaration.class_and_order(), declaration.stepping, accuracy)?;
+    let class = class_of(classes, &declaration, accuracy)?;
     let is_affordable = case.least_work(engine, accuracy) <= Suite::Quick.budget();
     if !is_affordable || engine.takes(&case.task).is_err() {
         return None;

@@ -57,16 +57,11 @@ impl Measures {
     /// A figure; NaN if it was not measured.
     #[must_use]
     pub fn figure(&self, quantity: Quantity, statistic: Statistic) -> f64 {
-        let of = |spread: &Spread| match statistic {
-            Statistic::Median => spread.median,
-            Statistic::Q99 => spread.q99,
-            Statistic::Max | Statistic::Value => spread.max,
-        };
-        if let Some(figure) =
-            self.local.as_ref().and_then(|it| local_figure(it, quantity, statistic))
-        {
+        let local = self.local.as_ref();
+        if let Some(figure) = local.and_then(|it| local_figure(it, quantity, statistic)) {
             return figure;
         }
+        let of = |spread: &Spread| of_spread(spread, statistic);
         match quantity {
             Quantity::EventsMissed => self.mismatch.missed.len() as f64,
             Quantity::EventsSpurious => self.mismatch.spurious.len() as f64,
@@ -102,19 +97,19 @@ impl Measures {
     /// nor where the suite did not ask for the probe that measures it.
     #[must_use]
     pub fn concerns(&self, quantity: Quantity) -> bool {
-        let measured = |of: fn(&Defects) -> &[f64]| {
-            self.local.as_ref().is_some_and(|it| !of(&it.defects).is_empty())
-        };
         match quantity {
             Quantity::EventsWrongMode => self.local.is_some(),
             // An exact engine is judged by the tables alone.
             Quantity::PhaseSequence => self.local.is_none(),
-            Quantity::Location => measured(|it| &it.location),
-            Quantity::Inconsistency => measured(|it| &it.inconsistency),
-            Quantity::TimeDefect => measured(|it| &it.time),
-            Quantity::StateDefect => measured(|it| &it.state),
-            Quantity::SampleDefect => measured(|it| &it.sample),
-            Quantity::SampleDelay => measured(|it| &it.delay),
+            Quantity::Location
+            | Quantity::Inconsistency
+            | Quantity::TimeDefect
+            | Quantity::StateDefect
+            | Quantity::SampleDefect
+            | Quantity::SampleDelay => {
+                let defects = self.local.as_ref().and_then(|it| defects(it, quantity));
+                defects.is_some_and(|it| !it.is_empty())
+            }
             Quantity::EventTimeError
             | Quantity::EventConstant
             | Quantity::StateError
@@ -156,26 +151,35 @@ impl Measures {
     }
 }
 
-/// A figure of the local judgement; none of what it does not measure.
-fn local_figure(local: &LocalJudgement, quantity: Quantity, statistic: Statistic) -> Option<f64> {
-    let of = |defects: &[f64]| {
-        let spread = Defects::spread(defects);
-        match statistic {
-            Statistic::Median => spread.median,
-            Statistic::Q99 => spread.q99,
-            Statistic::Max | Statistic::Value => spread.max,
-        }
-    };
+/// The defects that the local judgement measures of a quantity; none of a quantity of another kind.
+fn defects(local: &LocalJudgement, quantity: Quantity) -> Option<&[f64]> {
+    let Defects { location, time, state, sample, delay, inconsistency } = &local.defects;
     Some(match quantity {
-        Quantity::EventsMissed => local.missed as f64,
-        Quantity::EventsSpurious => local.spurious as f64,
-        Quantity::EventsWrongMode => local.wrong_mode as f64,
-        Quantity::Location => of(&local.defects.location),
-        Quantity::Inconsistency => of(&local.defects.inconsistency),
-        Quantity::TimeDefect => of(&local.defects.time),
-        Quantity::StateDefect => of(&local.defects.state),
-        Quantity::SampleDefect => of(&local.defects.sample),
-        Quantity::SampleDelay => of(&local.defects.delay),
+        Quantity::Location => location,
+        Quantity::Inconsistency => inconsistency,
+        Quantity::TimeDefect => time,
+        Quantity::StateDefect => state,
+        Quantity::SampleDefect => sample,
+        Quantity::SampleDelay => delay,
         _ => return None,
     })
+}
+
+/// A figure of the local judgement; none of what it does not measure.
+fn local_figure(local: &LocalJudgement, quantity: Quantity, statistic: Statistic) -> Option<f64> {
+    let count = match quantity {
+        Quantity::EventsMissed => local.missed,
+        Quantity::EventsSpurious => local.spurious,
+        Quantity::EventsWrongMode => local.wrong_mode,
+        _ => return Some(of_spread(&Defects::spread(defects(local, quantity)?), statistic)),
+    };
+    Some(count as f64)
+}
+
+const fn of_spread(spread: &Spread, statistic: Statistic) -> f64 {
+    match statistic {
+        Statistic::Median => spread.median,
+        Statistic::Q99 => spread.q99,
+        Statistic::Max | Statistic::Value => spread.max,
+    }
 }

@@ -21,12 +21,16 @@ impl Spread {
     #[must_use]
     pub fn of(mut errors: Vec<f64>) -> Self {
         errors.sort_by(f64::total_cmp);
-        let rank = |share: f64| {
-            let index = (share * errors.len() as f64).ceil() as usize;
-            errors.get(index.saturating_sub(1)).copied().unwrap_or(f64::NAN)
-        };
+        let rank = |share: f64| nearest_rank(&errors, share);
         Self { median: rank(0.5), q99: rank(0.99), max: rank(1.0) }
     }
+}
+
+/// The value that a share of some errors, which are sorted, are at most; NaN of none.
+#[must_use]
+pub fn nearest_rank(sorted: &[f64], share: f64) -> f64 {
+    let index = (share * sorted.len() as f64).ceil() as usize;
+    sorted.get(index.saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
 /// The largest error, at least 0; a NaN among them is the largest.

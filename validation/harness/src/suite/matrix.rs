@@ -4,7 +4,7 @@ use super::prepared::{Measured, PreparedCase};
 use super::probes::may_probe;
 use super::scope::{Suite, SuiteScope};
 use crate::case::{Case, ClassBounds, Defaults, Regime};
-use crate::engine::{Accuracy, Engine, Failure, Outcome, Role};
+use crate::engine::{Accuracy, Declaration, Engine, Failure, Outcome, Role};
 use crate::number::brief;
 use crate::score::{Expected, Measures, RowJudgement, Subject, Verdict, judge};
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ pub enum Status {
     NotRun,
 }
 
-/// What of a case decides where its rows are counted in the ranking.
+/// The traits of a case by which its rows are counted in the ranking.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CaseTraits {
     /// Whether some of its rates are much faster than the motion.
@@ -65,7 +65,7 @@ pub struct Scored {
     pub events: usize,
     /// The kinds of trouble that the case makes for integrators.
     pub trouble: Vec<String>,
-    /// What of the case decides where the row is counted in the ranking.
+    /// The traits of the case by which the row is counted in the ranking.
     pub traits: CaseTraits,
     /// The ending of the run.
     pub status: Status,
@@ -138,6 +138,16 @@ fn not_run(
     })
 }
 
+/// The limits of an engine's class at an accuracy; none to closed forms.
+#[must_use]
+pub fn class_of<'a>(
+    classes: &'a [ClassBounds],
+    declaration: &Declaration,
+    accuracy: Accuracy,
+) -> Option<&'a ClassBounds> {
+    ClassBounds::of(classes, declaration.class_and_order(), declaration.stepping, accuracy)
+}
+
 /// Runs one engine on one case, and judges its answer.
 #[must_use]
 pub fn one(
@@ -169,12 +179,7 @@ pub fn one(
         return without(status, verdict, reason);
     }
     let subject = Subject { case: &case.case.name, engine: declaration.name, accuracy, unit };
-    let class = ClassBounds::of(
-        &defaults.classes,
-        declaration.class_and_order(),
-        declaration.stepping,
-        accuracy,
-    );
+    let class = class_of(&defaults.classes, &declaration, accuracy);
     let of_class = class.map(ClassBounds::bounds).unwrap_or_default();
     let bounds: Vec<_> = case.case.bounds.iter().chain(&of_class).chain(&defaults.bounds).collect();
     let own = case.case.shortcomings.iter();

@@ -5,7 +5,7 @@ mod prepared;
 mod probes;
 mod scope;
 
-pub use matrix::{CaseTraits, Scored, Status, one, probes_any, run, size};
+pub use matrix::{CaseTraits, Scored, Status, class_of, one, probes_any, run, size};
 pub use prepared::{Measured, PreparedCase, prepare};
 pub use probes::{Extent, is_shown};
 pub use scope::{Suite, SuiteScope};

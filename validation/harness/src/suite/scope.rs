@@ -113,7 +113,7 @@ impl Suite {
     #[must_use]
     pub fn limits(case: &Case) -> Limits {
         let (calls, more) = if case.oscillator.is_some() { (4, 8_000_000) } else { (2, 0) };
-        // Of both suites: what one gives up as an error the other does not pass.
+        // Both suites have the same limits: no row is an error in one and passes in the other.
         Limits { calls: calls * Self::Full.budget() as u64 + more, ..Limits::default() }
     }
 }

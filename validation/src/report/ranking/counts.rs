@@ -1,6 +1,7 @@
 //! What is counted of rows: whether one is right, and how many are at each setting.
 
 use super::DefectUnits;
+use crate::report::records::finite;
 use crate::report::{JudgedRecords, ReportRow};
 use crate::score::{Spread, Verdict};
 use serde::{Serialize, Serializer};
@@ -92,6 +93,5 @@ pub(super) fn defect_units(rows: &[&ReportRow]) -> DefectUnits {
         [defect.time.size.max, defect.state.max].into_iter().flatten().reduce(f64::max)
     };
     let spread = Spread::of(rows.iter().filter_map(largest).collect());
-    let finite = |value: f64| Some(value).filter(|it| it.is_finite());
     DefectUnits { median: finite(spread.median), q99: finite(spread.q99) }
 }

@@ -21,6 +21,7 @@ pub use formats::{RankingFormat, ranking_text};
 pub(super) use groups::{EngineRows, by_engine, case_names, scores};
 
 use super::ReportRow;
+use super::records::finite;
 use crate::score::{Spread, Verdict};
 use counts::{defect_units, of_settings, sum};
 use place::{Entry, place};
@@ -163,7 +164,7 @@ fn fails_on(rows: &[&ReportRow]) -> Vec<String> {
 
 /// The median of some figures; none where there are none, or where it is infinite.
 fn median(figures: Vec<f64>) -> Option<f64> {
-    Some(Spread::of(figures).median).filter(|it| it.is_finite())
+    finite(Spread::of(figures).median)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use crate::number::brief;
 use crate::report::ranking::{Common, EngineRows, by_engine, case_names, settings};
 use crate::report::table::{WIDTH, text};
 use crate::report::{Ranked, Report, ReportRow};
+use crate::score::nearest_rank;
 use comfy_table::{CellAlignment, Table};
 
 /// The tolerance at which errors and costs are shown, where it was run.
@@ -153,8 +154,7 @@ fn most_errors(rows: &[&ReportRow], setting: &str) -> Option<f64> {
     };
     let mut errors: Vec<f64> = at.map(error).collect();
     errors.sort_by(f64::total_cmp);
-    let place = (MOST * errors.len() as f64).ceil() as usize;
-    errors.get(place.saturating_sub(1)).copied().filter(|it| it.is_finite())
+    Some(nearest_rank(&errors, MOST)).filter(|it| it.is_finite())
 }
 
 /// A cost in at most six columns.

@@ -50,7 +50,7 @@ pub fn screen(report: &Report, evidence: &ReportEvidence, parts: ScreenParts) ->
 fn first_screen(report: &Report, evidence: &ReportEvidence) -> String {
     let above = above(report);
     let advice = advice(report);
-    let below = [power_line(evidence), counts(report)].concat();
+    let below: Vec<String> = power(evidence).into_iter().chain([counts(report)]).collect();
     let bad = unexpected(report);
     let table = EngineTable::of(report);
     let fixed = above.len() + table.header_lines() + advice.len() + below.len();
@@ -98,10 +98,6 @@ fn failures(bad: &[&ReportRow], room: usize) -> Vec<String> {
     bad.iter().take(shown).map(line).chain(more).collect()
 }
 
-fn power_line(evidence: &ReportEvidence) -> Vec<String> {
-    power(evidence).into_iter().collect()
-}
-
 fn worse(evidence: &ReportEvidence) -> String {
     let lines = evidence.worse.iter();
     lines.map(|it| wrapped(&format!("worse than the baseline: {it}"))).collect()
@@ -115,13 +111,13 @@ fn dearer(evidence: &ReportEvidence) -> String {
 }
 
 /// The rows of each class; classes without a row are left out, but for failures and errors.
-fn counts(report: &Report) -> Vec<String> {
+fn counts(report: &Report) -> String {
     let count = |it: Verdict| report.results.iter().filter(|row| row.verdict == it).count();
     let told = |it: &Verdict| count(*it) > 0 || matches!(it, Verdict::Fail | Verdict::Error);
     let classes = Verdict::ALL.into_iter().rev().filter(told);
     let classes: Vec<_> =
         classes.map(|class| format!("{} {}", count(class), class.as_str())).collect();
-    vec![one_line(&format!("{} rows: {}", report.results.len(), classes.join(", ")))]
+    one_line(&format!("{} rows: {}", report.results.len(), classes.join(", ")))
 }
 
 #[cfg(test)]

@@ -68,7 +68,7 @@ fn most_frequent(rows: &[&ReportRow]) -> Option<Failing> {
             }
         }
     }
-    // Of equals the last is the largest, so the gravest comes last.
+    // `max_by_key` takes the last of equals, so the gravest kind comes last.
     cases.into_iter().rev().max_by_key(|it| it.1.len()).map(|it| it.0)
 }
 

@@ -64,7 +64,7 @@ impl Units<'_> {
     /// The defect of an event's time, with its sign: the event of a guard ends the stretch.
     pub(super) fn of_time(&self, off: f64, stretch: &Stretch<'_>, guard: usize) -> f64 {
         let rounding = Self::rounding_of_time(stretch.elapsed + stretch.length);
-        let beyond = (off.abs() - rounding).max(0.0).copysign(off);
+        let beyond = beyond(off, rounding);
         let unit = self.tolerance() * self.time_scale() * self.of_length(stretch.length);
         if (beyond / unit).abs() <= SMALL || stretch.length <= 0.0 {
             return beyond / unit;
@@ -127,15 +127,14 @@ impl Units<'_> {
         if square < SLOW * SLOW || stretch.length > NEAR * scale {
             return None;
         }
-        let off = own.iter().zip(exact).zip(&weights).map(|((own, exact), weight)| {
-            let off = (own - exact) / weight;
-            (off.abs() - ROUNDINGS).max(0.0).copysign(off)
-        });
+        let off = own
+            .iter()
+            .zip(exact)
+            .zip(&weights)
+            .map(|((own, exact), weight)| beyond((own - exact) / weight, ROUNDINGS));
         let along: f64 = off.zip(&parts).map(|(off, part)| off * part).sum();
         let rounding = Self::rounding_of_time(end) / scale;
-        let delay = along / square;
-        let beyond = (delay.abs() - rounding).max(0.0).copysign(delay);
-        Some(beyond / self.tolerance())
+        Some(beyond(along / square, rounding) / self.tolerance())
     }
 
     fn of_states(
@@ -151,7 +150,7 @@ impl Units<'_> {
         // No state is known better than its time.
         let rounding =
             |n: usize| ROUNDINGS * weights[n] + Self::rounding_of_time(end) * rates[n].abs();
-        let off = |n: usize| ((own[n] - exact[n]).abs() - rounding(n)).max(0.0);
+        let off = |n: usize| beyond(own[n] - exact[n], rounding(n)).abs();
         let worst_by = |sizes: &[f64]| {
             let each =
                 (0..own.len()).map(|n| if own[n].is_nan() { f64::NAN } else { off(n) / sizes[n] });
@@ -172,4 +171,9 @@ impl Units<'_> {
         let k = self.allowance.time.max(self.allowance.state);
         k * self.tolerance() * self.of_length(stretch.length) * growth
     }
+}
+
+/// What is left of an error beyond the rounding that hides in it, with its sign.
+fn beyond(off: f64, rounding: f64) -> f64 {
+    (off.abs() - rounding).max(0.0).copysign(off)
 }
