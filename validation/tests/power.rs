@@ -7,7 +7,9 @@ use percuss_validation::engine::Accuracy;
 use percuss_validation::integrators::{
     CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, WrongEngine, faulty, wrong,
 };
-use percuss_validation::power::{AS_EXACT, Finding, Gate, Standard, all, examine, is_run};
+use percuss_validation::power::{
+    AS_EXACT, Finding, Gate, Standard, Variant, all, examine, is_run, tallies, trials,
+};
 use percuss_validation::suite::{PreparedCase, Suite, prepare};
 use percuss_validation::truth::Library;
 
@@ -202,4 +204,44 @@ fn events_of_one_instant_are_a_set_where_their_order_is_free() {
     assert!(free.contains(&"spheres-meet".to_owned()), "{free:?}");
     assert_eq!(finding.failed_on, matters);
     assert!(!matters.is_empty());
+}
+
+/// Mistakes that at least 95 % of the answers show in which they spoil anything. Late times alone
+/// show from 30 tolerances on: multistep methods err by more than 10 after a restart.
+const CAUGHT: [Variant; 16] = [
+    Variant::Late(10.0),
+    Variant::Late(100.0),
+    Variant::TimesLate(30.0),
+    Variant::TimesLate(100.0),
+    Variant::OneLate,
+    Variant::Dropped(50),
+    Variant::Swapped,
+    Variant::OldState,
+    Variant::LinearSamples,
+    Variant::Noise(10.0),
+    Variant::StatesOff,
+    Variant::ColumnsSwapped,
+    Variant::SamplesBehind,
+    Variant::HalfHorizon,
+    Variant::OneNaN,
+    Variant::GarbageAfterAThird,
+];
+
+/// On set-ups and cases that set no limit wrong answers are caught, and no right one is condemned.
+#[test]
+fn wrong_answers_are_caught_where_no_limit_was_set() {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = embedded().expect("the cases are read");
+    let cases = prepare(cases, &library, None).expect("the cases are made ready");
+    let classes = defaults().expect("the limits are read").classes;
+    let made = trials(&cases, 1e-6, &classes, &CAUGHT);
+    assert!(made.len() > 200, "{}", made.len());
+    let condemned: Vec<_> =
+        made.iter().filter(|it| it.is_condemned).map(|it| (it.engine, &it.case)).collect();
+    assert!(condemned.is_empty(), "{condemned:?}");
+    for it in tallies(&made, &CAUGHT) {
+        let (caught, spoiled) = (it.caught, it.spoiled);
+        let is_enough = spoiled > 0 && 20 * caught >= 19 * spoiled;
+        assert!(is_enough, "{}: {caught} of {spoiled}; {:?}", it.variant.words(), it.missed_on);
+    }
 }

@@ -38,13 +38,11 @@ pub enum Quantity {
     StateError,
     /// |dv| at the scored horizon, units of displacement.
     DriftError,
-    /// Largest error of an event's time or state over unit x (1 + size) x growth x number of
-    /// events, where the size is that of the value, or of the largest state so far in a
-    /// piecewise-affine system.
+    /// Largest error of an event's time or state over unit x (1 + size) x growth, where the size is
+    /// that of the value, or of the largest state so far in a piecewise-affine system.
     EventConstant,
-    /// Largest error of the sample's states over unit x (1 + size) x growth x number of events,
-    /// where the size is that of the value, or of the largest state so far in a piecewise-affine
-    /// system.
+    /// Largest error of the sample's states over unit x (1 + size) x growth, where the size is that
+    /// of the value, or of the largest state so far in a piecewise-affine system.
     StateConstant,
     /// Forcing periods until the state's error passes 1e-3 (a lower limit).
     ValidPeriods,

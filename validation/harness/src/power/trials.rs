@@ -20,8 +20,6 @@ const SET_UPS: [&str; 4] = [
     "diffsol-tr_bdf2",
     "diffsol-bdf",
 ];
-/// The tolerances of the trials.
-const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 
 /// A right answer and the wrong ones that are made of it.
 pub struct Trial {
@@ -58,22 +56,49 @@ pub const fn sets_limits(place: usize) -> bool {
     place.is_multiple_of(2)
 }
 
-/// The trials of set-ups that set no limit, on cases that set none.
-#[must_use]
-pub fn trials(cases: &[PreparedCase], classes: &[ClassBounds], variants: &[Variant]) -> Vec<Trial> {
-    let chosen =
-        |name: &&'static str| integrators::all().iter().find(|it| it.declaration().name == *name);
-    let engines: Vec<&'static dyn Engine> = SET_UPS.iter().filter_map(chosen).copied().collect();
+/// The runs of which trials are made: set-ups that set no limit, on cases that set none.
+fn runs(cases: &[PreparedCase]) -> Vec<(&PreparedCase, &'static dyn Engine)> {
+    let is_chosen = |it: &&&'static dyn Engine| SET_UPS.contains(&it.declaration().name);
+    let engines: Vec<_> = integrators::all().iter().filter(is_chosen).copied().collect();
     let others = cases.iter().enumerate().filter(|(n, _)| !sets_limits(*n));
-    let asked = others.flat_map(|(_, case)| {
-        let engines = engines.iter();
-        engines.flat_map(move |engine| TOLERANCES.map(|tolerance| (case, *engine, tolerance)))
-    });
-    let asked: Vec<_> = asked.collect();
-    let one = |(case, engine, tolerance)| {
-        trial(case, (engine, Accuracy::Tolerance(tolerance)), classes, variants)
+    others.flat_map(|(_, case)| engines.iter().map(move |engine| (case, *engine))).collect()
+}
+
+/// The trials at a tolerance.
+#[must_use]
+pub fn trials(
+    cases: &[PreparedCase],
+    tolerance: f64,
+    classes: &[ClassBounds],
+    variants: &[Variant],
+) -> Vec<Trial> {
+    let accuracy = Accuracy::Tolerance(tolerance);
+    let one = |(case, engine)| trial(case, (engine, accuracy), classes, variants);
+    runs(cases).into_par_iter().filter_map(one).collect()
+}
+
+/// Of the answers that were made with a tolerance so many times as loose as the one that they are
+/// labelled with: how many are condemned, and how many there are.
+#[must_use]
+pub fn loosened(
+    cases: &[PreparedCase],
+    (tolerance, factor): (f64, f64),
+    classes: &[ClassBounds],
+) -> (usize, usize) {
+    let condemned = |(case, engine): (&PreparedCase, &'static dyn Engine)| {
+        let declaration = engine.declaration();
+        let label = Accuracy::Tolerance(tolerance);
+        let (kind, stepping) = (declaration.class_and_order(), declaration.stepping);
+        let class = ClassBounds::of(classes, kind, stepping, label)?;
+        let limits = Suite::limits(&case.case);
+        let loose = Accuracy::Tolerance(factor * tolerance);
+        let made = answer(engine, &case.task, loose, &limits).ok()?;
+        let unit = stepping.unit(label);
+        let found = case.judge_records(&made, class, unit)?;
+        Some(found.is_wrong(&Allowance::of(class, unit)))
     };
-    asked.into_par_iter().filter_map(one).collect()
+    let all: Vec<bool> = runs(cases).into_par_iter().filter_map(condemned).collect();
+    (all.iter().filter(|it| **it).count(), all.len())
 }
 
 /// One answer of an engine, judged, with the variants of it; none where the engine has no answer.

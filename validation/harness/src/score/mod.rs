@@ -1,7 +1,7 @@
 //! Scores: an engine's run compared with the truth.
 //!
-//! Everything is measured up to the scored horizon, which is fixed from the truth and the engine's
-//! unit of error alone: a miss before it counts, nothing after it does.
+//! Each record is judged from the one before it ([`local`]). Errors since the start are measured up
+//! to the scored horizon, which is fixed from the truth and the engine's unit of error alone.
 //!
 //! What an error is counted in, and how far a run is scored, is data ([`ErrorRule`]).
 
