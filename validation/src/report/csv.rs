@@ -9,7 +9,7 @@ use std::io::{self, Write};
 
 pub(super) struct Csv;
 
-const COLUMNS: [&str; 55] = [
+const COLUMNS: [&str; 68] = [
     "case",
     "trouble",
     "engine",
@@ -29,11 +29,24 @@ const COLUMNS: [&str; 55] = [
     "first_wrong_n",
     "first_wrong_kind",
     "first_wrong_event",
+    "first_wrong_mode",
     "first_wrong_time",
+    "first_wrong_exact_event",
+    "first_wrong_exact_mode",
+    "first_wrong_exact_time",
+    "first_wrong_defect",
+    "location_median",
+    "location_q99",
     "location_max",
+    "time_defect_median",
+    "time_defect_q99",
     "time_defect_max",
     "time_defect_signed_median",
+    "state_defect_median",
+    "state_defect_q99",
     "state_defect_max",
+    "sample_defect_median",
+    "sample_defect_q99",
     "sample_defect_max",
     "inconsistency_max",
     "phase_word_ok",
@@ -86,6 +99,14 @@ fn optional<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
+fn text(value: Option<String>) -> String {
+    value.unwrap_or_default()
+}
+
+fn number(value: Option<f64>) -> String {
+    optional(value.map(shortest))
+}
+
 /// The largest distance in units of its limit.
 fn share(distances: &BTreeMap<&'static str, Distance>) -> String {
     let shares = distances.values().map(|it| it.value / it.limit);
@@ -96,7 +117,7 @@ fn spread(spread: &Spread) -> [String; 3] {
     [spread.median, spread.q99, spread.max].map(shortest)
 }
 
-fn fields(row: &ReportRow) -> [String; 55] {
+fn fields(row: &ReportRow) -> [String; 68] {
     let [time_median, time_q99, time_max] = spread(&row.event_time_error);
     let [state_median, state_q99, state_max] = spread(&row.state_error);
     let records = &row.records;
@@ -126,14 +147,27 @@ fn fields(row: &ReportRow) -> [String; 55] {
         optional(records.events_undecidable),
         optional(first.map(|it| it.n)),
         first.map(|it| it.kind.as_str().to_owned()).unwrap_or_default(),
-        first.and_then(|it| it.event.clone().or(it.exact_event.clone())).unwrap_or_default(),
-        optional(first.and_then(|it| it.time.or(it.exact_time)).map(shortest)),
-        optional(defect.location.max.map(shortest)),
-        optional(defect.time.size.max.map(shortest)),
-        optional(defect.time.signed_median.map(shortest)),
-        optional(defect.state.max.map(shortest)),
-        optional(defect.sample.max.map(shortest)),
-        optional(records.inconsistency_max.map(shortest)),
+        text(first.and_then(|it| it.event.clone())),
+        text(first.and_then(|it| it.mode.clone())),
+        number(first.and_then(|it| it.time)),
+        text(first.and_then(|it| it.exact_event.clone())),
+        text(first.and_then(|it| it.exact_mode.clone())),
+        number(first.and_then(|it| it.exact_time)),
+        number(first.and_then(|it| it.defect)),
+        number(defect.location.median),
+        number(defect.location.q99),
+        number(defect.location.max),
+        number(defect.time.size.median),
+        number(defect.time.size.q99),
+        number(defect.time.size.max),
+        number(defect.time.signed_median),
+        number(defect.state.median),
+        number(defect.state.q99),
+        number(defect.state.max),
+        number(defect.sample.median),
+        number(defect.sample.q99),
+        number(defect.sample.max),
+        number(records.inconsistency_max),
         optional(row.phase_word_ok),
         time_median,
         time_q99,
