@@ -37,12 +37,16 @@ Words:
   guard        a condition on state and forcing, such as x < 0, that
                ends a mode or is only counted
   segment      the motion between two events, in one mode
-  checked      true events that a row is judged on: those before an
-               error of one tolerance has grown to 1e-3
+  record       an event of an engine, which is judged by the exact
+               continuation of the record before it
+  missed       an event of an exact continuation that the engine went
+               past
+  spurious     a record of an event that the exact continuation does not
+               have
+  checked      events of the table before an error of one tolerance has
+               grown to 1e-3; errors since the start are over these
   found        a checked event that the engine has, in order and within
                0.05 forcing periods
-  missed       a checked event that the solver does not have
-  spurious     an event of the solver that the truth does not have
   right        a case at a setting that passes or is undecidable, with
                its sampled states judged; what was not run is not right
   rank         one more than the number of engines that are better: by
@@ -70,10 +74,11 @@ Words:
                --answers
   before       columns before.<state> of an event: the state that its
                reset has not touched
-  checked      true events that a row is judged on: those before an
-               error of one tolerance has grown to 1e-3
-  missed       a checked event that the solver does not have
-  spurious     an event of the solver that the truth does not have
+  record       an event of an answer, which is judged by the exact
+               continuation of the record before it
+  missed       an event of an exact continuation that the answer lacks
+  spurious     a record of an event that the exact continuation does not
+               have
   unavailable  verdict of a case that was not answered, which is not
                right";
 

@@ -13,8 +13,8 @@ mod groups;
 mod place;
 
 pub(super) use bootstrap::{Bootstrap, is_ahead};
+pub(super) use cost::Common;
 pub use cost::Cost;
-pub(super) use cost::{Common, work};
 pub use counts::SettingCounts;
 pub(super) use counts::settings;
 pub use formats::{RankingFormat, ranking_text};

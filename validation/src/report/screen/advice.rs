@@ -1,32 +1,94 @@
 //! One line of advice for each kind of problem.
 
-use crate::report::ranking::{Common, work};
+use super::names::short_names;
+use crate::number::brief;
+use crate::report::ranking::{Common, Ranked};
 use crate::report::table::one_line;
 use crate::report::{Report, ReportRow};
-use crate::score::Spread;
+use std::collections::BTreeMap;
 
 /// The lines; none of a kind of which no case was run.
 pub(super) fn advice(report: &Report) -> Vec<String> {
-    let candidates = candidates(report);
-    let rows = |is: fn(&ReportRow) -> bool| -> Vec<&ReportRow> {
-        let of_kind = |row: &&ReportRow| is(row) && candidates.contains(&row.engine);
-        report.results.iter().filter(of_kind).collect()
-    };
+    let best = Best::of(report);
     let lines = [
-        ("non-stiff", most_right(&rows(|row| !row.traits.is_stiff))),
-        ("stiff", most_right(&rows(|row| row.traits.is_stiff))),
-        ("chaos", longest_valid(&rows(|row| row.traits.is_chaotic))),
+        ("non-stiff", best.most_right(&best.rows(report, |row| !row.traits.is_stiff))),
+        ("stiff", best.most_right(&best.rows(report, |row| row.traits.is_stiff))),
+        ("chaos", best.longest_valid(&best.rows(report, |row| row.traits.is_chaotic))),
     ];
     let told = lines.into_iter().filter_map(|(kind, line)| Some((kind, line?)));
     told.map(|(kind, line)| one_line(&format!("advice, {:<10} {line}", format!("{kind}:"))))
         .collect()
 }
 
-/// The integrators without unexpected failures, the best first; all where there is none.
-fn candidates(report: &Report) -> Vec<&'static str> {
-    let integrators = || report.ranking.iter().filter(|it| it.shown_rank().is_some());
-    let clean: Vec<_> = integrators().filter(|it| it.clean).map(|it| it.engine).collect();
-    if clean.is_empty() { integrators().map(|it| it.engine).collect() } else { clean }
+/// The integrators that none is better than.
+struct Best<'a> {
+    engines: Vec<&'a Ranked>,
+    names: BTreeMap<&'static str, &'static str>,
+}
+
+impl<'a> Best<'a> {
+    fn of(report: &'a Report) -> Self {
+        let engines = report.ranking.iter().filter(|it| it.shown_rank() == Some(1)).collect();
+        Self { engines, names: short_names(report) }
+    }
+
+    /// Their rows of a kind.
+    fn rows<'r>(&self, report: &'r Report, is: fn(&ReportRow) -> bool) -> Vec<&'r ReportRow> {
+        let is_own = |row: &ReportRow| self.engines.iter().any(|it| it.engine == row.engine);
+        report.results.iter().filter(|row| is(row) && is_own(row)).collect()
+    }
+
+    /// Of choices, the one that costs least at equal error, or in calls where no equal error is
+    /// known.
+    fn cheapest<'c, 'r>(&self, choices: &[&'c Choice<'r>]) -> Option<&'c Choice<'r>> {
+        let area = |choice: &Choice<'_>| {
+            let own = self.engines.iter().find(|it| it.engine == choice.engine());
+            own.and_then(|it| it.cost.area).unwrap_or(0.0)
+        };
+        let dearer = |a: &&Choice<'_>, b: &&Choice<'_>| {
+            area(b).total_cmp(&area(a)).then(a.calls().cmp(&b.calls()))
+        };
+        choices.iter().copied().min_by(dearer)
+    }
+
+    /// A choice by the name that the table of engines gives it.
+    fn named(&self, choice: &Choice<'_>) -> String {
+        let name = self.names.get(choice.engine()).copied().unwrap_or(choice.engine());
+        format!("{name} at {}", choice.key())
+    }
+
+    /// Of the engines with the most right cases, at the loosest tolerance at which one has so many,
+    /// the one that costs least at equal error.
+    fn most_right(&self, rows: &[&ReportRow]) -> Option<String> {
+        let choices = Choice::all(rows);
+        let most = choices.iter().map(Choice::right).max()?;
+        if most == 0 {
+            return Some("no integrator gets any case right".to_owned());
+        }
+        let loosest = choices.iter().find(|it| it.right() == most)?;
+        let is_equal = |it: &&Choice<'_>| it.key() == loosest.key() && it.right() == most;
+        let equal: Vec<&Choice<'_>> = choices.iter().filter(is_equal).collect();
+        let cheapest = self.cheapest(&equal)?;
+        let cases = loosest.rows.iter().map(|row| row.case.as_str());
+        let shared: Vec<&str> =
+            cases.filter(|case| equal.iter().all(|it| it.is_right_on(case))).collect();
+        Some(format!("{} ({})", self.named(cheapest), achieved(cheapest, &shared)))
+    }
+
+    /// Of the engines that stay near the truth for about as long as the best does on average, the
+    /// one that costs least at equal error, at the loosest tolerance at which it does so.
+    fn longest_valid(&self, rows: &[&ReportRow]) -> Option<String> {
+        let telling = telling(rows);
+        let choices = Choice::all(&telling);
+        let longest = choices.iter().map(Choice::valid_periods).max_by(f64::total_cmp)?;
+        let is_about = |it: &&Choice<'_>| it.valid_periods() >= ABOUT_AS_LONG * longest;
+        let about: Vec<&Choice<'_>> = choices.iter().filter(is_about).collect();
+        let loosest = about.first()?.key();
+        let loosest: Vec<_> = about.into_iter().filter(|it| it.key() == loosest).collect();
+        let best = self.cheapest(&loosest)?;
+        let (named, periods) = (self.named(best), best.valid_periods());
+        Some(format!("{named} (within 1e-3 for {periods:.0} periods on average)"))
+    }
 }
 
 /// An engine at one setting, on the cases of a kind.
@@ -62,64 +124,42 @@ impl<'a> Choice<'a> {
         self.rows.first().map_or(String::new(), |row| row.setting_key())
     }
 
+    /// The right-hand sides of all rows.
+    fn calls(&self) -> u64 {
+        self.rows.iter().filter_map(|row| row.rhs_evaluations).sum()
+    }
+
     fn right(&self) -> usize {
         self.rows.iter().filter(|row| row.is_right()).count()
+    }
+
+    /// How long the rows stay near the truth on average.
+    fn valid_periods(&self) -> f64 {
+        self.rows.iter().map(|row| valid_periods(row)).sum::<f64>() / self.rows.len() as f64
     }
 
     fn is_right_on(&self, case: &str) -> bool {
         self.rows.iter().any(|row| row.case == case && row.is_right())
     }
-
-    /// The median of what some rows cost.
-    fn cost(&self, cases: &[&str]) -> f64 {
-        let own = self.rows.iter().filter(|row| cases.contains(&row.case.as_str()));
-        Spread::of(own.map(|row| work(row).unwrap_or(f64::INFINITY)).collect()).median
-    }
 }
 
-/// The cheapest of the engines with the most right cases, at the loosest tolerance at which one has
-/// so many.
-fn most_right(rows: &[&ReportRow]) -> Option<String> {
-    let choices = Choice::all(rows);
-    let most = choices.iter().map(Choice::right).max()?;
-    if most == 0 {
-        return Some("no integrator gets any case right".to_owned());
-    }
-    let best = choices.iter().find(|it| it.right() == most)?;
-    let cases: Vec<&str> = best.rows.iter().map(|row| row.case.as_str()).collect();
-    let is_equal = |it: &&Choice<'_>| it.key() == best.key() && it.right() == most;
-    let equal: Vec<&Choice<'_>> = choices.iter().filter(is_equal).collect();
-    let shared: Vec<&str> =
-        cases.iter().filter(|case| equal.iter().all(|it| it.is_right_on(case))).copied().collect();
-    let cheapest = equal.iter().min_by(|a, b| a.cost(&shared).total_cmp(&b.cost(&shared)))?;
-    Some(described(cheapest, cases.len(), &shared))
-}
-
-/// An engine at its setting, with the share of cases that are right, and the cost.
-fn described(choice: &Choice<'_>, cases: usize, shared: &[&str]) -> String {
-    let right = choice.right();
+/// The share of cases that are right, the error, and the cost of an event in the shared cases.
+fn achieved(choice: &Choice<'_>, shared: &[&str]) -> String {
+    let (right, cases) = (choice.right(), choice.rows.len());
     let rows = choice.rows.iter().filter(|row| shared.contains(&row.case.as_str()));
     let events = rows.map(|row| (row.case.as_str(), row.events_total)).collect();
     let cost = Common(events).per_event_at(&choice.rows, &choice.key());
-    let cost = cost.map_or(String::new(), |it| format!(", {it:.0} rhs an event"));
-    format!("{} at {} ({right} of {cases} cases right{cost})", choice.engine(), choice.key())
+    let cost = cost.map_or(String::new(), |it| format!(", {it:.0} rhs"));
+    let error = nine_tenths(choice);
+    format!("{right}/{cases} right, 90 % of errors < {error}{cost}")
 }
 
-/// The engine that stays near the truth for longest on average, at the loosest of equally good
-/// tolerances.
-fn longest_valid(rows: &[&ReportRow]) -> Option<String> {
-    let telling = telling(rows);
-    let choices = Choice::all(&telling);
-    let valid = |it: &Choice<'_>| {
-        it.rows.iter().map(|row| valid_periods(row)).sum::<f64>() / it.rows.len() as f64
-    };
-    let longest = choices.iter().map(valid).max_by(f64::total_cmp)?;
-    let best = choices.iter().find(|it| valid(it) >= longest)?;
-    Some(format!(
-        "{} at {} (within 1e-3 for {longest:.0} periods on average)",
-        best.engine(),
-        best.key()
-    ))
+/// The error that nine tenths of the rows stay below.
+fn nine_tenths(choice: &Choice<'_>) -> String {
+    let mut errors: Vec<f64> = choice.rows.iter().map(|row| row.state_error.max).collect();
+    errors.retain(|it| it.is_finite());
+    errors.sort_by(f64::total_cmp);
+    errors.get(9 * errors.len() / 10).or(errors.last()).map_or("-".to_owned(), |it| brief(*it))
 }
 
 /// The rows of the cases that tell engines apart: where all stay near the truth up to the end, none
@@ -135,6 +175,8 @@ fn telling<'a>(rows: &[&'a ReportRow]) -> Vec<&'a ReportRow> {
     if telling.is_empty() { rows.to_vec() } else { telling }
 }
 
+/// A mean horizon of this share of the longest is about as long.
+const ABOUT_AS_LONG: f64 = 0.98;
 /// Horizons that differ by less, as a share, are the same.
 const SAME_PERIODS: f64 = 1e-6;
 
