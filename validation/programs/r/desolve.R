@@ -21,6 +21,7 @@ stretch <- function(course, method, known) {
   times <- unique(c(course$t, due(course, course$run$span), course$run$span))
   times <- times[times >= course$t]
   count <- length(course$modes[[course$mode]]$events)
+  course$left <- rep(Inf, count)
   tolerance <- course$run$tolerance
   arguments <- list(
     y = course$z,

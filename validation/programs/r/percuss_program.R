@@ -117,16 +117,19 @@ enter <- function(course, passed = NULL) {
 }
 
 # A guard; one that was zero where the mode begins has the sign that it has just after it until it
-# has moved away by more than the tolerance hides.
+# has moved away by more than the tolerance hides. `course$left` keeps when that was: coming back it
+# is itself.
 guard <- function(course, place, t, z, known = NULL) {
   event <- course$modes[[course$mode]]$events[[place]]
   value <- sum(event$row * wide_of(course, t, z))
-  if (is.null(known) || known$order == 0) return(value)
+  if (is.null(known) || known$order == 0 || t >= course$left[place]) return(value)
   if (known$sign == 0) return(-1)
   tolerance <- course$run$tolerance
   errors <- tolerance$absolute + tolerance$relative * abs(z)
   hidden <- (if (known$order == 1) SIMPLE else MULTIPLE) * sum(abs(event$row[seq_along(z)]) * errors)
-  if (abs(value) <= hidden) known$sign * 1e-300 else value
+  if (abs(value) <= hidden) return(known$sign * 1e-300)
+  if (sign(value) == known$sign) course$left[place] <- t
+  value
 }
 
 # The instants that are wanted up to a time.
