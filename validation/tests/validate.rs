@@ -335,7 +335,7 @@ fn every_line_of_the_summary_fits_a_hundred_columns() {
     let places = order.map(|word| said.find(word).unwrap_or_else(|| panic!("{word}: {said}")));
     assert!(places.is_sorted(), "{places:?} {said}");
     let few = stdout(&["validate", "-c", "^small-b$", "-e", "exact"]);
-    assert!(few.contains("found/  spu-"), "{few}");
+    assert!(few.contains("right/ mis-  ri-  bad"), "{few}");
 }
 
 /// The rows of every engine fit, those with the longest names and with steps among them.
@@ -345,7 +345,7 @@ fn rows_fit_a_hundred_columns() {
     let rows = said.lines().take_while(|line| !line.is_empty());
     let widest = rows.map(|line| line.chars().count()).max();
     assert!(widest.is_some_and(|widest| widest <= 100), "{said}");
-    for word in ["differential-equations-rkv655e-original", " 1/64 ", " 6/6/6 ", " not-run"] {
+    for word in ["differential-equations-rkv655e-original", " 1/64 ", " 6/6 ", " not-run"] {
         assert!(said.contains(word), "{word}: {said}");
     }
 }

@@ -1,6 +1,6 @@
 //! The rows of a report as a table, and the reasons of those that are out of bounds.
 
-use super::ReportRow;
+use super::{JudgedRecords, ReportRow};
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
@@ -8,26 +8,28 @@ use comfy_table::{CellAlignment, Table, presets};
 /// The widest line, in columns.
 pub const WIDTH: usize = 100;
 /// Lines of the header of the rows.
-const HEADER_LINES: usize = 2;
+const HEADER_LINES: usize = 3;
 
 /// Every row, one line each, below the name of its case.
 pub(super) fn row_table(rows: &[ReportRow]) -> String {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING);
     table.set_header([
-        "\nengine",
-        "tol,\nstep",
-        "found/\nchecked/all",
-        "spu-\nrious",
-        "time\nerror",
-        "state\nerror",
-        "\nrhs",
-        "\nverdict",
+        "\n\nengine",
+        "\ntol,\nstep",
+        "\nright/\njudged",
+        "\nmis-\nsed",
+        "spu-\nri-\nous",
+        "\nbad\nmode",
+        "\ntime\nerror",
+        "\nstate\nerror",
+        "\n\nrhs",
+        "\n\nverdict",
     ]);
     for row in rows {
         table.add_row(cells(row));
     }
-    for column in table.column_iter_mut().skip(1).take(6) {
+    for column in table.column_iter_mut().skip(1).take(8) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     for column in table.column_iter_mut() {
@@ -57,17 +59,25 @@ pub(super) fn reasons(rows: &[ReportRow]) -> String {
     rows.iter().filter(bad).map(line).collect()
 }
 
-fn cells(row: &ReportRow) -> [String; 8] {
+fn cells(row: &ReportRow) -> [String; 10] {
     let count = |count: Option<usize>| count.map_or("-".to_owned(), |count| count.to_string());
     let figure = |value: f64| if value.is_nan() { "-".to_owned() } else { brief(value) };
-    let found = row.events_matched.zip(row.events_expected);
+    let JudgedRecords {
+        events_judged,
+        events_right,
+        events_missed,
+        events_spurious,
+        events_wrong_mode,
+        ..
+    } = row.records;
+    let right = events_right.zip(events_judged);
     [
         format!(" {}", row.engine),
         short_setting(row),
-        found.map_or("-".to_owned(), |(found, checked)| {
-            format!("{found}/{checked}/{}", row.events_total)
-        }),
-        count(row.records.events_spurious),
+        right.map_or("-".to_owned(), |(right, judged)| format!("{right}/{judged}")),
+        count(events_missed),
+        count(events_spurious),
+        count(events_wrong_mode),
         figure(row.event_time_error.max),
         figure(row.state_error.max),
         row.rhs_evaluations.map_or("-".to_owned(), |count| count.to_string()),
