@@ -24,6 +24,7 @@ mod every_flag;
 mod export;
 mod findings;
 mod first_study;
+mod forged;
 mod formats;
 mod growth;
 mod horizon;

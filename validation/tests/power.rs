@@ -8,7 +8,7 @@ use percuss_validation::integrators::{
     CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, WrongEngine, faulty, wrong,
 };
 use percuss_validation::power::{
-    AS_EXACT, Finding, Gate, Standard, Variant, all, examine, is_run, tallies, trials,
+    AS_EXACT, Finding, Gate, Standard, Trial, Variant, all, examine, is_run, tallies, trials,
 };
 use percuss_validation::suite::{PreparedCase, Suite, prepare};
 use percuss_validation::truth::Library;
@@ -207,18 +207,19 @@ fn events_of_one_instant_are_a_set_where_their_order_is_free() {
 }
 
 /// Mistakes that at least 95 % of the answers show in which they spoil anything. Late times alone
-/// show from 30 tolerances on: multistep methods err by more than 10 after a restart.
+/// and states off after events show from 300 tolerances on: after a restart right multistep methods
+/// err by up to 100.
 const CAUGHT: [Variant; 16] = [
     Variant::Late(10.0),
     Variant::Late(100.0),
-    Variant::TimesLate(30.0),
-    Variant::TimesLate(100.0),
+    Variant::TimesLate(300.0),
+    Variant::TimesLate(1000.0),
     Variant::OneLate,
     Variant::Dropped(50),
     Variant::Swapped,
     Variant::OldState,
     Variant::LinearSamples,
-    Variant::Noise(10.0),
+    Variant::Noise(300.0),
     Variant::StatesOff,
     Variant::ColumnsSwapped,
     Variant::SamplesBehind,
@@ -227,6 +228,19 @@ const CAUGHT: [Variant; 16] = [
     Variant::GarbageAfterAThird,
 ];
 
+/// Mistakes that as many answers of methods other than multistep ones show.
+const CAUGHT_OF_ONE_STEP: [Variant; 2] = [Variant::TimesLate(30.0), Variant::Noise(10.0)];
+
+/// The kinds of mistakes that fewer than 95 % of the answers show.
+fn too_few(trials: &[Trial], variants: &[Variant]) -> Vec<String> {
+    let tallies = tallies(trials, variants).into_iter();
+    let few = tallies.filter(|it| it.spoiled == 0 || 20 * it.caught < 19 * it.spoiled);
+    few.map(|it| {
+        format!("{}: {} of {}; {:?}", it.variant.words(), it.caught, it.spoiled, it.missed_on)
+    })
+    .collect()
+}
+
 /// On set-ups and cases that set no limit wrong answers are caught, and no right one is condemned.
 #[test]
 fn wrong_answers_are_caught_where_no_limit_was_set() {
@@ -234,14 +248,14 @@ fn wrong_answers_are_caught_where_no_limit_was_set() {
     let cases = embedded().expect("the cases are read");
     let cases = prepare(cases, &library, None).expect("the cases are made ready");
     let classes = defaults().expect("the limits are read").classes;
-    let made = trials(&cases, 1e-6, &classes, &CAUGHT);
+    let mut made = trials(&cases, 1e-6, &classes, &CAUGHT);
     assert!(made.len() > 200, "{}", made.len());
     let condemned: Vec<_> =
         made.iter().filter(|it| it.is_condemned).map(|it| (it.engine, &it.case)).collect();
     assert!(condemned.is_empty(), "{condemned:?}");
-    for it in tallies(&made, &CAUGHT) {
-        let (caught, spoiled) = (it.caught, it.spoiled);
-        let is_enough = spoiled > 0 && 20 * caught >= 19 * spoiled;
-        assert!(is_enough, "{}: {caught} of {spoiled}; {:?}", it.variant.words(), it.missed_on);
-    }
+    assert_eq!(too_few(&made, &CAUGHT), Vec::<String>::new());
+    made = trials(&cases, 1e-6, &classes, &CAUGHT_OF_ONE_STEP);
+    made.retain(|it| it.engine != "diffsol-bdf");
+    assert!(made.len() > 150, "{}", made.len());
+    assert_eq!(too_few(&made, &CAUGHT_OF_ONE_STEP), Vec::<String>::new());
 }

@@ -35,22 +35,35 @@ fn cases() -> Vec<PreparedCase> {
     prepare(chosen, &library, None).expect("the cases are made ready")
 }
 
-fn engine(name: &str) -> &'static dyn Engine {
+pub(super) fn engine(name: &str) -> &'static dyn Engine {
     let mut engines = all().iter().copied();
     engines.find(|it| it.declaration().name == name).expect("it is an engine")
 }
 
 /// The answer of an engine, and what its class of methods is allowed.
 fn answered(engine: &dyn Engine, case: &PreparedCase) -> (Outcome, Allowance) {
-    let declaration = engine.declaration();
-    let limits = Suite::limits(&case.case);
-    let right = answer(engine, &case.task, ACCURACY, &limits).expect("an answer");
-    let classes = defaults().expect("the limits are read").classes;
-    let class = class_of(&classes, &declaration, ACCURACY).expect("a class");
-    (right, Allowance::of(class, declaration.stepping.unit(ACCURACY)))
+    answered_to(engine, case, ACCURACY)
 }
 
-fn judged(case: &PreparedCase, answer: &Outcome, allowance: Allowance) -> LocalJudgement {
+/// The answer at an accuracy.
+pub(super) fn answered_to(
+    engine: &dyn Engine,
+    case: &PreparedCase,
+    accuracy: Accuracy,
+) -> (Outcome, Allowance) {
+    let declaration = engine.declaration();
+    let limits = Suite::limits(&case.case);
+    let right = answer(engine, &case.task, accuracy, &limits).expect("an answer");
+    let classes = defaults().expect("the limits are read").classes;
+    let class = class_of(&classes, &declaration, accuracy).expect("a class");
+    (right, Allowance::of(class, declaration.stepping.unit(accuracy)))
+}
+
+pub(super) fn judged(
+    case: &PreparedCase,
+    answer: &Outcome,
+    allowance: Allowance,
+) -> LocalJudgement {
     case.local.judge(&case.task, answer, allowance).expect("a start that the solver takes")
 }
 

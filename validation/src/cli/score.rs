@@ -15,7 +15,7 @@ use clap::{Args, ValueEnum};
 use percuss_programs::files::{Answerer, EVENTS, FileEngine, SAMPLES};
 use percuss_programs::{NAMES, is_name};
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -150,6 +150,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     if let Some(baseline) = &baseline {
         judged.compare(baseline, (&report, &mut evidence), asked)?;
     }
+    say_what_is_not_given(&rows);
     judged.write(&report, &evidence, all.len())
 }
 
@@ -261,5 +262,19 @@ fn check_names(
 fn say_what_is_wrong(row: &Scored) {
     if let Status::Failed(failure) = &row.status {
         say(&failure.reason);
+    }
+}
+
+/// What the answers lack, so that it is not judged, with the number of cases that lack it.
+fn say_what_is_not_given(rows: &[Scored]) {
+    let mut lacking: BTreeMap<&str, usize> = BTreeMap::new();
+    for row in rows {
+        let Status::Ok(measures, _) = &row.status else { continue };
+        if let Some(what) = measures.not_given() {
+            *lacking.entry(what).or_default() += 1;
+        }
+    }
+    for (what, cases) in lacking {
+        note(&format!("{cases} of {} cases are judged {what}", rows.len()));
     }
 }

@@ -85,6 +85,9 @@ pub struct ReportRow {
     /// What of the case decides where the row is counted in the ranking.
     #[serde(skip)]
     pub traits: CaseTraits,
+    /// Whether the engine gave samples, without which no row is wholly right.
+    #[serde(skip)]
+    pub is_sampled: bool,
     pub engine: &'static str,
     pub tolerance: Option<f64>,
     pub step: Option<f64>,
@@ -296,6 +299,7 @@ impl ReportRow {
             case: scored.case.clone(),
             trouble: scored.trouble.clone(),
             traits: scored.traits,
+            is_sampled: matches!(&scored.status, Status::Ok(it, _) if it.is_sampled),
             engine: scored.engine,
             tolerance: scored.accuracy.tolerance(),
             step: scored.accuracy.step(),

@@ -15,6 +15,7 @@ pub(crate) fn row(case: &str, engine: &'static str, tolerance: Option<f64>) -> R
         case: case.to_owned(),
         trouble: Vec::new(),
         traits: CaseTraits { states: 2, ..CaseTraits::default() },
+        is_sampled: true,
         engine,
         tolerance,
         step: None,

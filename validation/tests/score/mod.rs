@@ -303,6 +303,51 @@ fn what_is_not_answered_counts_as_not_found() {
     );
 }
 
+/// Without samples events alone are judged, and without the states before resets not their
+/// location: both are said, and a case without samples does not count as right.
+#[test]
+fn what_is_not_given_is_not_judged_and_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let accuracy = Accuracy::Tolerance(1e-9);
+    answers("ode_solvers-dopri5", accuracy, "^ball-cut-short$", folder.path());
+    let words = [&SCORE[..], &["--answers", &out, "-c", "^ball-cut-short$"]].concat();
+    let told = |rest: &str| {
+        let (rows, code) = report(&words);
+        assert_eq!((rows.len(), code), (1, Some(0)), "{rows:?}");
+        assert_eq!(rows[0]["verdict"], "pass", "{}", rows[0]);
+        assert!(rows[0]["why"].as_str().is_some_and(|why| why.starts_with(rest)), "{}", rows[0]);
+        let said = text(&run(&words).stderr);
+        assert_eq!(said.contains("1 of 1 cases are judged "), !rest.is_empty(), "{said}");
+        assert!(said.contains(rest), "{said}");
+        rows[0].clone()
+    };
+    assert!(told("")["defect"]["location"]["max"].is_number());
+    let samples = folder.path().join("ball-cut-short.samples.csv");
+    let kept = fs::read(&samples).expect("read");
+    fs::remove_file(&samples).expect("removed");
+    let row = told("of events only: ");
+    for key in ["state_error", "event_time_error"] {
+        assert_eq!(row[key]["max"].is_null(), key == "state_error", "{row}");
+    }
+    assert!(row["valid_periods"].is_null() && row["drift_error"].is_null(), "{row}");
+    let json = text(&run(&[&words[..], &["--format", "json"]].concat()).stdout);
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["ranking"][0]["cases_right"]["1e-9"], 0, "{json}");
+    assert_eq!(json["ranking"][0]["cases_total"]["1e-9"], 1, "{json}");
+    fs::write(&samples, kept).expect("written");
+    let events = folder.path().join("ball-cut-short.events.csv");
+    let whole = fs::read_to_string(&events).expect("read");
+    let short = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        cells[..3 + (cells.len() - 3) / 2].join(",") + "\n"
+    };
+    fs::write(&events, whole.lines().map(short).collect::<String>()).expect("written");
+    assert!(told("without location: ")["defect"]["location"]["max"].is_null());
+    fs::remove_file(&samples).expect("removed");
+    told("of events only, without location: ");
+}
+
 /// Most cases are not answered while a program is written: one line counts them.
 #[test]
 fn cases_without_an_answer_are_counted_in_one_line() {

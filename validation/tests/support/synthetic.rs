@@ -67,6 +67,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
         case: case.to_owned(),
         trouble: Vec::new(),
         traits: CaseTraits { states: 3, ..CaseTraits::default() },
+        is_sampled: true,
         engine,
         tolerance,
         step: None,

@@ -101,7 +101,8 @@ pub struct Work {
 pub struct Outcome {
     /// The events in the order of their times.
     pub events: Vec<Event>,
-    /// The states on the grid.
+    /// The states on the grid; none where the engine gives events only, whose row is never wholly
+    /// right.
     pub samples: Vec<Values>,
     /// The state at the run's end.
     pub end: Values,

@@ -58,7 +58,9 @@ pub fn measure(by: MeasuredBy<'_>, outcome: &Outcome, scored_by: ScoredBy<'_>) -
     let pairs: Vec<_> = matching.pairs.iter().copied().filter(|(i, _)| *i < expected).collect();
     let unit = scored_by.unit * of_length(longest_segment(truth, horizon), task.system.system());
     let run = MeasuredRun { by, outcome, events: [&all, &own], pairs: &pairs, unit };
-    let scored = truth.samples.iter().take_while(|it| it.elapsed.value() <= horizon).count();
+    let is_sampled = truth.samples.is_empty() || !outcome.samples.is_empty();
+    let samples = if is_sampled { &truth.samples[..] } else { &[] };
+    let scored = samples.iter().take_while(|it| it.elapsed.value() <= horizon).count();
     let errors = sample_errors(truth, rule, outcome);
     let lost = errors.iter().position(|error| error.is_nan() || *error > SCORED_ERROR);
     let valid = lost
@@ -67,7 +69,8 @@ pub fn measure(by: MeasuredBy<'_>, outcome: &Outcome, scored_by: ScoredBy<'_>) -
         horizon_periods: horizon / period,
         whole,
         total: all.len(),
-        samples: truth.samples.len().saturating_sub(1),
+        is_sampled,
+        samples: samples.len().saturating_sub(1),
         sampled: scored.saturating_sub(1),
         expected,
         matched: pairs.len(),
@@ -77,9 +80,13 @@ pub fn measure(by: MeasuredBy<'_>, outcome: &Outcome, scored_by: ScoredBy<'_>) -
         ),
         // The start is given: its error is none.
         state: Spread::of(errors.get(1..scored).unwrap_or_default().to_vec()),
-        drift: if whole { rule.drift_error(&truth.end, &outcome.end) } else { f64::NAN },
+        drift: if whole && is_sampled {
+            rule.drift_error(&truth.end, &outcome.end)
+        } else {
+            f64::NAN
+        },
         drift_by_times: if whole { run.drift_by_times() } else { f64::NAN },
-        valid_periods: valid / period,
+        valid_periods: if is_sampled { valid / period } else { f64::NAN },
         event_time_units: run.time_units().collect(),
         event_constant: run.event_constant(),
         state_constant: run.state_constant(scored),
@@ -149,11 +156,27 @@ impl MeasuredRun<'_> {
             return f64::NAN;
         }
         let MeasuredBy { truth, rule, .. } = self.by;
-        worst((1..scored).map(|k| {
+        let judged = (1..scored).filter(|k| !self.is_between(truth.samples[*k].elapsed.value()));
+        worst(judged.map(|k| {
             let state = self.outcome.samples.get(k);
             let units = state.map_or(f64::NAN, |state| rule.state_units(&truth.samples[k], state));
             units / self.unit
         }))
+    }
+
+    /// Whether an instant lies between an event of the truth and the engine's own. There the states
+    /// differ by what the event makes of them, however small the error of its time.
+    fn is_between(&self, elapsed: f64) -> bool {
+        let [all, own] = self.events;
+        let both = |(i, j): &(usize, usize)| (all[*i].elapsed, own[*j].elapsed);
+        let later = self.pairs.partition_point(|it| {
+            let (time, own) = both(it);
+            time.max(own) <= elapsed
+        });
+        self.pairs.get(later).is_some_and(|it| {
+            let (time, own) = both(it);
+            time.min(own) < elapsed
+        })
     }
 
     /// A drift that begins too late by dt lacks v' dt; NaN where nothing drifts.

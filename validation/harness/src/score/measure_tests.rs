@@ -145,6 +145,35 @@ fn a_samples_state_counts_over_its_size_and_its_growth() {
     }
 }
 
+/// A state before an impact differs from that after it by far more than any error: it is the error
+/// of the event's time that counts. The largest error is reported all the same.
+#[test]
+fn a_sample_between_an_event_and_its_partner_is_in_no_constant() {
+    for (before, after, counts) in [(1e-4, 1e-4, false), (0.0, 1e-4, true), (1e-4, 0.0, true)] {
+        let mut planted = Planted::new();
+        let sample = planted.truth.samples[3].elapsed.value();
+        planted.truth.events[1].elapsed = TwoWord::new(sample - before);
+        planted.outcome.events[1].elapsed = sample + after;
+        planted.outcome.samples[3][0] += 1.0;
+        let found = planted.measures();
+        assert_eq!(found.state_constant > 0.0, counts, "{before} {after}");
+        near(found.state.max, 1.0);
+    }
+}
+
+#[test]
+fn an_answer_without_samples_is_measured_by_its_events() {
+    let mut planted = Planted::new();
+    planted.outcome.samples.clear();
+    let found = planted.measures();
+    assert_eq!((found.samples, found.sampled, found.matched), (0, 0, 3));
+    assert!(found.valid_periods.is_nan() && found.drift.is_nan() && found.state.max.is_nan());
+    assert_eq!(found.event_constant, 0.0);
+    let of_samples = [Quantity::StateError, Quantity::StateConstant, Quantity::DriftError];
+    assert!(of_samples.iter().all(|it| !found.concerns(*it)));
+    assert!(!found.concerns(Quantity::ValidPeriods) && found.concerns(Quantity::EventConstant));
+}
+
 #[test]
 fn a_number_that_is_none_is_the_largest_error() {
     assert!(worst([1.0, f64::NAN, 2.0].into_iter()).is_nan());

@@ -16,7 +16,10 @@ pub struct Measures {
     pub whole: bool,
     /// The truth's events on the case's whole horizon.
     pub total: usize,
-    /// The truth's samples on the case's whole horizon, the start left out.
+    /// Whether the engine gave samples, or none are asked for.
+    pub is_sampled: bool,
+    /// The truth's samples on the case's whole horizon, the start left out; none where the engine
+    /// gives no samples.
     pub samples: usize,
     /// Samples before the scored horizon, the start left out.
     pub sampled: usize,
@@ -119,7 +122,10 @@ impl Measures {
                 false
             }
             Quantity::EventTimeError | Quantity::EventConstant => self.total > 0,
-            Quantity::StateError | Quantity::StateConstant => self.samples > 0,
+            Quantity::StateError
+            | Quantity::StateConstant
+            | Quantity::DriftError
+            | Quantity::ValidPeriods => self.samples > 0,
             Quantity::ValidGain => self.probed.horizons.is_some(),
             Quantity::RestartError => self.probed.restarted(),
             Quantity::RestartsFailed => self.probed.restart.is_some(),
@@ -140,12 +146,29 @@ impl Measures {
         }
     }
 
-    /// Whether enough was scored for a row to pass: a record or a sample, or of an exact engine a
-    /// twentieth of the truth's events, and the whole horizon where it has none.
+    /// What the engine did not give, so that it is not judged; nothing where it gave everything.
+    #[must_use]
+    pub fn not_given(&self) -> Option<&'static str> {
+        let local = self.local.as_ref()?;
+        let unlocated = local.judged() > 0 && local.defects.location.is_empty();
+        match (!self.is_sampled, unlocated) {
+            (true, true) => Some(
+                "of events only, without location: there are neither samples nor states before resets",
+            ),
+            (true, false) => Some("of events only: there are no samples"),
+            (false, true) => Some("without location: there are no states before resets"),
+            (false, false) => None,
+        }
+    }
+
+    /// Whether enough was scored for a row to pass: a record, or a sample where the truth has no
+    /// event, or of an exact engine a twentieth of the truth's events, and the whole horizon where
+    /// it has none.
     #[must_use]
     pub fn is_scored(&self) -> bool {
         if let Some(local) = &self.local {
-            return local.judged() > 0 || !local.defects.sample.is_empty();
+            let has_samples = !local.defects.sample.is_empty();
+            return local.judged() > 0 || self.total == 0 && has_samples;
         }
         if self.total == 0 { self.whole } else { 20 * self.expected >= self.total }
     }

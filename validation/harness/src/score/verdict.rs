@@ -144,7 +144,7 @@ impl Reasons {
         } else if let Some(it) = unmeasured {
             (Verdict::NotScored, format!("nothing measures its {}", it.quantity.words()))
         } else {
-            (Verdict::Pass, String::new())
+            (Verdict::Pass, run.measures.not_given().unwrap_or_default().to_owned())
         }
     }
 }
@@ -169,6 +169,13 @@ fn left_open(events: usize) -> String {
 }
 
 fn little_scored(measures: &Measures) -> String {
+    if measures.local.is_some() {
+        return format!(
+            "none of {} events is judged: the first comes before the horizon by less than the errors \
+             that are allowed",
+            measures.total
+        );
+    }
     format!(
         "{} of {} events are scored: beyond, one unit of this setting's error has grown past 1e-3",
         measures.expected, measures.total

@@ -92,7 +92,9 @@ fn local_judge(problem: &Arc<SystemProblem>, task: &Task, truth: &Truth) -> Loca
         return judge;
     };
     let gap = |pair: &[TruthRow]| pair[1].elapsed.minus(pair[0].elapsed).value();
-    let shortest = truth.events.windows(2).map(gap).fold(f64::INFINITY, f64::min);
+    // Events may come together at the start.
+    let gaps = truth.events.windows(2).map(gap).filter(|gap| *gap > 0.0);
+    let shortest = gaps.fold(f64::INFINITY, f64::min);
     judge.down_to(last.elapsed.value(), 0.5 * shortest)
 }
 

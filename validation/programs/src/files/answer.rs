@@ -15,7 +15,8 @@ use std::time::Duration;
 /// How far from the instant asked for a sample's time may be written, relative to the horizon.
 const SAME_TIME: f64 = 1e-9;
 
-/// Reads what was answered to a case and holds it against its task.
+/// Reads what was answered to a case and holds it against its task. The file of samples may be
+/// missing.
 ///
 /// # Errors
 /// What is wrong, with the file, its line, the value and what is accepted.
@@ -25,16 +26,23 @@ pub(super) fn answer(
     task: &Task,
     limits: &Limits,
 ) -> Result<Outcome, String> {
-    let file = |ending: &str| Table::read(&folder.join(format!("{case}{ending}")));
-    let (events, samples) = (file(EVENTS)?, file(SAMPLES)?);
+    let file = |ending: &str| folder.join(format!("{case}{ending}"));
+    let events = Table::read(&file(EVENTS))?;
+    let samples = Some(file(SAMPLES)).filter(|it| it.exists());
+    let samples = samples.map(|it| Table::read(&it)).transpose()?;
     let told = Told::read(&events, task, limits)?;
-    let asked = crate::wire::samples(task).len();
     let is_whole = matches!(told.ended, None | Some((EndedBy::Horizon, ..)));
-    let (states, lines) = read_samples(&samples, task, is_whole)?;
+    let (asked, (states, lines)) = match &samples {
+        Some(table) => (crate::wire::samples(task).len(), read_samples(table, task, is_whole)?),
+        None => (0, Default::default()),
+    };
     let (ended, end, ended_at) = match told.ended {
         Some((EndedBy::Horizon, _, state)) => (EndedBy::Horizon, state, None),
         Some((ended, time, state)) => (ended, state, Some(time)),
-        None => (EndedBy::Horizon, states.last().copied().unwrap_or_default(), None),
+        None => {
+            let last = told.events.last().map_or(StateReply(task.state), |it| it.state);
+            (EndedBy::Horizon, states.last().copied().unwrap_or(last), None)
+        }
     };
     let reply = RunReply {
         events: BoundedList(told.events),
@@ -48,7 +56,9 @@ pub(super) fn answer(
     checked(&reply, task, (asked, Duration::ZERO), limits).map_err(
         |Wrong { part, what }| match part {
             AnswerPart::Event(n) => events.error_in(told.lines[n], &what),
-            AnswerPart::Sample(n) => samples.error_in(lines[n], &what),
+            AnswerPart::Sample(n) => samples
+                .as_ref()
+                .map_or_else(|| events.error(&what), |it| it.error_in(lines[n], &what)),
             AnswerPart::End | AnswerPart::Run => events.error(&what),
         },
     )

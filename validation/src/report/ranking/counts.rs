@@ -42,7 +42,8 @@ impl ReportRow {
     #[must_use]
     pub fn is_right(&self) -> bool {
         let within = matches!(self.verdict, Verdict::Pass | Verdict::Undecidable);
-        within && (self.is_exact() || self.records.defect.sample.max.is_some())
+        let is_judged = self.is_sampled && self.records.defect.sample.max.is_some();
+        within && (self.is_exact() || is_judged)
     }
 
     /// The setting as a key: `1e-6`, `h=1/16`, or `exact`.

@@ -6,6 +6,9 @@ use super::walk::Walk;
 use crate::engine::{Ended, Outcome};
 use percuss::affine::{Ending, Event, What};
 
+/// Roundings by which a run's end may differ from its horizon: programs stop stepping there.
+const ROUNDINGS_OF_THE_END: f64 = 32.0 * f64::EPSILON;
+
 impl Walk<'_> {
     /// Holds the ending of a run, of which `n` records tell, against that of the exact
     /// continuation: one that it lacks is missed, and one that the continuation lacks is spurious.
@@ -13,7 +16,17 @@ impl Walk<'_> {
         let What::End(ref ending) = end.what else { return };
         // What follows an accumulation is no part of a case.
         let Some(exact) = before_the_horizon(ending) else { return };
-        let own = Some(outcome.ended).filter(|it| is_of_the_model(*it));
+        let early = self.is_early(outcome);
+        if exact.is_none() && early && outcome.ended == Ended::Undecided {
+            return self.cut_short(n, outcome.ended_at);
+        }
+        // A run that is followed as far as its impacts accumulate may say so.
+        let own = match outcome.ended {
+            Ended::Accumulation => early.then_some(Ended::Accumulation),
+            own => Some(own).filter(|it| is_of_the_model(*it)),
+        };
+        // What comes after the last time that is judged is not.
+        let own = own.filter(|_| outcome.ended_at <= self.judge.until);
         let elapsed = self.coarse.elapsed(end);
         let is_in_time = (outcome.ended_at - elapsed).abs() <= self.allowed_at(end);
         match (exact, own) {
@@ -30,6 +43,11 @@ impl Walk<'_> {
                 self.wrong_ending(n, WrongKind::Spurious, own, (None, elapsed), outcome);
             }
         }
+    }
+
+    /// Whether a run ends before its horizon by more than another count of the same time.
+    pub(super) fn is_early(&self, outcome: &Outcome) -> bool {
+        self.judge.until - outcome.ended_at > ROUNDINGS_OF_THE_END * self.judge.until
     }
 
     /// The time by which the ending may be off: that of the guard which is nearest to zero.

@@ -39,17 +39,16 @@ impl LocalJudge {
         allowance: Allowance,
     ) -> Result<LocalJudgement, SystemError> {
         let mut walk = self.walk(task, outcome, allowance)?;
-        let mut is_over = false;
+        let mut accumulates = false;
         for (n, event) in outcome.events.iter().enumerate() {
             let duration = event.elapsed - walk.place.elapsed;
-            let accumulates = duration < self.0.shortest && walk.has_next_within(self.0.shortest);
-            is_over = accumulates || event.elapsed > self.0.until;
-            if is_over {
+            accumulates = duration < self.0.shortest && walk.has_next_within(self.0.shortest);
+            if accumulates || event.elapsed > self.0.until {
                 break;
             }
             walk.record(n, event);
         }
-        if self.0.shortest == 0.0 || !is_over {
+        if !accumulates {
             walk.end(outcome);
         }
         super::samples::judge(&walk.units, &self.0.problem, task, outcome, &mut walk.found);
@@ -91,6 +90,7 @@ impl LocalJudge {
             until: 0.0,
             answer: Samples { times: &task.samples, states: &outcome.samples },
             pending: Vec::new(),
+            stays: false,
             at_once: 0,
             found: LocalJudgement::default(),
         })

@@ -147,6 +147,9 @@ pub struct LocalJudgement {
     pub first_wrong: Option<FirstWrong>,
 }
 
+/// What the exact continuation has instead of a run's early end: its horizon.
+pub(super) const END: &str = "end";
+
 impl FirstWrong {
     /// What is wrong, in a sentence for reasons.
     #[must_use]
@@ -155,7 +158,6 @@ impl FirstWrong {
         let exact = self.exact.as_ref().map(|(event, mode, time)| {
             format!("{event} at {time}, after which the mode is {mode}")
         });
-        let exact = exact.unwrap_or_else(|| "no event".to_owned());
         let own = match (&self.event, &self.mode) {
             (Some(event), Some(mode)) => {
                 format!("{event}{}, after which the mode is {mode}", at(self.time))
@@ -169,19 +171,32 @@ impl FirstWrong {
         };
         let n = self.n;
         match self.kind {
+            WrongKind::Missed if self.is_cut_short() => {
+                "the run ends before its horizon without a reason".to_owned()
+            }
             WrongKind::Missed => {
+                let exact = exact.unwrap_or_default();
                 format!("the first wrong event is missed before record {n}: {exact}")
             }
             WrongKind::Sample => format!("the first wrong sample is{} off{units}", at(self.time)),
             WrongKind::Spurious => {
-                format!("the first wrong record, {n}, is spurious: {own}; next is {exact}")
+                let next = exact.map_or("there is no event by then".to_owned(), |exact| {
+                    format!("the next event is {exact}")
+                });
+                format!("the first wrong record, {n}, is spurious: {own}; {next}")
             }
-            kind => format!(
-                "the first wrong record, {n}, has its {} wrong{units}: {own}; the exact \
-                 continuation has {exact}",
-                kind.of_a_record()
-            ),
+            kind => {
+                let exact = exact
+                    .map_or(String::new(), |exact| format!("; the exact continuation has {exact}"));
+                let part = kind.of_a_record();
+                format!("the first wrong record, {n}, has its {part} wrong{units}: {own}{exact}")
+            }
         }
+    }
+
+    /// Whether the run's end itself is what is missed.
+    fn is_cut_short(&self) -> bool {
+        self.exact.as_ref().is_some_and(|it| it.0 == END)
     }
 }
 

@@ -7,11 +7,13 @@
 
 mod continuation;
 mod ending;
+mod instant;
 mod judge;
 mod judgement;
 mod motion;
 mod open;
 mod parts;
+mod pending;
 mod record;
 mod run;
 mod samples;

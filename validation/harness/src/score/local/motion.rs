@@ -177,6 +177,12 @@ impl Motion {
         (0..states).map(|n| self.growth(segment, &moved(n)).max(beside(n))).collect()
     }
 
+    /// The changes of what the reset of an `until` makes of the states at a segment's end.
+    pub(super) fn growth_of_reset(&self, segment: &Segment, until: usize) -> Vec<f64> {
+        let reset = &self.resets[segment.mode][until];
+        (0..self.states()).map(|n| self.growth(segment, &reset.row(n).into_owned())).collect()
+    }
+
     /// The changes of the states at a segment's end, in the same mode.
     pub(super) fn growth_of_flow(&self, segment: &Segment) -> Vec<f64> {
         let states = self.states();

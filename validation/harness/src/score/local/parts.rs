@@ -1,10 +1,14 @@
-//! The parts of a record beside each other: the guard where the event was located, and the states
-//! before and after the reset.
+//! The parts of a record beside each other: the guard where the event was located, the states
+//! before and after the reset, and the mode.
 
 use super::continuation::Named;
-use super::walk::Walk;
+use super::judgement::{WrongKind, exceeds};
+use super::motion::value as value_of;
+use super::walk::{Said, Walk};
 use crate::engine::Event;
 use crate::score::worst;
+use crate::system::Row;
+use nalgebra::RowDVector;
 
 /// Roundings of an event's time that a guard's value may show, each times the guard's rate.
 const ROUNDINGS_OF_TIME: f64 = 128.0 * f64::EPSILON;
@@ -13,7 +17,82 @@ const ROUNDINGS_OF_TIME: f64 = 128.0 * f64::EPSILON;
 /// three times the largest that was measured, 7e-12 of a method of order 7.
 const ROUNDINGS_OF_DENSE_OUTPUT: f64 = 2e-11;
 
+/// The largest location error of a right engine, in tolerances of the guard's size.
+pub(super) const LOCATION: f64 = 1.0;
+/// The largest contradiction between the state before a reset and that after it, in tolerances.
+pub(super) const INCONSISTENCY: f64 = 1.0;
+
 impl Walk<'_> {
+    /// Judges a record whose event may fire, by what that event makes of the present flow at the
+    /// record's own time.
+    pub(super) fn by_its_own_event(&mut self, event: &Event, named: Named) -> Said {
+        if let Some(said) = self.contradiction(event, named) {
+            return said;
+        }
+        let before = self.off_the_flow(event);
+        self.found.defects.sample.extend(before);
+        if let Some(defect) = before.filter(|it| exceeds(*it, self.units.allowance.sample)) {
+            return Said::Wrong(WrongKind::Sample, None, defect);
+        }
+        let state = self.off_the_reset(event, named);
+        if exceeds(state, self.units.allowance.state.max(self.units.allowance.sample)) {
+            return Said::Wrong(WrongKind::State, None, state);
+        }
+        let stretch = self.place.stretch(event.elapsed);
+        if self.successor(event, named) == Some(named.next) {
+            Said::Right
+        } else if self.successor_is_open(event, named, &stretch) {
+            Said::Undecidable
+        } else {
+            Said::Wrong(WrongKind::WrongMode, None, f64::NAN)
+        }
+    }
+
+    /// Judges a record of an event at which either answer is right: it has to be one of the two.
+    pub(super) fn open(&mut self, event: &Event, named: Named) -> Said {
+        match self.by_its_own_event(event, named) {
+            Said::Right => Said::Undecidable,
+            said => said,
+        }
+    }
+
+    /// What contradicts the event within a record.
+    pub(super) fn contradiction(&mut self, event: &Event, named: Named) -> Option<Said> {
+        let location = self.location(event, named);
+        self.found.defects.location.extend(location);
+        if let Some(location) = location.filter(|it| exceeds(*it, LOCATION)) {
+            return Some(Said::Wrong(WrongKind::Location, None, location));
+        }
+        let inconsistency = self.inconsistency(event, named);
+        self.found.defects.inconsistency.extend(inconsistency);
+        let defect = inconsistency.filter(|it| exceeds(*it, INCONSISTENCY))?;
+        Some(Said::Wrong(WrongKind::Inconsistent, None, defect))
+    }
+
+    /// The defect of a record's state beside what its event makes of the flow at its time.
+    pub(super) fn off_the_reset(&mut self, event: &Event, named: Named) -> f64 {
+        let flow = self.along(event.elapsed);
+        let stretch = self.place.stretch(event.elapsed);
+        if named.event >= self.until_count() {
+            return self.units.of_sample((&event.state, &flow), &stretch);
+        }
+        let after = self.motion().after((self.place.mode, named.event), event.elapsed, &flow);
+        let after: Vec<f64> = after.iter().map(|it| it.value).collect();
+        self.units.of_reset((&event.state, &after), &stretch, named.event)
+    }
+
+    /// The mode after a record's event by the record's own state.
+    fn successor(&self, event: &Event, named: Named) -> Option<usize> {
+        let motion = self.motion();
+        let Some(until) = motion.system().modes[self.place.mode].until.get(named.event) else {
+            return Some(self.place.mode);
+        };
+        let z = motion.point(event.elapsed, &event.state);
+        let holds = |when: &Row| value_of(&RowDVector::from_row_slice(when), &z).value > 0.0;
+        let next = until.next.iter().find(|(when, _)| when.as_ref().is_none_or(holds));
+        next.map(|(_, mode)| *mode)
+    }
+
     /// |guard| at the state before the reset, in tolerances of the guard's size.
     pub(super) fn location(&self, event: &Event, named: Named) -> Option<f64> {
         let before = event.before.as_ref()?;

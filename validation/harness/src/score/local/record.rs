@@ -2,33 +2,21 @@
 
 use super::continuation::{Exact, Found, Named};
 use super::judgement::{WrongKind, exceeds};
-use super::walk::{Pending, Said, Walk};
+use super::parts::{INCONSISTENCY, LOCATION};
+use super::walk::{Said, Walk};
 use crate::engine::Event;
 use crate::score::WINDOW;
 use percuss::affine::Ending;
 
-/// The largest location error of a right engine, in tolerances of the guard's size.
-const LOCATION: f64 = 1.0;
-/// The largest contradiction between the state before a reset and that after it, in tolerances.
-const INCONSISTENCY: f64 = 1.0;
-
 impl Walk<'_> {
-    /// Says of a record what the continuation makes of it, and whether its event comes at the
-    /// instant of the record before by the model.
-    pub(super) fn said_of(
-        &mut self,
-        n: usize,
-        event: &Event,
-        found: Found,
-        decided: bool,
-    ) -> (Said, bool) {
+    /// Says of a record what the continuation makes of it.
+    pub(super) fn said_of(&mut self, n: usize, event: &Event, found: Found, decided: bool) -> Said {
         let named = Named { event: event.event, next: event.mode };
         let window = WINDOW * self.judge.problem.period();
-        let said = match found {
+        match found {
             Found::Same(exact) => {
-                let at_once = exact.at_once;
                 self.take_pending(named);
-                return (self.same(event, named, exact), at_once);
+                self.same(event, named, exact)
             }
             Found::Another(exact) => self.another(event, named, exact),
             Found::Late(exact) if event.elapsed - exact.elapsed <= window => {
@@ -39,16 +27,12 @@ impl Walk<'_> {
                 self.unexpected(event, named, None, decided)
             }
             Found::Nothing(next) => self.unexpected(event, named, next, decided),
-            Found::Ended(Ending::Undecided) => {
-                if self.take_pending(named) {
-                    Said::Right
-                } else {
-                    Said::Undecidable
-                }
-            }
+            Found::Ended(Ending::Undecided) => match self.take_pending(named) {
+                Some(pending) => self.came(event, named, &pending),
+                None => self.contradiction(event, named).unwrap_or(Said::Undecidable),
+            },
             Found::Ended(_) => self.unexpected(event, named, None, decided),
-        };
-        (said, false)
+        }
     }
 
     /// A record of the exact continuation's event, at its time.
@@ -59,7 +43,7 @@ impl Walk<'_> {
         self.found.defects.time.push(time);
         if exact.named.next != named.next {
             if self.successor_is_open(event, named, &stretch) {
-                return Said::Undecidable;
+                return self.open(event, named).beside(exact);
             }
             return Said::Wrong(WrongKind::WrongMode, Some(exact), f64::NAN);
         }
@@ -73,8 +57,7 @@ impl Walk<'_> {
         if let Some(defect) = inconsistency.filter(|it| exceeds(*it, INCONSISTENCY)) {
             return Said::Wrong(WrongKind::Inconsistent, Some(exact), defect);
         }
-        let stretch = self.place.stretch(exact.elapsed);
-        let state = self.units.of_state((&event.state, &exact.state), &stretch, named.event);
+        let state = self.off_the_state(event, named, &exact);
         // The time belongs to the state before the reset, which is one of the flow before it.
         let before = self.off_the_flow(event);
         self.found.defects.sample.extend(before);
@@ -89,7 +72,7 @@ impl Walk<'_> {
         // The time of a crossing that nearly is none says nothing.
         if state.is_finite() && self.is_graze(exact.elapsed, named.event) {
             self.found.defects.time.pop();
-            return Said::Undecidable;
+            return self.open(event, named).beside(exact);
         }
         self.found.defects.state.push(state);
         if is_close {
@@ -99,30 +82,32 @@ impl Walk<'_> {
         }
     }
 
+    /// The defect of a record's state beside the exact one. Of a crossing that is nearly tangential
+    /// the states of its two times differ by more than the time's error to first order: a state
+    /// that its event makes of the flow at its own time has no error of its own, and where the
+    /// state before the reset is told, the time has been judged by the location.
+    fn off_the_state(&mut self, event: &Event, named: Named, exact: &Exact) -> f64 {
+        let stretch = self.place.stretch(exact.elapsed);
+        let state = self.units.of_state((&event.state, &exact.state), &stretch, named.event);
+        if event.before.is_some() && exceeds(state, self.units.allowance.state) {
+            return state.min(self.off_the_reset(event, named));
+        }
+        state
+    }
+
     /// A record of an event in whose instant the exact continuation has another.
     fn another(&mut self, event: &Event, named: Named, exact: Exact) -> Said {
-        if self.take_pending(named) {
-            return Said::Right;
+        if let Some(pending) = self.take_pending(named) {
+            return self.came(event, named, &pending);
         }
         if !exact.ends_mode {
             // An event that is only counted does not change what follows: it has to come too.
-            let stretch = self.place.stretch(exact.elapsed);
-            let deadline = exact.elapsed + self.units.allowed_time(&stretch, exact.named.event);
-            let name = self.judge.name(self.place.mode, exact.named.event);
-            // The record before may have waited for the same one.
-            if !self.pending.iter().any(|it| it.name == name) {
-                self.pending.push(Pending { name, exact: exact.clone(), deadline });
-            }
+            self.await_event(&exact);
         }
         if !self.is_admissible(event, named) {
             return self.unexpected(event, named, Some(exact), true);
         }
-        let location = self.location(event, named);
-        self.found.defects.location.extend(location);
-        match location.filter(|it| exceeds(*it, LOCATION)) {
-            Some(location) => Said::Wrong(WrongKind::Location, None, location),
-            None => Said::Right,
-        }
+        self.by_its_own_event(event, named).beside(exact)
     }
 
     /// A record that the exact continuation does not have.
@@ -133,11 +118,12 @@ impl Walk<'_> {
         next: Option<Exact>,
         decided: bool,
     ) -> Said {
-        if self.take_pending(named) {
-            return Said::Right;
+        if let Some(pending) = self.take_pending(named) {
+            return self.came(event, named, &pending);
         }
-        if !decided || self.is_graze(event.elapsed, named.event) {
-            return Said::Undecidable;
+        let undecided = !decided && self.is_admissible(event, named);
+        if undecided || self.is_graze(event.elapsed, named.event) {
+            return self.open(event, named);
         }
         let window = WINDOW * self.judge.problem.period();
         match next {
@@ -159,29 +145,11 @@ impl Walk<'_> {
         }
         let on_flow = self.off_the_flow(event).is_none_or(|it| it <= self.units.allowance.sample);
         if on_flow && self.is_graze(exact.elapsed, named.event) {
-            return Said::Undecidable;
+            return self.open(event, named).beside(exact);
         }
         let stretch = self.place.stretch(exact.elapsed);
         let defect = self.units.of_time(event.elapsed - exact.elapsed, &stretch, named.event);
         self.found.defects.time.push(defect);
         Said::Wrong(WrongKind::Time, Some(exact), defect)
-    }
-
-    /// Takes an event that has to come from the list of those that do, which are in time still.
-    fn take_pending(&mut self, named: Named) -> bool {
-        let name = self.judge.name(self.place.mode, named.event);
-        let place = self.pending.iter().position(|it| it.name == name);
-        place.map(|it| self.pending.swap_remove(it)).is_some()
-    }
-
-    /// Counts the events as missed that had to come by now.
-    pub(super) fn expire(&mut self, n: usize, event: &Event, now: f64) {
-        let (over, open) = std::mem::take(&mut self.pending)
-            .into_iter()
-            .partition(|it: &Pending| it.deadline < now);
-        self.pending = open;
-        for pending in over {
-            self.missed(n, Some(event), pending.exact);
-        }
     }
 }

@@ -110,6 +110,16 @@ impl Units<'_> {
         self.of_states((own, exact), stretch, |segment| self.motion.growth_of_flow(segment))
     }
 
+    /// The defect of a state beside what the reset of an `until` makes of the flow.
+    pub(super) fn of_reset(
+        &self,
+        (own, exact): (&[f64], &[f64]),
+        stretch: &Stretch<'_>,
+        until: usize,
+    ) -> f64 {
+        self.of_states((own, exact), stretch, |it| self.motion.growth_of_reset(it, until))
+    }
+
     /// The time by which a state along a stretch is ahead of the exact one, in tolerances of the
     /// time scale: its error along the flow over the rate. None where the motion is slow, and far
     /// from the begin of the stretch, where errors since then hide it.

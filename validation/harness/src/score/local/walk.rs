@@ -1,8 +1,9 @@
 //! The walk along an engine's records: each is judged from the one before it.
 
 use super::continuation::{Continuation, Exact, Found, Named, Place, continuation, exact};
-use super::judgement::{FirstWrong, LocalJudgement, WrongKind};
+use super::judgement::{END, FirstWrong, LocalJudgement, WrongKind};
 use super::motion::Motion;
+use super::pending::Pending;
 use super::run::JudgedRun;
 use super::units::Units;
 use crate::engine::{Ended, Event, Outcome};
@@ -28,6 +29,8 @@ pub(super) struct Walk<'a> {
     pub(super) until: f64,
     pub(super) answer: Samples<'a>,
     pub(super) pending: Vec<Pending>,
+    /// Whether the record in hand leaves the run where it was.
+    pub(super) stays: bool,
     /// Records of the present instant.
     pub(super) at_once: usize,
     pub(super) found: LocalJudgement,
@@ -40,13 +43,6 @@ pub(super) struct Samples<'a> {
     pub(super) states: &'a [Values],
 }
 
-/// An event that is only counted and has to come within its instant.
-pub(super) struct Pending {
-    pub(super) name: String,
-    pub(super) exact: Exact,
-    pub(super) deadline: f64,
-}
-
 /// What is said of a record.
 pub(super) enum Said {
     /// The record is right.
@@ -55,6 +51,16 @@ pub(super) enum Said {
     Undecidable,
     /// What is wrong, what the exact continuation has instead, and the defect in units.
     Wrong(WrongKind, Option<Exact>, f64),
+}
+
+impl Said {
+    /// What is said, with what the exact continuation has instead where that is not said yet.
+    pub(super) fn beside(self, exact: Exact) -> Self {
+        match self {
+            Self::Wrong(kind, None, defect) => Self::Wrong(kind, Some(exact), defect),
+            said => said,
+        }
+    }
 }
 
 impl<'a> Walk<'a> {
@@ -72,21 +78,26 @@ impl<'a> Walk<'a> {
         let named = Named { event: event.event, next: event.mode };
         let continuation = self.continuation((named, event.elapsed));
         let Continuation { found, passed, decided } = continuation;
+        let at_entry = matches!(&found, Found::Same(exact) if exact.at_once);
         self.expire(n, event, event.elapsed);
         for exact in passed {
             self.missed(n, Some(event), exact);
         }
-        let rests = event.elapsed - self.place.elapsed
-            <= Units::rounding_of_time(event.elapsed).max(self.at_once_within());
+        let rests = event.elapsed - self.place.elapsed <= Units::rounding_of_time(event.elapsed);
         self.at_once = if rests { self.at_once + 1 } else { 1 };
         let mode = &self.motion().system().modes[self.place.mode];
-        let (said, at_entry) = if event.event < mode.until.len() + mode.watch.len() {
-            self.said_of(n, event, found, decided)
+        let said = if event.event >= mode.until.len() + mode.watch.len() {
+            Said::Wrong(WrongKind::Spurious, None, f64::NAN)
+        } else if self.at_once > MOST_AT_ONCE {
+            // The run makes no progress, which ends it.
+            Said::Wrong(WrongKind::Spurious, None, f64::NAN)
         } else {
-            (Said::Wrong(WrongKind::Spurious, None, f64::NAN), false)
+            self.said_of(n, event, found, decided)
         };
         self.count(n, event, said);
-        self.go_on(named, event, at_entry);
+        if !std::mem::take(&mut self.stays) {
+            self.go_on(named, event, at_entry);
+        }
     }
 
     pub(super) fn at_once_within(&self) -> f64 {
@@ -175,7 +186,7 @@ impl<'a> Walk<'a> {
         for pending in std::mem::take(&mut self.pending) {
             self.missed(n, None, pending.exact);
         }
-        let early = outcome.ended_at < self.judge.until;
+        let early = self.is_early(outcome);
         if early && outcome.ended == Ended::Horizon {
             return self.cut_short(n, outcome.ended_at);
         }
@@ -194,7 +205,8 @@ impl<'a> Walk<'a> {
             };
             let allowed =
                 self.units.allowed_time(&self.place.stretch(own.elapsed), own.named.event);
-            if own.elapsed > self.judge.until - allowed {
+            let accumulates = own.elapsed - self.place.elapsed < self.judge.shortest;
+            if accumulates || own.elapsed > self.judge.until - allowed {
                 return;
             }
             let (elapsed, guard, ends_mode) = (own.elapsed, own.named.event, own.ends_mode);
@@ -221,7 +233,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Counts the end of a run as missed that ends before its horizon without a reason.
-    fn cut_short(&mut self, n: usize, ended_at: f64) {
+    pub(super) fn cut_short(&mut self, n: usize, ended_at: f64) {
         self.found.missed += 1;
         let horizon = self.judge.problem.clock(self.judge.until);
         self.found.wrong(FirstWrong {
@@ -232,7 +244,7 @@ impl<'a> Walk<'a> {
             mode: None,
             time: None,
             state: None,
-            exact: Some(("end".to_owned(), self.judge.mode_name(self.place.mode), horizon)),
+            exact: Some((END.to_owned(), self.judge.mode_name(self.place.mode), horizon)),
             defect: f64::NAN,
         });
     }
