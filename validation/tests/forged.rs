@@ -1,23 +1,15 @@
 //! Answers that were made to pass: each was right by the letter of an earlier rule, and is told for
 //! what it is.
 
-use crate::exact;
-use crate::records::{answered_to, engine, judged};
+use crate::records::{answered_to, engine, judged, prepared};
 use percuss_validation::engine::{Accuracy, Ended, Event, Numbers, Outcome};
 use percuss_validation::score::local::{LocalJudgement, WrongKind};
-use percuss_validation::suite::{PreparedCase, prepare};
+use percuss_validation::suite::PreparedCase;
 use percuss_validation::system::Values;
-use percuss_validation::truth::Library;
-
-fn prepared(case: &str) -> PreparedCase {
-    let library = Library::embedded().expect("the manifest is read");
-    let cases = prepare(vec![exact::case(case)], &library, None).expect("the case is made ready");
-    cases.into_iter().next().expect("a case")
-}
 
 /// What is said of a right answer to a case that was changed, at two tolerances.
 fn said(case: &str, forge: impl Fn(&PreparedCase, &mut Outcome)) -> [LocalJudgement; 2] {
-    let prepared = prepared(case);
+    let prepared = prepared(&[case]).remove(0);
     [1e-6, 1e-9].map(|tolerance| {
         let engine = engine("differential-equations-rkv767e");
         let accuracy = Accuracy::Tolerance(tolerance);
@@ -42,7 +34,7 @@ fn place(case: &PreparedCase, mode: usize, name: &str) -> usize {
     (0..100).find(is_it).expect("an event of the mode")
 }
 
-/// Of contacts in one instant another may be told first, but not with what the instant comes to.
+/// A record of one of an instant's contacts does not have the state that all of them come to.
 #[test]
 fn one_record_does_not_stand_for_an_instant() {
     let whole = |case: &PreparedCase, answer: &mut Outcome, name: &str, after: Values| {

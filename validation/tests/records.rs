@@ -30,7 +30,11 @@ const CASES: [&str; 12] = [
 const ACCURACY: Accuracy = Accuracy::Tolerance(1e-6);
 
 fn cases() -> Vec<PreparedCase> {
-    let chosen = CASES.iter().map(|name| exact::case(name)).collect();
+    prepared(&CASES)
+}
+
+pub(super) fn prepared(names: &[&str]) -> Vec<PreparedCase> {
+    let chosen = names.iter().map(|name| exact::case(name)).collect();
     let library = Library::embedded().expect("the manifest is read");
     prepare(chosen, &library, None).expect("the cases are made ready")
 }

@@ -77,8 +77,8 @@ pub fn trials(
     runs(cases).into_par_iter().filter_map(one).collect()
 }
 
-/// Of the answers that were made with a tolerance so many times as loose as the one that they are
-/// labelled with: how many are condemned, and how many there are.
+/// Counts answers that were made with a tolerance looser by a factor than the one that they are
+/// labelled with: the condemned ones, and all.
 #[must_use]
 pub fn loosened(
     cases: &[PreparedCase],
@@ -88,17 +88,27 @@ pub fn loosened(
     let condemned = |(case, engine): (&PreparedCase, &'static dyn Engine)| {
         let declaration = engine.declaration();
         let label = Accuracy::Tolerance(tolerance);
-        let (kind, stepping) = (declaration.class_and_order(), declaration.stepping);
-        let class = ClassBounds::of(classes, kind, stepping, label)?;
-        let limits = Suite::limits(&case.case);
-        let loose = Accuracy::Tolerance(factor * tolerance);
-        let made = answer(engine, &case.task, loose, &limits).ok()?;
-        let unit = stepping.unit(label);
+        let class = class_of(classes, &declaration, label)?;
+        let made = answered(case, engine, Accuracy::Tolerance(factor * tolerance))?;
+        let unit = declaration.stepping.unit(label);
         let found = case.judge_records(&made, class, unit)?;
         Some(found.is_wrong(&Allowance::of(class, unit)))
     };
     let all: Vec<bool> = runs(cases).into_par_iter().filter_map(condemned).collect();
     (all.iter().filter(|it| **it).count(), all.len())
+}
+
+/// An engine's answer to a case; none where it has none, or takes more calls than the suite allows.
+fn answered(
+    case: &PreparedCase,
+    engine: &'static dyn Engine,
+    accuracy: Accuracy,
+) -> Option<Outcome> {
+    let is_affordable = case.least_work(engine, accuracy) <= Suite::Quick.budget();
+    if !is_affordable || engine.takes(&case.task).is_err() {
+        return None;
+    }
+    answer(engine, &case.task, accuracy, &Suite::limits(&case.case)).ok()
 }
 
 /// One answer of an engine, judged, with the variants of it; none where the engine has no answer.
@@ -111,12 +121,7 @@ pub fn trial(
 ) -> Option<Trial> {
     let declaration = engine.declaration();
     let class = class_of(classes, &declaration, accuracy)?;
-    let is_affordable = case.least_work(engine, accuracy) <= Suite::Quick.budget();
-    if !is_affordable || engine.takes(&case.task).is_err() {
-        return None;
-    }
-    let limits = Suite::limits(&case.case);
-    let right = answer(engine, &case.task, accuracy, &limits).ok()?;
+    let right = answered(case, engine, accuracy)?;
     let unit = declaration.stepping.unit(accuracy);
     let allowance = Allowance::of(class, unit);
     let judge = |answer: &Outcome| case.judge_records(answer, class, unit);

@@ -146,7 +146,8 @@ impl Measures {
         }
     }
 
-    /// What the engine did not give, so that it is not judged; nothing where it gave everything.
+    /// The part of the judgement that is left out because the engine does not give what it needs;
+    /// none where nothing is.
     #[must_use]
     pub fn not_given(&self) -> Option<&'static str> {
         let local = self.local.as_ref()?;

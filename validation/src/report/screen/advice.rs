@@ -38,8 +38,7 @@ impl<'a> Best<'a> {
         report.results.iter().filter(|row| is(row) && is_own(row)).collect()
     }
 
-    /// Of choices, the one that costs least at equal error, or in calls where no equal error is
-    /// known.
+    /// The choice that costs least at equal error, or in calls where no equal error is known.
     fn cheapest<'c, 'r>(&self, choices: &[&'c Choice<'r>]) -> Option<&'c Choice<'r>> {
         let area = |choice: &Choice<'_>| {
             let own = self.engines.iter().find(|it| it.engine == choice.engine());
@@ -57,8 +56,8 @@ impl<'a> Best<'a> {
         format!("{name} at {}", choice.key())
     }
 
-    /// Of the engines with the most right cases, at the loosest tolerance at which one has so many,
-    /// the one that costs least at equal error.
+    /// Advises the cheapest of the engines with the most right cases, at the loosest tolerance at
+    /// which one has so many.
     fn most_right(&self, rows: &[&ReportRow]) -> Option<String> {
         let choices = Choice::all(rows);
         let most = choices.iter().map(Choice::right).max()?;
@@ -75,8 +74,8 @@ impl<'a> Best<'a> {
         Some(format!("{} ({})", self.named(cheapest), achieved(cheapest, &shared)))
     }
 
-    /// Of the engines that stay near the truth for about as long as the best does on average, the
-    /// one that costs least at equal error, at the loosest tolerance at which it does so.
+    /// Advises the cheapest of the engines that stay near the truth for about as long as the best
+    /// does on average, at the loosest tolerance at which one does.
     fn longest_valid(&self, rows: &[&ReportRow]) -> Option<String> {
         let telling = telling(rows);
         let choices = Choice::all(&telling);

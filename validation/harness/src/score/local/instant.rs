@@ -15,10 +15,9 @@ impl Walk<'_> {
         }
         let (stretch, guard) = (self.place.stretch(exact.elapsed), exact.named.event);
         let deadline = exact.elapsed + self.units.allowed_time(&stretch, guard);
-        let grown = self.units.grown_states(&stretch, guard);
-        let weights = self.motion().weights(&exact.state);
         let k = self.units.allowance.state * self.units.tolerance();
-        let allowed = weights.iter().zip(grown).map(|(a, b)| k * a.max(b)).collect();
+        let sizes = self.units.sizes_after(&exact.state, &stretch, guard);
+        let allowed = sizes.into_iter().map(|size| k * size).collect();
         self.pending.push(Pending { name, exact: exact.clone(), deadline, allowed });
     }
 

@@ -147,7 +147,7 @@ pub struct LocalJudgement {
     pub first_wrong: Option<FirstWrong>,
 }
 
-/// What the exact continuation has instead of a run's early end: its horizon.
+/// The word for the horizon that a run does not reach, where an event's name stands.
 pub(super) const END: &str = "end";
 
 impl FirstWrong {

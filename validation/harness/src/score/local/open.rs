@@ -31,9 +31,7 @@ impl Walk<'_> {
         let motion = self.motion();
         let mode = &motion.system().modes[self.place.mode];
         let Some(until) = mode.until.get(named.event) else { return false };
-        let growth = motion.weights(&event.state);
-        let grown = self.units.grown_states(stretch, named.event);
-        let sizes: Vec<f64> = growth.iter().zip(grown).map(|(a, b)| a.max(b)).collect();
+        let sizes = self.units.sizes_after(&event.state, stretch, named.event);
         let time = self.units.allowed_time(stretch, named.event);
         until.next.iter().filter_map(|(when, _)| when.as_ref()).any(|when| {
             let z = motion.point(event.elapsed, &event.state);

@@ -56,7 +56,8 @@ impl Walk<'_> {
         }
     }
 
-    /// What contradicts the event within a record.
+    /// The contradiction between an event and the parts of its record: a guard that is not zero
+    /// where it was located, or a state that is not the reset of the state before it.
     pub(super) fn contradiction(&mut self, event: &Event, named: Named) -> Option<Said> {
         let location = self.location(event, named);
         self.found.defects.location.extend(location);

@@ -99,10 +99,16 @@ impl Units<'_> {
         self.of_states((own, exact), stretch, grown)
     }
 
-    /// The changes of the states after the event of a guard that ends a stretch, by errors of size
-    /// one along it.
-    pub(super) fn grown_states(&self, stretch: &Stretch<'_>, guard: usize) -> Vec<f64> {
-        self.motion.growth_of_states(&self.segment(stretch), guard)
+    /// The sizes over which errors of a state just after the event of a guard that ends a stretch
+    /// are counted: its weights, or the changes by errors of size one along the stretch.
+    pub(super) fn sizes_after(
+        &self,
+        state: &[f64],
+        stretch: &Stretch<'_>,
+        guard: usize,
+    ) -> Vec<f64> {
+        let growth = self.motion.growth_of_states(&self.segment(stretch), guard);
+        larger(&self.motion.weights(state), &growth)
     }
 
     /// The defect of a state along a stretch.
@@ -170,9 +176,7 @@ impl Units<'_> {
         if plain <= SMALL || stretch.length <= 0.0 || !plain.is_finite() {
             return plain;
         }
-        let growth = grown(&self.segment(stretch));
-        let sizes: Vec<f64> = weights.iter().zip(growth).map(|(a, b)| a.max(b)).collect();
-        worst_by(&sizes)
+        worst_by(&larger(&weights, &grown(&self.segment(stretch))))
     }
 
     /// What the errors that are allowed along a stretch make of a row's value at its end.
@@ -181,6 +185,11 @@ impl Units<'_> {
         let k = self.allowance.time.max(self.allowance.state);
         k * self.tolerance() * self.of_length(stretch.length) * growth
     }
+}
+
+/// The larger of each two sizes.
+fn larger(weights: &[f64], growth: &[f64]) -> Vec<f64> {
+    weights.iter().zip(growth).map(|(a, b)| a.max(*b)).collect()
 }
 
 /// What is left of an error beyond the rounding that hides in it, with its sign.

@@ -54,7 +54,7 @@ pub(super) enum Said {
 }
 
 impl Said {
-    /// What is said, with what the exact continuation has instead where that is not said yet.
+    /// Adds the exact continuation's event to what is wrong, where none is named yet.
     pub(super) fn beside(self, exact: Exact) -> Self {
         match self {
             Self::Wrong(kind, None, defect) => Self::Wrong(kind, Some(exact), defect),
@@ -86,10 +86,9 @@ impl<'a> Walk<'a> {
         let rests = event.elapsed - self.place.elapsed <= Units::rounding_of_time(event.elapsed);
         self.at_once = if rests { self.at_once + 1 } else { 1 };
         let mode = &self.motion().system().modes[self.place.mode];
-        let said = if event.event >= mode.until.len() + mode.watch.len() {
-            Said::Wrong(WrongKind::Spurious, None, f64::NAN)
-        } else if self.at_once > MOST_AT_ONCE {
-            // The run makes no progress, which ends it.
+        let is_of_the_mode = event.event < mode.until.len() + mode.watch.len();
+        // A run that makes no progress has ended.
+        let said = if !is_of_the_mode || self.at_once > MOST_AT_ONCE {
             Said::Wrong(WrongKind::Spurious, None, f64::NAN)
         } else {
             self.said_of(n, event, found, decided)
