@@ -2,7 +2,8 @@
 //! what it is.
 
 use crate::records::{answered_to, engine, judged, prepared};
-use percuss_validation::engine::{Accuracy, Ended, Event, Numbers, Outcome};
+use percuss::Ending;
+use percuss_validation::engine::{Accuracy, Event, Numbers, Outcome};
 use percuss_validation::score::local::{LocalJudgement, WrongKind};
 use percuss_validation::suite::PreparedCase;
 use percuss_validation::system::Values;
@@ -111,11 +112,11 @@ fn an_open_event_has_no_free_state() {
 #[test]
 fn an_early_ending_needs_a_reason() {
     for (case, ended, kind) in [
-        ("stop-graze-miss-1e-6", Ended::Accumulation, WrongKind::Spurious),
-        ("percussive-graze", Ended::Undecided, WrongKind::Missed),
-        ("slow-forcing", Ended::Accumulation, WrongKind::Spurious),
-        ("slow-forcing", Ended::NoProgress, WrongKind::Spurious),
-        ("slow-forcing", Ended::Horizon, WrongKind::Missed),
+        ("stop-graze-miss-1e-6", Ending::Accumulation, WrongKind::Spurious),
+        ("percussive-graze", Ending::Undecided, WrongKind::Missed),
+        ("slow-forcing", Ending::Accumulation, WrongKind::Spurious),
+        ("slow-forcing", Ending::NoProgress, WrongKind::Spurious),
+        ("slow-forcing", Ending::Horizon, WrongKind::Missed),
     ] {
         let found = said(case, |_, answer| {
             let last = answer.events.last().expect("an event");

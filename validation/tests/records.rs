@@ -2,8 +2,9 @@
 //! answer is told for what it is.
 
 use crate::exact;
+use percuss::Ending;
 use percuss_validation::case::defaults;
-use percuss_validation::engine::{Accuracy, Ended, Engine, Outcome, answer};
+use percuss_validation::engine::{Accuracy, Engine, Outcome, answer};
 use percuss_validation::integrators::all;
 use percuss_validation::power::Variant;
 use percuss_validation::score::local::{Allowance, LocalJudgement, WrongKind};
@@ -181,9 +182,9 @@ fn an_ending_is_held_against_the_exact_one() {
         judged(case, &answer, allowance).first_wrong
     };
     let backward = named("ball-backward");
-    assert_eq!(answered(engine, backward).0.ended, Ended::LeavesDomain);
+    assert_eq!(answered(engine, backward).0.ended, Ending::LeavesDomain);
     let goes_on = first(backward, |it| {
-        (it.ended, it.ended_at) = (Ended::Horizon, 1e9);
+        (it.ended, it.ended_at) = (Ending::Horizon, 1e9);
     });
     let goes_on = goes_on.expect("the ending is missed");
     let exact = goes_on.exact.map(|it| it.0);
@@ -191,7 +192,7 @@ fn an_ending_is_held_against_the_exact_one() {
     let late = first(backward, |it| it.ended_at += 1e-3).expect("the ending is late");
     assert_eq!((late.kind, late.event.as_deref()), (WrongKind::Missed, Some("leaves-domain")));
     let spurious = first(named("friction-two-stops"), |it| {
-        (it.ended, it.ended_at) = (Ended::LeavesDomain, 0.99 * it.ended_at);
+        (it.ended, it.ended_at) = (Ending::LeavesDomain, 0.99 * it.ended_at);
     });
     assert_eq!(spurious.map(|it| it.kind), Some(WrongKind::Spurious));
 }

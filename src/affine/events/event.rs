@@ -49,8 +49,8 @@ pub enum Kind {
     End(Ending),
 }
 
-impl Ending {
-    pub(super) fn of<T>(ending: &engine::Ending<T>) -> Self {
+impl<T> From<&engine::Ending<T>> for Ending {
+    fn from(ending: &engine::Ending<T>) -> Self {
         match ending {
             engine::Ending::Horizon => Self::Horizon,
             engine::Ending::Accumulation(..) => Self::Accumulation,
@@ -68,7 +68,7 @@ impl Kind {
             engine::What::Start => Self::Start,
             engine::What::Until(mode, index) => Self::Until(*mode, *index),
             engine::What::Watch(mode, index) => Self::Watch(*mode, *index),
-            engine::What::End(ending) => Self::End(Ending::of(ending)),
+            engine::What::End(ending) => Self::End(Ending::from(ending)),
         }
     }
 

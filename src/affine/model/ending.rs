@@ -5,10 +5,11 @@ use std::fmt;
 use std::str::FromStr;
 
 /// The ending of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Ending {
     /// The time that was asked for is reached.
+    #[default]
     Horizon,
     /// Infinitely many impacts accumulate, between the two times of
     /// [`Event::accumulation`](crate::Event::accumulation).

@@ -1,7 +1,8 @@
 //! A run as a program answers it, held against the task before anything is measured of it.
 
 use crate::wire::{EventReply, RunReply};
-use percuss_engines::engine::{Ended, Event, Limits, Outcome, Task, Work};
+use percuss_engines::engine::Ending;
+use percuss_engines::engine::{Event, Limits, Outcome, Task, Work};
 use percuss_engines::system::{Mode, Values};
 use std::fmt;
 use std::time::Duration;
@@ -67,7 +68,7 @@ pub(crate) fn checked(
         has_states(sample.0.len(), size, AnswerPart::Sample(n))?;
         samples.push(sample.0);
     }
-    let early = ended != Ended::Horizon && samples.len() < asked;
+    let early = ended != Ending::Horizon && samples.len() < asked;
     if early {
         samples.resize(asked, reply.end.0);
     }
@@ -87,20 +88,19 @@ pub(crate) fn checked(
     })
 }
 
-fn ended(reply: &RunReply, task: &Task) -> Result<Ended, Wrong> {
-    let ended = Ended::from(reply.ended);
-    if ended == Ended::LeavesDomain && !task.system.is_backward() {
+fn ended(reply: &RunReply, task: &Task) -> Result<Ending, Wrong> {
+    if reply.ended == Ending::LeavesDomain && !task.system.is_backward() {
         return Err(
             AnswerPart::Run.wrong("ended with leaves-domain, which only runs back in time do")
         );
     }
-    Ok(ended)
+    Ok(reply.ended)
 }
 
 /// When a run ended: where it does not say so, at the horizon, or with its last event.
-fn ended_at(reply: &RunReply, ended: Ended, events: &[Event], task: &Task) -> Result<f64, Wrong> {
+fn ended_at(reply: &RunReply, ended: Ending, events: &[Event], task: &Task) -> Result<f64, Wrong> {
     let last = events.last().map_or(0.0, |event| event.elapsed);
-    let usual = if ended == Ended::Horizon { task.span } else { last };
+    let usual = if ended == Ending::Horizon { task.span } else { last };
     let time = reply.ended_at.unwrap_or(usual);
     // Written so that a NaN is refused.
     if (last..=task.span * (1.0 + ROUNDING)).contains(&time) {

@@ -1,8 +1,9 @@
 //! `score`: the same verdicts for the same answers.
 
 use crate::support::{refused, run, text};
+use percuss::Ending;
 use percuss_validation::case::{defaults, embedded};
-use percuss_validation::engine::{Accuracy, Ended, Outcome, Task};
+use percuss_validation::engine::{Accuracy, Outcome, Task};
 use percuss_validation::integrators::all;
 use percuss_validation::number::shortest;
 use percuss_validation::suite::{Status, Suite, one, prepare};
@@ -25,15 +26,8 @@ fn written(states: &[f64]) -> String {
 }
 
 /// The word for how a run ended early.
-fn ending(ended: Ended) -> Option<&'static str> {
-    Some(match ended {
-        Ended::Horizon => return None,
-        Ended::NoProgress => "no-progress",
-        Ended::Accumulation => "accumulation",
-        Ended::LeavesDomain => "leaves-domain",
-        Ended::BeyondGuard => "beyond-guard",
-        Ended::Undecided => "undecided",
-    })
+fn ending(ended: Ending) -> Option<&'static str> {
+    (ended != Ending::Horizon).then_some(ended.as_str())
 }
 
 /// What a program of a user's own would have written of this run.

@@ -31,6 +31,7 @@ pub use task::Task;
 pub use trace::{GuardSample, Trace, Watched};
 
 use crate::system::Values;
+pub use percuss::Ending;
 use std::time::Duration;
 
 /// An event as an engine found it. A mode is a place among the system's modes.
@@ -48,39 +49,6 @@ pub struct Event {
     /// The state just before the event, which no reset has touched: the guard's value there says
     /// how well the event was located. None where the engine does not tell it.
     pub before: Option<Values>,
-}
-
-/// The ending of a run, in the words of `docs/SYSTEM_FORMAT.md`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Ended {
-    /// The run reached its horizon, or the end of what is watched.
-    #[default]
-    Horizon,
-    /// The run stopped because too many events fell on one instant.
-    NoProgress,
-    /// Infinitely many impacts follow in a time that is enclosed.
-    Accumulation,
-    /// A run back in time came to the boundary of its mode.
-    LeavesDomain,
-    /// A mode was entered where one of its guards is positive already.
-    BeyondGuard,
-    /// The arithmetic has no digits left to decide the next event.
-    Undecided,
-}
-
-impl Ended {
-    /// The ending's word in files and messages.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Horizon => "end",
-            Self::NoProgress => "no-progress",
-            Self::Accumulation => "accumulation",
-            Self::LeavesDomain => "leaves-domain",
-            Self::BeyondGuard => "beyond-guard",
-            Self::Undecided => "undecided",
-        }
-    }
 }
 
 /// The counted work of a run.
@@ -107,7 +75,7 @@ pub struct Outcome {
     /// The state at the run's end.
     pub end: Values,
     /// The ending of the run.
-    pub ended: Ended,
+    pub ended: Ending,
     /// The time at which the run ended, since the start.
     pub ended_at: f64,
     /// The counted work of the run.

@@ -5,10 +5,11 @@ use super::meter::Meter;
 use super::sampler::Sampler;
 use super::script::{GuardRise, note};
 use crate::accuracy::shortest_time;
-use crate::engine::{Ended, Event, OscillatorTask, Outcome, Task, Watched, place};
+use crate::engine::{Event, OscillatorTask, Outcome, Task, Watched, place};
 use crate::equations::{Entered, Equations, Numbers};
 use crate::failure::Failure;
 use crate::system::{Affine, Values};
+use percuss::Ending;
 use std::f64::consts::TAU;
 
 /// The times in which a system changes; libraries that have to be told how long a step may be are
@@ -156,7 +157,7 @@ pub(crate) fn join<E: Equations>(
             StretchEnd::Inside { t, state } => Moment { t, state, ..now },
             StretchEnd::Event { t, state, .. } if equations.leaves_domain() => {
                 now = Moment { t, state, ..now };
-                outcome.ended = Ended::LeavesDomain;
+                outcome.ended = Ending::LeavesDomain;
                 break;
             }
             StretchEnd::Event { t, guard, state } => {
@@ -169,7 +170,7 @@ pub(crate) fn join<E: Equations>(
                 outcome.events.push(Event { event, mode, elapsed: t, state, before });
                 now = next;
                 if instant.is_crowded(t) {
-                    outcome.ended = Ended::NoProgress;
+                    outcome.ended = Ending::NoProgress;
                     break;
                 }
                 now

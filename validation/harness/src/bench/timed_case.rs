@@ -2,11 +2,12 @@
 //! held to.
 
 use crate::case::{Case, FileError, Given, Horizon};
-use crate::engine::{Ended, Failure, OscillatorTask, Outcome, SampleGrid, Task};
+use crate::engine::{Failure, OscillatorTask, Outcome, SampleGrid, Task};
 use crate::number::brief;
 use crate::score::{ErrorRule, EventNames, Matching, Occurrence, SCORED_ERROR, WINDOW, worst};
 use crate::system::SystemProblem;
 use crate::truth::{Library, Truth};
+use percuss::Ending;
 use percuss::{Parameters, Start};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -166,7 +167,7 @@ impl TimedCase {
         let placed = rows().zip(&self.occurrences).filter(|(_, it)| it.mode.is_some());
         let states = placed.map(|((row, event), _)| rule.state_error(row, &event.state));
         // Where infinitely many impacts end a run, engines do not come to the same end.
-        let reached = truth.ended == Ended::Horizon;
+        let reached = truth.ended == Ending::Horizon;
         let end = reached.then(|| rule.state_error(&truth.end, &answer.end));
         let times = rows().map(|(row, it)| rule.time_error(row.elapsed, it.elapsed));
         let drift = rule.drift.map(|_| rule.drift_error(&truth.end, &answer.end));

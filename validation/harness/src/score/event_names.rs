@@ -5,9 +5,10 @@
 
 use super::occurrence::Occurrence;
 use crate::case::Case;
-use crate::engine::{Ended, Outcome, Task};
+use crate::engine::{Outcome, Task};
 use crate::system::System;
 use crate::truth::{Truth, TruthRow};
+use percuss::Ending;
 
 /// The numbers of a system's events, over all of its modes.
 #[derive(Clone, Debug)]
@@ -108,12 +109,12 @@ impl EventNames {
     }
 
     /// An ending that is found like an event; accumulation and the horizon are none.
-    fn ending(&self, ended: Ended, elapsed: f64) -> Option<Occurrence> {
+    fn ending(&self, ended: Ending, elapsed: f64) -> Option<Occurrence> {
         let kind = match ended {
-            Ended::Horizon | Ended::Accumulation | Ended::Undecided => return None,
-            Ended::NoProgress => 0,
-            Ended::LeavesDomain => 1,
-            Ended::BeyondGuard => 2,
+            Ending::NoProgress => 0,
+            Ending::LeavesDomain => 1,
+            Ending::BeyondGuard => 2,
+            _ => return None,
         };
         Some(Occurrence { elapsed, event: self.names.len() + kind, mode: None })
     }

@@ -1,7 +1,8 @@
 use super::*;
 use crate::case::{Case, Given, Horizon, Problem, Quantity, SAMPLES_PER_PERIOD};
-use crate::engine::{Accuracy, Ended, Event, Numbers, OscillatorTask, SampleGrid, place};
+use crate::engine::{Accuracy, Event, Numbers, OscillatorTask, SampleGrid, place};
 use crate::system::Values;
+use percuss::Ending;
 use percuss::Phase::{self, Contact, NoContact, Progression};
 use percuss::{Parameters, Start};
 
@@ -62,7 +63,7 @@ impl Planted {
             start: row(0.0, NoContact, [0.25, 1.0, 0.0, 0.0]),
             events: (0..3).map(event).collect(),
             end: row(task.span, NoContact, [0.25, 1.0, 0.0, 1.5]),
-            ended: Ended::Horizon,
+            ended: Ending::Horizon,
             span: task.span,
             samples: (0..17).map(sample).collect(),
             ordered: true,

@@ -14,9 +14,10 @@ use super::rule::{Beside, ErrorRule, off};
 use super::scored_horizon::{MOST_UNITS, ScoredBy};
 use super::statistics::worst;
 use crate::case::Case;
-use crate::engine::{Accuracy, Ended, Failure, Outcome, Task};
+use crate::engine::{Accuracy, Failure, Outcome, Task};
 use crate::system::SystemProblem;
 use crate::truth::{DoubleDouble, Truth, TruthRow, solver};
+use percuss::Ending;
 use percuss::TwoWord;
 use percuss::affine::{Rational, Solver, StartPoint};
 use rayon::prelude::*;
@@ -161,7 +162,7 @@ impl Restarts<'_> {
         let mut case = Case { until, samples: 1, ..self.case.clone() };
         case.system.start = Some(start.clone());
         let truth = Truth::solved(&case, &self.solver).ok()?;
-        if truth.ended != Ended::Horizon {
+        if truth.ended != Ending::Horizon {
             return None;
         }
         let problem = Arc::new(self.problem.from_start(start).ok()?);

@@ -1,8 +1,9 @@
 use super::*;
 use crate::case::{Given, Horizon};
-use crate::engine::{Accuracy, Ended, Event, Failure, Numbers, Outcome};
+use crate::engine::{Accuracy, Event, Failure, Numbers, Outcome};
 use crate::score::rule::off;
 use crate::system::Values;
+use percuss::Ending;
 use percuss::Phase::{self, Contact, NoContact, Progression};
 use percuss::{Start, TwoWord};
 
@@ -53,7 +54,7 @@ fn truth(start: Phase, phases: &[Phase]) -> Truth {
         start: row((0, &start)),
         events: phases.iter().enumerate().map(|(k, it)| row((k + 1, it))).collect(),
         end: row((9, &start)),
-        ended: Ended::Horizon,
+        ended: Ending::Horizon,
         span: 9.0,
         samples: Vec::new(),
         ordered: true,

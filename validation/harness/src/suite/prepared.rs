@@ -4,7 +4,7 @@ use super::probes::{Extent, Probes};
 use super::scope::Suite;
 use crate::case::{Case, ClassBounds, FileError, SAMPLES_PER_PERIOD};
 use crate::engine::{
-    Accuracy, Ended, Engine, Failure, Limits, OscillatorTask, Outcome, SampleGrid, Task, answer,
+    Accuracy, Engine, Failure, Limits, OscillatorTask, Outcome, SampleGrid, Task, answer,
     least_work,
 };
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
@@ -15,6 +15,7 @@ use crate::score::{
 };
 use crate::system::SystemProblem;
 use crate::truth::{Library, Truth, TruthRow};
+use percuss::Ending;
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -88,7 +89,7 @@ fn task(case: &Case, truth: &Truth, problem: &Arc<SystemProblem>) -> Result<Task
 /// between events in the truth.
 fn local_judge(problem: &Arc<SystemProblem>, task: &Task, truth: &Truth) -> LocalJudge {
     let judge = LocalJudge::new(problem, task);
-    let Some(last) = truth.events.last().filter(|_| truth.ended == Ended::Accumulation) else {
+    let Some(last) = truth.events.last().filter(|_| truth.ended == Ending::Accumulation) else {
         return judge;
     };
     let gap = |pair: &[TruthRow]| pair[1].elapsed.minus(pair[0].elapsed).value();

@@ -4,8 +4,9 @@ use super::growth::GrowthMatrices;
 use super::replay::{Beginning, Replay, Undecided};
 use super::{DoubleDouble, Truth, TruthRow};
 use crate::case::{Case, FileError, OscillatorCase, SAMPLES_PER_PERIOD};
-use crate::engine::{Ended, OscillatorTask, SampleGrid, place};
+use crate::engine::{OscillatorTask, SampleGrid, place};
 use crate::integration::event_between;
+use percuss::Ending;
 use percuss::{Entry, Instant, Parameters, Phase, TwoWord};
 
 /// The longest case without tables, in forcing periods: what is longer is not to be had in seconds.
@@ -79,7 +80,7 @@ impl Truth {
                 let end = row(phase, &horizon, passage.at(&horizon));
                 let start = rows.remove(0);
                 let span = end.elapsed.value();
-                let (ended, ordered) = (Ended::Horizon, true);
+                let (ended, ordered) = (Ending::Horizon, true);
                 return Ok(Self {
                     start,
                     events: rows,

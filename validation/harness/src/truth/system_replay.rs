@@ -6,9 +6,9 @@ use super::growth::GrowthMatrices;
 use super::replayed::states_of_oscillator;
 use super::{DoubleDouble, Truth, TruthRow};
 use crate::case::{Case, FileError};
-use crate::engine::Ended;
+use percuss::Ending;
 use percuss::TwoWord;
-use percuss::affine::{Ending, Event, Solver, StartPoint, Time, What};
+use percuss::affine::{self, Event, Solver, StartPoint, Time, What};
 use percuss::number::Number;
 
 /// The most events that a run without tables may have: how errors grow is followed from each of
@@ -156,26 +156,25 @@ impl SystemReplay<'_> {
         let Some((last, events)) = events.split_last() else { return Err("has no run".into()) };
         let What::End(ending) = last.what else { return Err("its run does not end".into()) };
         let end = self.elapsed(&last.time).value();
-        let (ended, span) = match ending {
-            Ending::Horizon => (Ended::Horizon, self.case.span()),
-            Ending::LeavesDomain => (Ended::LeavesDomain, self.case.span()),
-            Ending::NoProgress => (Ended::NoProgress, self.case.span()),
-            Ending::Accumulation(earliest, _) => (Ended::Accumulation, end + earliest.to_f64()),
-            Ending::BeyondGuard | Ending::Undecided => {
+        let span = match ending {
+            affine::Ending::Accumulation(earliest, _) => end + earliest.to_f64(),
+            affine::Ending::BeyondGuard | affine::Ending::Undecided => {
                 return Err(format!(
                     "is not decided in 106 bits {end:e} after the start; it needs tables"
                 ));
             }
+            _ => self.case.span(),
         };
+        let ended = Ending::from(&ending);
         let rows: Vec<_> = events.iter().map(|event| self.row(event, self.number(event))).collect();
-        let sampled_until = if ended == Ended::Horizon { f64::INFINITY } else { end };
+        let sampled_until = if ended == Ending::Horizon { f64::INFINITY } else { end };
         let times = self.case.sample_times(sampled_until);
         Ok(Truth {
             start: rows[0].clone(),
             samples: times.iter().map(|time| self.sample(events, *time)).collect(),
             events: rows[1..].to_vec(),
             end: match ended {
-                Ended::Horizon => self.sample(events, span),
+                Ending::Horizon => self.sample(events, span),
                 _ => self.row(last, 0),
             },
             ended,

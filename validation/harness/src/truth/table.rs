@@ -5,7 +5,7 @@ use super::decimal;
 use super::growth::GrowthMatrices;
 use super::heading::check_heading;
 use crate::case::{Case, FileError};
-use crate::engine::Ended;
+use percuss::Ending;
 use percuss::TwoWord;
 use percuss::affine::{System, Until};
 use std::collections::BTreeMap;
@@ -58,7 +58,7 @@ pub struct Truth {
     /// The last state of the run.
     pub end: TruthRow,
     /// The ending of the run.
-    pub ended: Ended,
+    pub ended: Ending,
     /// The time for which engines run: up to the horizon, or past an accumulation of impacts.
     pub span: f64,
     /// The states at the instants asked for, as far as the run goes.
@@ -67,16 +67,9 @@ pub struct Truth {
     pub ordered: bool,
 }
 
-/// The last row's word for how a run ends.
-fn ending(word: &str) -> Option<Ended> {
-    Some(match word {
-        "end" => Ended::Horizon,
-        "accumulation" => Ended::Accumulation,
-        "leaves-domain" => Ended::LeavesDomain,
-        "no-progress" => Ended::NoProgress,
-        "beyond-guard" => Ended::BeyondGuard,
-        _ => return None,
-    })
+/// The ending that the last row of a table tells; a proved table has no undecided one.
+fn told_ending(word: &str) -> Option<Ending> {
+    word.parse().ok().filter(|it| *it != Ending::Undecided)
 }
 
 impl Truth {
@@ -92,8 +85,8 @@ impl Truth {
         let refused = |what: &str| FileError::of(events.0, what);
         let (last, rest) = table.rows.split_last().ok_or_else(|| refused("holds no row"))?;
         let (start, between) = rest.split_first().ok_or_else(|| refused("holds no start"))?;
-        let ended = ending(&last.0).ok_or_else(|| refused("its last row names no ending"))?;
-        if ended == Ended::BeyondGuard {
+        let ended = told_ending(&last.0).ok_or_else(|| refused("its last row names no ending"))?;
+        if ended == Ending::BeyondGuard {
             return Err(refused(
                 "the run ends where a mode is entered beyond one of its guards; accepted is a case \
                  whose horizon is before that",
@@ -280,7 +273,7 @@ fn read_row(
     let name = word("event").or_else(|| word("phase")).unwrap_or_default();
     let mode = word("mode").unwrap_or(name);
     // The last row of a table of phases names none.
-    let last = ending(mode).filter(|_| place("phase").is_some()).map(|_| 0);
+    let last = told_ending(mode).filter(|_| place("phase").is_some()).map(|_| 0);
     let row = TruthRow {
         event: 0,
         mode: last.or_else(|| case.system.mode(mode))?,

@@ -5,7 +5,8 @@ use super::rows::sample_times;
 use super::table::{Cells, EVENTS, SAMPLES, Table};
 use crate::answer::{AnswerPart, Wrong, checked};
 use crate::text::plain;
-use crate::wire::{BoundedList, Count, EndedBy, EventReply, RunReply, StateReply};
+use crate::wire::{BoundedList, Count, EventReply, RunReply, StateReply};
+use percuss_engines::engine::Ending;
 use percuss_engines::engine::{Limits, Numbers, Outcome, Task};
 use percuss_engines::number::shortest;
 use percuss_engines::system::{System, Values};
@@ -31,17 +32,17 @@ pub(super) fn answer(
     let samples = Some(file(SAMPLES)).filter(|it| it.exists());
     let samples = samples.map(|it| Table::read(&it)).transpose()?;
     let told = Told::read(&events, task, limits)?;
-    let is_whole = matches!(told.ended, None | Some((EndedBy::Horizon, ..)));
+    let is_whole = matches!(told.ended, None | Some((Ending::Horizon, ..)));
     let (asked, (states, lines)) = match &samples {
         Some(table) => (crate::wire::samples(task).len(), read_samples(table, task, is_whole)?),
         None => (0, Default::default()),
     };
     let (ended, end, ended_at) = match told.ended {
-        Some((EndedBy::Horizon, _, state)) => (EndedBy::Horizon, state, None),
+        Some((Ending::Horizon, _, state)) => (Ending::Horizon, state, None),
         Some((ended, time, state)) => (ended, state, Some(time)),
         None => {
             let last = told.events.last().map_or(StateReply(task.state), |it| it.state);
-            (EndedBy::Horizon, states.last().copied().unwrap_or(last), None)
+            (Ending::Horizon, states.last().copied().unwrap_or(last), None)
         }
     };
     let reply = RunReply {
@@ -71,7 +72,7 @@ struct Told {
     /// The line of each event.
     lines: Vec<usize>,
     /// How and when the run ended, where the file says it, and in which state.
-    ended: Option<(EndedBy, f64, StateReply)>,
+    ended: Option<(Ending, f64, StateReply)>,
 }
 
 impl Told {
@@ -130,7 +131,9 @@ fn event_of(system: &System, mode: usize, name: &str) -> Result<usize, String> {
     let own = |event| system.event_name(mode, event);
     let mut names = (0..).map_while(own);
     names.clone().position(|it| it == name).ok_or_else(|| {
-        let accepted: Vec<&str> = names.by_ref().chain(EndedBy::EARLY.map(|it| it.0)).collect();
+        let early = Ending::ALL.into_iter().filter(|it| *it != Ending::Horizon);
+        let mut accepted: Vec<&str> = names.by_ref().collect();
+        accepted.extend(early.map(|it| it.as_str()));
         let mode = &system.modes[mode].name;
         let name = plain(name);
         format!("event is {name:?} in mode {mode}; accepted are {}", accepted.join(", "))

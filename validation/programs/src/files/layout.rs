@@ -2,7 +2,7 @@
 //! events` prints.
 
 use super::table::Table;
-use crate::wire::EndedBy;
+use percuss_engines::engine::Ending;
 use percuss_engines::system::System;
 use std::borrow::Cow;
 
@@ -56,9 +56,10 @@ impl Layout {
     }
 
     /// The ending that a word in the column of events stands for.
-    pub(super) fn ending(&self, event: &str) -> Option<EndedBy> {
+    pub(super) fn ending(&self, event: &str) -> Option<Ending> {
         let is_printed_end = self.has_start && event == "end";
-        if is_printed_end { Some(EndedBy::Horizon) } else { EndedBy::named(event) }
+        let named = event.parse().ok().filter(|it| *it != Ending::Horizon);
+        if is_printed_end { Some(Ending::Horizon) } else { named }
     }
 
     fn named<const N: usize>(table: &Table, accepted: [Self; N]) -> Result<Self, String> {

@@ -3,7 +3,8 @@
 use super::PROTOCOL;
 use super::numbers::{BoundedList, Count, StateReply};
 use crate::text::plain;
-use percuss_engines::engine::{Class, Ended};
+use percuss_engines::engine::Class;
+use percuss_engines::engine::Ending;
 use serde::Deserialize;
 
 /// The most events and samples of an answer.
@@ -101,8 +102,8 @@ pub(crate) struct RunReply {
     pub(crate) events: BoundedList<EventReply, MOST_ROWS>,
     pub(crate) samples: BoundedList<StateReply, MOST_ROWS>,
     pub(crate) end: StateReply,
-    #[serde(default)]
-    pub(crate) ended: EndedBy,
+    #[serde(default, with = "EndingWord")]
+    pub(crate) ended: Ending,
     #[serde(default)]
     pub(crate) ended_at: Option<f64>,
     #[serde(default)]
@@ -134,46 +135,16 @@ pub(crate) struct WorkReply {
     pub(crate) steps: Count,
 }
 
-/// The ending of a run.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum EndedBy {
-    #[default]
+/// The words for an [`Ending`] in an answer.
+#[derive(Deserialize)]
+#[serde(remote = "Ending", rename_all = "kebab-case")]
+enum EndingWord {
     Horizon,
     NoProgress,
     Accumulation,
     LeavesDomain,
     BeyondGuard,
     Undecided,
-}
-
-impl EndedBy {
-    /// The names of the endings before the horizon.
-    pub(crate) const EARLY: [(&str, Self); 5] = [
-        ("no-progress", Self::NoProgress),
-        ("accumulation", Self::Accumulation),
-        ("leaves-domain", Self::LeavesDomain),
-        ("beyond-guard", Self::BeyondGuard),
-        ("undecided", Self::Undecided),
-    ];
-
-    /// The ending before the horizon that is called so.
-    pub(crate) fn named(name: &str) -> Option<Self> {
-        Self::EARLY.into_iter().find(|it| it.0 == name).map(|it| it.1)
-    }
-}
-
-impl From<EndedBy> for Ended {
-    fn from(ended: EndedBy) -> Self {
-        match ended {
-            EndedBy::Horizon => Self::Horizon,
-            EndedBy::NoProgress => Self::NoProgress,
-            EndedBy::Accumulation => Self::Accumulation,
-            EndedBy::LeavesDomain => Self::LeavesDomain,
-            EndedBy::BeyondGuard => Self::BeyondGuard,
-            EndedBy::Undecided => Self::Undecided,
-        }
-    }
 }
 
 fn yes() -> bool {

@@ -1,10 +1,11 @@
 //! The exact solver on any piecewise-affine system.
 
-use crate::engine::{Ended, Event, Limits, Outcome, Task, Work};
+use crate::engine::{Event, Limits, Outcome, Task, Work};
 use crate::equations::Numbers;
 use crate::failure::Failure;
 use crate::system::{SystemProblem, Values};
-use percuss::affine::{self, Ending, Time, What};
+use percuss::Ending;
+use percuss::affine::{self, Time, What};
 use std::hint::black_box;
 
 /// Runs a task in closed form; the system has to be there with its exact coefficients.
@@ -96,20 +97,16 @@ impl Record<'_> {
         &mut self,
         segment: &affine::Event<f64>,
         event: &affine::Event<f64>,
-        ending: Ending<f64>,
+        ending: affine::Ending<f64>,
     ) -> Result<(), Failure> {
-        self.outcome.ended = match ending {
-            Ending::Horizon => Ended::Horizon,
-            Ending::Accumulation(..) => Ended::Accumulation,
-            Ending::LeavesDomain => Ended::LeavesDomain,
-            Ending::NoProgress => Ended::NoProgress,
-            Ending::BeyondGuard => Ended::BeyondGuard,
-            Ending::Undecided => return Err(Failure::new("rounding hides how a mode ends")),
-        };
+        if ending == affine::Ending::Undecided {
+            return Err(Failure::new("rounding hides how a mode ends"));
+        }
+        self.outcome.ended = Ending::from(&ending);
         self.outcome.ended_at = self.elapsed(&event.time);
         self.outcome.end = match ending {
             // The run's horizon is the clock's time there, which is rounded.
-            Ending::Horizon => Values::of(&self.state_at(segment, self.task.span)),
+            affine::Ending::Horizon => Values::of(&self.state_at(segment, self.task.span)),
             _ => Values::of(&event.state),
         };
         // A run that ends early stays where it is, and one at its horizon has a sample there.

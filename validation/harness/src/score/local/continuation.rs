@@ -1,7 +1,8 @@
 //! The exact continuation of a record, as far as the next record, and what it has there.
 
 use super::units::{Stretch, Units};
-use percuss::affine::{Ending, Event, Followed, Follower, What};
+use percuss::Ending;
+use percuss::affine::{self, Event, Followed, Follower, What};
 use percuss::number::Number;
 
 /// Exact events between two records that are gone past at the most.
@@ -53,7 +54,7 @@ pub(super) enum Found {
     /// Nothing by then: the event that comes next, if one does.
     Nothing(Option<Exact>),
     /// The continuation ends before the record.
-    Ended(Ending<f64>),
+    Ended(Ending),
 }
 
 /// The exact continuation up to a record.
@@ -164,15 +165,7 @@ fn allowed(units: &Units<'_>, place: &Place, own: &Exact, off: f64) -> f64 {
     units.allowed_time(&place.stretch(own.elapsed), own.named.event)
 }
 
-fn ended<T: Number>(ending: Ending<T>) -> Option<Found> {
-    let ending = match ending {
-        Ending::Horizon => return None,
-        // What follows an accumulation is no part of a case.
-        Ending::Accumulation(first, last) => Ending::Accumulation(first.to_f64(), last.to_f64()),
-        Ending::LeavesDomain => Ending::LeavesDomain,
-        Ending::NoProgress => Ending::NoProgress,
-        Ending::BeyondGuard => Ending::BeyondGuard,
-        Ending::Undecided => Ending::Undecided,
-    };
-    Some(Found::Ended(ending))
+fn ended<T: Number>(ending: affine::Ending<T>) -> Option<Found> {
+    let ending = Ending::from(&ending);
+    (ending != Ending::Horizon).then_some(Found::Ended(ending))
 }

@@ -3,8 +3,9 @@
 use super::judgement::{FirstWrong, WrongKind};
 use super::units::Units;
 use super::walk::Walk;
-use crate::engine::{Ended, Outcome};
-use percuss::affine::{Ending, Event, What};
+use crate::engine::Outcome;
+use percuss::Ending;
+use percuss::affine::{self, Event, What};
 
 /// Roundings by which a run's end may differ from its horizon: programs stop stepping there.
 const ROUNDINGS_OF_THE_END: f64 = 32.0 * f64::EPSILON;
@@ -17,12 +18,12 @@ impl Walk<'_> {
         // What follows an accumulation is no part of a case.
         let Some(exact) = before_the_horizon(ending) else { return };
         let early = self.is_early(outcome);
-        if exact.is_none() && early && outcome.ended == Ended::Undecided {
+        if exact.is_none() && early && outcome.ended == Ending::Undecided {
             return self.cut_short(n, outcome.ended_at);
         }
         // A run that is followed as far as its impacts accumulate may say so.
         let own = match outcome.ended {
-            Ended::Accumulation => early.then_some(Ended::Accumulation),
+            Ending::Accumulation => early.then_some(Ending::Accumulation),
             own => Some(own).filter(|it| is_of_the_model(*it)),
         };
         // What comes after the last time that is judged is not.
@@ -69,14 +70,14 @@ impl Walk<'_> {
         &mut self,
         n: usize,
         kind: WrongKind,
-        own: Option<Ended>,
-        (exact, elapsed): (Option<Ended>, f64),
+        own: Option<Ending>,
+        (exact, elapsed): (Option<Ending>, f64),
         outcome: &Outcome,
     ) {
         let clock = |elapsed| self.judge.problem.clock(elapsed);
         let mode = self.judge.mode_name(self.place.mode);
-        let word = |it: Ended| it.as_str().to_owned();
-        let exact = exact.map_or_else(|| word(Ended::Horizon), word);
+        let word = |it: Ending| it.as_str().to_owned();
+        let exact = exact.map_or_else(|| word(Ending::Horizon), word);
         let wrong = FirstWrong {
             n: n + 1,
             kind,
@@ -93,17 +94,14 @@ impl Walk<'_> {
 }
 
 /// An ending that the model decides before a horizon.
-const fn is_of_the_model(ended: Ended) -> bool {
-    matches!(ended, Ended::LeavesDomain | Ended::NoProgress | Ended::BeyondGuard)
+const fn is_of_the_model(ended: Ending) -> bool {
+    matches!(ended, Ending::LeavesDomain | Ending::NoProgress | Ending::BeyondGuard)
 }
 
 /// The ending before the horizon, or none at it; nothing where it cannot be told.
-const fn before_the_horizon(ending: &Ending<f64>) -> Option<Option<Ended>> {
-    match ending {
+fn before_the_horizon(ending: &affine::Ending<f64>) -> Option<Option<Ending>> {
+    match Ending::from(ending) {
         Ending::Horizon => Some(None),
-        Ending::LeavesDomain => Some(Some(Ended::LeavesDomain)),
-        Ending::NoProgress => Some(Some(Ended::NoProgress)),
-        Ending::BeyondGuard => Some(Some(Ended::BeyondGuard)),
-        Ending::Accumulation(..) | Ending::Undecided => None,
+        ending => is_of_the_model(ending).then_some(Some(ending)),
     }
 }

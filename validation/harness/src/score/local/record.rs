@@ -6,7 +6,7 @@ use super::parts::{INCONSISTENCY, LOCATION};
 use super::walk::{Said, Walk};
 use crate::engine::Event;
 use crate::score::WINDOW;
-use percuss::affine::Ending;
+use percuss::Ending;
 
 impl Walk<'_> {
     /// Says of a record what the continuation makes of it.

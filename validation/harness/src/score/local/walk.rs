@@ -6,8 +6,9 @@ use super::motion::Motion;
 use super::pending::Pending;
 use super::run::JudgedRun;
 use super::units::Units;
-use crate::engine::{Ended, Event, Outcome};
+use crate::engine::{Event, Outcome};
 use crate::system::Values;
+use percuss::Ending;
 use percuss::affine::{DoubleDouble, Follower, What};
 
 /// Tolerances below which f64 alone condemns nothing.
@@ -186,10 +187,10 @@ impl<'a> Walk<'a> {
             self.missed(n, None, pending.exact);
         }
         let early = self.is_early(outcome);
-        if early && outcome.ended == Ended::Horizon {
+        if early && outcome.ended == Ending::Horizon {
             return self.cut_short(n, outcome.ended_at);
         }
-        if early && outcome.ended == Ended::NoProgress && self.at_once >= MOST_AT_ONCE {
+        if early && outcome.ended == Ending::NoProgress && self.at_once >= MOST_AT_ONCE {
             return;
         }
         let end = self.judge.until - self.units.allowance.time * self.at_once_within();

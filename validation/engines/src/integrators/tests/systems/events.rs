@@ -2,8 +2,8 @@
 
 use super::models::{bouncing_ball, buck_converter, dry_friction, plastic_ball, spheres};
 use super::{AskedRun, BUILT_IN, EngineAnswer, FIRST_ORDER, check, every, every_on};
-use crate::engine::Ended;
 use crate::system::Direction;
+use percuss::Ending;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ fn an_accumulation_ends_the_run() {
         (name, outcome.map(|it| (it.ended, it.events.iter().filter(|it| it.event == 0).count())))
     };
     let ends: Vec<_> = every(&asked).into_iter().map(ends).collect();
-    let rests = |end: &(Ended, usize)| end.0 == Ended::NoProgress && (40..200).contains(&end.1);
+    let rests = |end: &(Ending, usize)| end.0 == Ending::NoProgress && (40..200).contains(&end.1);
     let others = ends.iter().filter(|(_, end)| !end.as_ref().is_ok_and(rests)).map(|it| it.0);
     let excused = [
         "diffsol-bdf",
@@ -111,7 +111,7 @@ fn back_in_time_a_mode_is_left_once() {
     task.system = Arc::new(backward);
     for (name, unit, outcome) in every_on(&task) {
         let outcome = outcome.unwrap_or_default();
-        assert_eq!(outcome.ended, Ended::LeavesDomain, "{name}: {outcome:?}");
+        assert_eq!(outcome.ended, Ending::LeavesDomain, "{name}: {outcome:?}");
         let [top] = outcome.events.as_slice() else { unreachable!("{name}: {outcome:?}") };
         assert!((top.elapsed - 0.75).abs() <= 20.0 * unit && top.event == 1, "{name} {top:?}");
     }
