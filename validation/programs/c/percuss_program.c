@@ -11,8 +11,8 @@
 #include <string.h>
 #include <time.h>
 
-/* Displacements of so many roundings are none. */
-static const double ROUNDING = 64 * DBL_EPSILON;
+/* Displacements of so many roundings are none: those of thousands of steps add up. */
+static const double ROUNDING = 1024 * DBL_EPSILON;
 /* How much of a guard that was zero where its mode begins the first steps may hide, in tolerances:
  * of a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly. */
 static const double SIMPLE = 0.1, MULTIPLE = 10;

@@ -5,8 +5,8 @@ import java.util.TreeMap;
 
 /** A system's equations, as a request brings them: what is read has fields of the same names. */
 final class PercussSystem {
-    /** Displacements of so many roundings are none. */
-    private static final double ROUNDING = 64 * Math.ulp(1.0);
+    /** Displacements of so many roundings are none: those of thousands of steps add up. */
+    private static final double ROUNDING = 1024 * Math.ulp(1.0);
 
     double omega, phi;
     List<Mode> modes;

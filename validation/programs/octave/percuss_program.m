@@ -8,7 +8,7 @@
 
 % Displacements of so many roundings are none, and times so close are one instant.
 function value = rounding()
-  value = 64 * eps;
+  value = 1024 * eps;
 end
 function value = one_instant()
   value = 8 * eps;

@@ -3,7 +3,7 @@
 # A program calls `serve` with what it can do and with a function that makes a run. The protocol is
 # described in docs/PROTOCOL.md; what it counts from 0 is counted from 1 here.
 
-ROUNDING <- 64 * .Machine$double.eps
+ROUNDING <- 1024 * .Machine$double.eps
 ONE_INSTANT <- 8 * .Machine$double.eps
 MOST_AT_ONCE <- 64
 # So many stretches in so little of a run are one event that is found again and again.
