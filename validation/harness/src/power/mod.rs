@@ -17,7 +17,7 @@ use crate::case::{Case, ClassBounds, Defaults, Quantity};
 use crate::engine::{Accuracy, Limits, REFERENCE};
 use crate::integrators::{self, SOUND, Way, WrongEngine, faulty, wrong};
 use crate::number::brief;
-use crate::score::{Checked, Expected, Subject, Verdict, judge};
+use crate::score::{Checked, Subject, Verdict};
 use crate::suite::{Extent, PreparedCase, class_of};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -277,10 +277,6 @@ fn held(
     let extent = |_| standard.extent(&case.case);
     let mut measured = case.measured(wrong.engine, (accuracy, unit), &limits, extent).ok()?;
     let class = standard.class(&defaults.classes);
-    let of_class = class.map(ClassBounds::bounds).unwrap_or_default();
-    measured.measures.local = class.and_then(|it| case.judge_records(&measured.outcome, it, unit));
     let subject = Subject { case: &case.case.name, engine, accuracy, unit };
-    let bounds: Vec<_> = case.case.bounds.iter().chain(&of_class).chain(&defaults.bounds).collect();
-    let expected = Expected { bounds: &bounds, of_every_case: &defaults.bounds, shortcomings: &[] };
-    Some(judge(&subject, &case.as_run(&measured.measures), &expected).bounds)
+    Some(case.judge(&subject, &mut measured, class, defaults, &[]).bounds)
 }

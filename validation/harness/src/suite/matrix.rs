@@ -6,7 +6,7 @@ use super::scope::{Suite, SuiteScope};
 use crate::case::{Case, ClassBounds, Defaults, Regime};
 use crate::engine::{Accuracy, Declaration, Engine, Failure, Outcome, Role};
 use crate::number::brief;
-use crate::score::{Expected, Measures, RowJudgement, Subject, Verdict, judge};
+use crate::score::{Measures, RowJudgement, Subject, Verdict};
 use rayon::prelude::*;
 use std::time::Duration;
 
@@ -180,16 +180,12 @@ pub fn one(
     }
     let subject = Subject { case: &case.case.name, engine: declaration.name, accuracy, unit };
     let class = class_of(&defaults.classes, &declaration, accuracy);
-    let of_class = class.map(ClassBounds::bounds).unwrap_or_default();
-    let bounds: Vec<_> = case.case.bounds.iter().chain(&of_class).chain(&defaults.bounds).collect();
     let own = case.case.shortcomings.iter();
     let shortcomings: Vec<_> = own.chain(&defaults.shortcomings).collect();
-    let expected =
-        Expected { bounds: &bounds, of_every_case: &defaults.bounds, shortcomings: &shortcomings };
     match case.attempt(engine, (accuracy, unit), suite) {
-        Ok(Measured { mut measures, outcome, wall }) => {
-            measures.local = class.and_then(|it| case.judge_records(&outcome, it, unit));
-            let judgement = judge(&subject, &case.as_run(&measures), &expected);
+        Ok(mut measured) => {
+            let judgement = case.judge(&subject, &mut measured, class, defaults, &shortcomings);
+            let Measured { measures, outcome, wall } = measured;
             row(Status::Ok(Box::new(measures), Box::new(outcome)), wall, judgement)
         }
         Err(failure) => {

@@ -2,7 +2,7 @@
 
 use super::probes::{Extent, Probes};
 use super::scope::Suite;
-use crate::case::{Case, ClassBounds, FileError, SAMPLES_PER_PERIOD};
+use crate::case::{Case, ClassBounds, Defaults, FileError, SAMPLES_PER_PERIOD, Shortcoming};
 use crate::engine::{
     Accuracy, Engine, Failure, Limits, OscillatorTask, Outcome, SampleGrid, Task, answer,
     least_work,
@@ -10,8 +10,8 @@ use crate::engine::{
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
 use crate::score::local::{Allowance, LocalJudge, LocalJudgement};
 use crate::score::{
-    Decision, ErrorRule, EventNames, Graze, MeasuredBy, Measures, Occurrence, ScoredBy, ScoredRun,
-    WINDOW, decisions, grazes, measure,
+    Decision, ErrorRule, EventNames, Expected, Graze, MeasuredBy, Measures, Occurrence,
+    RowJudgement, ScoredBy, ScoredRun, Subject, WINDOW, decisions, grazes, judge, measure,
 };
 use crate::system::SystemProblem;
 use crate::truth::{Library, Truth, TruthRow};
@@ -188,6 +188,29 @@ impl PreparedCase {
     pub fn as_run<'a>(&'a self, measures: &'a Measures) -> ScoredRun<'a> {
         let window = WINDOW * self.period();
         ScoredRun { measures, truth: &self.occurrences, grazes: &self.grazes, window }
+    }
+
+    /// Judges a run by the bounds of the case, of the engine's class and of every case, and the
+    /// records of an engine that has a class from where the engine itself was.
+    pub fn judge(
+        &self,
+        subject: &Subject<'_>,
+        measured: &mut Measured,
+        class: Option<&ClassBounds>,
+        defaults: &Defaults,
+        shortcomings: &[&Shortcoming],
+    ) -> RowJudgement {
+        let Measured { measures, outcome, .. } = measured;
+        measures.local = class.and_then(|it| self.judge_records(outcome, it, subject.unit));
+        let of_class = class.map(ClassBounds::bounds).unwrap_or_default();
+        let of_every_case = &defaults.bounds;
+        let bounds: Vec<_> =
+            self.case.bounds.iter().chain(&of_class).chain(of_every_case).collect();
+        judge(
+            subject,
+            &self.as_run(measures),
+            &Expected { bounds: &bounds, of_every_case, shortcomings },
+        )
     }
 
     /// The names of its events.

@@ -27,7 +27,7 @@ impl Walk<'_> {
             own => Some(own).filter(|it| is_of_the_model(*it)),
         };
         // What comes after the last time that is judged is not.
-        let own = own.filter(|_| outcome.ended_at <= self.judge.until);
+        let own = own.filter(|_| outcome.ended_at <= self.judge.judged_until);
         let elapsed = self.coarse.elapsed(end);
         let is_in_time = (outcome.ended_at - elapsed).abs() <= self.allowed_at(end);
         match (exact, own) {
@@ -48,7 +48,7 @@ impl Walk<'_> {
 
     /// Whether a run ends before its horizon by more than another count of the same time.
     pub(super) fn is_early(&self, outcome: &Outcome) -> bool {
-        self.judge.until - outcome.ended_at > ROUNDINGS_OF_THE_END * self.judge.until
+        self.judge.judged_until - outcome.ended_at > ROUNDINGS_OF_THE_END * self.judge.judged_until
     }
 
     /// The time by which the ending may be off: that of the guard which is nearest to zero.

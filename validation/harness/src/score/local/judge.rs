@@ -24,8 +24,8 @@ impl LocalJudge {
     /// longer than `shortest`: an engine's own impacts accumulate at another time, so that no time
     /// alone says where to end.
     #[must_use]
-    pub fn down_to(self, until: f64, shortest: f64) -> Self {
-        Self(JudgedRun { until, shortest, ..self.0 })
+    pub fn down_to(self, judged_until: f64, shortest: f64) -> Self {
+        Self(JudgedRun { judged_until, shortest, ..self.0 })
     }
 
     /// Judges an answer to the task.
@@ -43,7 +43,7 @@ impl LocalJudge {
         for (n, event) in outcome.events.iter().enumerate() {
             let duration = event.elapsed - walk.place.elapsed;
             accumulates = duration < self.0.shortest && walk.has_next_within(self.0.shortest);
-            if accumulates || event.elapsed > self.0.until {
+            if accumulates || event.elapsed > self.0.judged_until {
                 break;
             }
             walk.record(n, event);
@@ -59,11 +59,11 @@ impl LocalJudge {
     /// far enough apart.
     #[must_use]
     pub fn judged(&self, outcome: &Outcome) -> usize {
-        let JudgedRun { until, shortest, .. } = self.0;
+        let JudgedRun { judged_until, shortest, .. } = self.0;
         let mut before = 0.0;
         let mut is_judged = |elapsed: f64| {
             let duration = elapsed - std::mem::replace(&mut before, elapsed);
-            elapsed <= until && duration >= shortest
+            elapsed <= judged_until && duration >= shortest
         };
         outcome.events.iter().take_while(|it| is_judged(it.elapsed)).count()
     }
@@ -87,7 +87,7 @@ impl LocalJudge {
             coarse,
             fine: None,
             place,
-            until: 0.0,
+            told_until: 0.0,
             answer: Samples { times: &task.samples, states: &outcome.samples },
             pending: Vec::new(),
             stays: false,

@@ -129,7 +129,7 @@ impl Walk<'_> {
     fn shown_near(&mut self, at: f64, row: &RowDVector<f64>, state: &[f64]) -> Option<f64> {
         let system = self.motion().system();
         let (begin, near) = (self.place.elapsed, SHOWN_WITHIN * system.time_scale);
-        let (from, to) = (begin.max(at - near), self.until.min(at + near));
+        let (from, to) = (begin.max(at - near), self.told_until.min(at + near));
         let answer = self.answer;
         let all = answer.times.iter().zip(answer.states);
         let shown: Vec<_> = all.filter(|(time, _)| **time > from && **time < to).collect();

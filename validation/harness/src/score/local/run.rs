@@ -12,7 +12,7 @@ pub(super) struct JudgedRun {
     pub(super) motion: Motion,
     pub(super) wide: OnceLock<Result<Solver<DoubleDouble>, SystemError>>,
     /// The time since the start up to which events are judged.
-    pub(super) until: f64,
+    pub(super) judged_until: f64,
     /// Of a run whose impacts accumulate: the time between impacts below which it is not followed.
     pub(super) shortest: f64,
 }
@@ -23,7 +23,7 @@ impl JudgedRun {
             problem: Arc::clone(problem),
             motion: Motion::of(&task.system),
             wide: OnceLock::new(),
-            until: task.span,
+            judged_until: task.span,
             shortest: 0.0,
         }
     }

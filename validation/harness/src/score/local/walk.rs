@@ -27,7 +27,7 @@ pub(super) struct Walk<'a> {
     pub(super) fine: Option<Follower<'a, DoubleDouble>>,
     pub(super) place: Place,
     /// The time up to which the present flow is the answer's: that of the record in hand.
-    pub(super) until: f64,
+    pub(super) told_until: f64,
     pub(super) answer: Samples<'a>,
     pub(super) pending: Vec<Pending>,
     /// Whether the record in hand leaves the run where it was.
@@ -75,7 +75,7 @@ impl<'a> Walk<'a> {
 
     /// Judges a record, and goes on to it.
     pub(super) fn record(&mut self, n: usize, event: &Event) {
-        self.until = event.elapsed;
+        self.told_until = event.elapsed;
         let named = Named { event: event.event, next: event.mode };
         let continuation = self.continuation((named, event.elapsed));
         let Continuation { found, passed, decided } = continuation;
@@ -182,7 +182,7 @@ impl<'a> Walk<'a> {
     /// After the last record no exact event may lie before the end of what is judged.
     pub(super) fn end(&mut self, outcome: &Outcome) {
         let n = outcome.events.len();
-        self.until = outcome.ended_at;
+        self.told_until = outcome.ended_at;
         for pending in std::mem::take(&mut self.pending) {
             self.missed(n, None, pending.exact);
         }
@@ -193,7 +193,7 @@ impl<'a> Walk<'a> {
         if early && outcome.ended == Ending::NoProgress && self.at_once >= MOST_AT_ONCE {
             return;
         }
-        let end = self.judge.until - self.units.allowance.time * self.at_once_within();
+        let end = self.judge.judged_until - self.units.allowance.time * self.at_once_within();
         let mut gone_past = self.place.late;
         self.coarse.go_on(self.place.elapsed, &self.place.state, end, gone_past);
         let until = self.until_count();
@@ -206,7 +206,7 @@ impl<'a> Walk<'a> {
             let allowed =
                 self.units.allowed_time(&self.place.stretch(own.elapsed), own.named.event);
             let accumulates = own.elapsed - self.place.elapsed < self.judge.shortest;
-            if accumulates || own.elapsed > self.judge.until - allowed {
+            if accumulates || own.elapsed > self.judge.judged_until - allowed {
                 return;
             }
             let (elapsed, guard, ends_mode) = (own.elapsed, own.named.event, own.ends_mode);
@@ -235,7 +235,7 @@ impl<'a> Walk<'a> {
     /// Counts the end of a run as missed that ends before its horizon without a reason.
     pub(super) fn cut_short(&mut self, n: usize, ended_at: f64) {
         self.found.missed += 1;
-        let horizon = self.judge.problem.clock(self.judge.until);
+        let horizon = self.judge.problem.clock(self.judge.judged_until);
         self.found.wrong(FirstWrong {
             n: n + 1,
             kind: WrongKind::Missed,
