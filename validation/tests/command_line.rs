@@ -66,7 +66,10 @@ fn flags_are_those_of_the_program() {
     command.build();
     let shared = flags(&Command::new("shared").args(command.get_arguments().cloned()));
     let model = command.find_subcommand("simulate").expect("a verb");
-    let model = model.get_arguments().filter(|it| it.get_help_heading() == Some("Model and start"));
+    let common = ["Model and start", "SYSTEM and its start"];
+    let model = model
+        .get_arguments()
+        .filter(|it| it.get_help_heading().is_some_and(|heading| common.contains(&heading)));
     let model = flags(&Command::new("model").args(model.cloned()));
     let common = &page[..page.find("\n## `").expect("verbs follow")];
     for flag in shared.iter().chain(&model).filter(|it| *it != "--help" && *it != "--version") {

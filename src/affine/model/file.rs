@@ -144,6 +144,46 @@ impl SystemFile {
         self.replace(name, GivenParameter { value: Scalar::Decimal(value), place })
     }
 
+    /// Replaces a state of the start, or its time `t`, by a number or by an expression as those of
+    /// a file's `[start]`; `place` says in errors where the value is from.
+    ///
+    /// ```
+    /// use percuss::{gallery, system::SystemFile};
+    ///
+    /// let mut ball = SystemFile::read("ball", gallery::BOUNCING_BALL)?;
+    /// ball.set_start("x", "2*g", "the height")?;
+    /// let start = ball.system()?.start.expect("a start");
+    /// assert_eq!(start.state[0][2].to_f64(), 2.0);
+    /// let error = ball.set_start("y", "0", "the height").unwrap_err();
+    /// assert_eq!(error.to_string(), "the height: y is no state: accepted are t, x, v");
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A name that is neither `t` nor a state of the system.
+    pub fn set_start(&mut self, name: &str, value: &str, place: &str) -> Result<(), SystemError> {
+        let states = self.tables.states.get_ref().iter().map(|it| it.get_ref().as_str());
+        let known: Vec<&str> = std::iter::once("t").chain(states).collect();
+        if !known.contains(&name) {
+            let what = format!("{name} is no state: accepted are {}", known.join(", "));
+            return Err(SystemError::at(place, &what));
+        }
+        self.enter_start(name, Scalar::typed(value), place);
+        Ok(())
+    }
+
+    /// Replaces the mode of the start; `place` says in errors where the name is from.
+    pub fn set_start_mode(&mut self, mode: &str, place: &str) {
+        self.enter_start("mode", Scalar::Text(mode.to_owned()), place);
+    }
+
+    /// Replaces an entry of the start.
+    fn enter_start(&mut self, key: &str, value: Scalar, place: &str) {
+        let none = || StartTable { place: place.to_owned(), entries: BTreeMap::new() };
+        let given = GivenParameter { value, place: place.to_owned() };
+        self.start.get_or_insert_with(none).entries.insert(key.to_owned(), given);
+    }
+
     /// Replaces parameters and start by those of another file's `[parameters]` and `[start]`. Its
     /// other tables are refused, unless they belong to something else.
     ///

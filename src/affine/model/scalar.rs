@@ -17,6 +17,14 @@ pub(super) enum Scalar {
 }
 
 impl Scalar {
+    /// The number of a text, or else the text as an expression.
+    pub fn typed(text: &str) -> Self {
+        if let Ok(integer) = text.parse() {
+            return Self::Integer(integer);
+        }
+        text.parse().map_or_else(|_| Self::Text(text.to_owned()), Self::Decimal)
+    }
+
     /// The exact value of a number; none of text, of a row and of what is not finite.
     pub fn number(&self) -> Option<Rational> {
         match self {

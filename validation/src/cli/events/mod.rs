@@ -12,19 +12,17 @@ mod write;
 use super::help;
 use super::shared::format::OutputFlags;
 use super::shared::long_work::{self, Bar};
-use super::shared::names;
 use super::shared::parse::{self, Typed};
+use super::shared::system_choice::SystemFlags;
 use super::{DONE, OUT_OF_BOUNDS, note};
-use crate::case::{FileError, parse_system_case, read_text};
-use crate::systems::{SYSTEMS, named};
 use crate::truth::DoubleDouble;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::{self, BITS, LONGEST, SystemFile};
+use percuss::affine::{self, BITS, LONGEST};
 use percuss::{Proved, Solver, System};
 use progress::RunEnd;
 use rows::{Limits, Rows};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The most bits that a run may take.
 const MOST_BITS: u32 = BITS[BITS.len() - 1];
@@ -69,13 +67,6 @@ pub(super) struct Arguments {
     /// do not decide or have too few digits [default: 3392]
     #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(u64::from(BITS[0]), u64::from(MOST_BITS)), allow_hyphen_values = true)]
     max_bits: Option<u32>,
-    /// A file whose [start] replaces the system's, and whose [parameters] replace some; a case of
-    /// the system serves too
-    #[arg(long, value_name = "FILE.toml")]
-    start: Option<PathBuf>,
-    /// Replaces the value of a parameter
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
-    set: Vec<String>,
     /// Runs back in time
     #[arg(long)]
     backward: bool,
@@ -84,6 +75,8 @@ pub(super) struct Arguments {
     states: Option<String>,
     #[command(flatten)]
     output: OutputFlags<Format>,
+    #[command(flatten)]
+    flags: SystemFlags,
 }
 
 /// The output format of a run.
@@ -104,24 +97,9 @@ impl Format {
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let format = arguments.output.format(Format::Csv)?;
     check_effect(arguments, format)?;
-    let mut file = read(&arguments.system)?;
-    if let Some(path) = &arguments.start {
-        start(&mut file, path).context("--start")?;
-    }
-    for given in &arguments.set {
-        let parsed = given.split_once('=').and_then(|(name, value)| {
-            Some((name.trim(), value.trim().parse::<f64>().ok().filter(|it| it.is_finite())?))
-        });
-        let Some((name, value)) = parsed else {
-            bail!("--set {given} is not accepted: NAME=VALUE with a finite number is");
-        };
-        file.set(name, value, "--set")?;
-    }
-    let system = file.system()?;
-    let Some(start) = &system.start else {
-        return Err(without_start(&arguments.system, &system));
-    };
-    let limits = limits(arguments, &system, start.time.to_f64())?;
+    let system = arguments.flags.system(&arguments.system)?.system()?;
+    let start = system.start()?.time.to_f64();
+    let limits = limits(arguments, &system, start)?;
     let shown = draw::shown(&system, arguments.states.as_deref())?;
     let destination = arguments.output.destination();
     let bar = long_work::run_bar(!format.is_picture() && destination.is_terminal());
@@ -200,50 +178,5 @@ fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
             bail!("--states {states} has no effect here: accepted is it with png and svg")
         }
         _ => Ok(()),
-    }
-}
-
-/// Takes start and parameters from a file, or from a case of the same system.
-fn start(file: &mut SystemFile, path: &Path) -> Result<()> {
-    let text = read_text(path)?;
-    let name = path.display().to_string();
-    let is_case = text.parse::<toml::Table>().is_ok_and(|it| it.contains_key("case"));
-    if is_case {
-        let case = parse_system_case(&name, &text, path.parent())?;
-        if case.system.name != file.name() {
-            let (other, own) = (case.system.name, file.name());
-            bail!("{name}: a case of {other} is not accepted here: one of {own} is");
-        }
-    }
-    Ok(file.replace_from(&name, &text, is_case)?)
-}
-
-/// The system of this path, or of this name.
-fn read(system: &Path) -> Result<SystemFile> {
-    let name = system.display().to_string();
-    if let Some(text) = named(&name).filter(|_| !system.is_file()) {
-        return Ok(SystemFile::read(&name, text)?);
-    }
-    let text = read_text(system).map_err(|error| {
-        if system.is_file() {
-            return anyhow!(error);
-        }
-        let near = names::nearest(&name, SYSTEMS.iter().map(|(name, _)| *name));
-        let near = match near.is_empty() {
-            true => String::new(),
-            false => format!("; the nearest names are {}", near.join(", ")),
-        };
-        anyhow!("{error}, or a name that percuss systems lists{near}")
-    })?;
-    Ok(SystemFile::read(&name, &text)?)
-}
-
-/// A system that starts nowhere; those inside the program start somewhere.
-fn without_start(path: &Path, system: &System) -> anyhow::Error {
-    let states = system.states.join(", ");
-    let accepted = format!("one with mode and the states {states}, here or in --start FILE.toml");
-    match read_text(path) {
-        Ok(text) => FileError::lacks(&path.display().to_string(), &text, "start", &accepted).into(),
-        Err(error) => error.into(),
     }
 }

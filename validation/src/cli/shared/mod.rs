@@ -14,4 +14,5 @@ pub(super) mod parse;
 pub(super) mod programs;
 pub(super) mod progress;
 pub(super) mod reports;
+pub(super) mod system_choice;
 pub(super) mod terminal;

@@ -103,6 +103,28 @@ impl ModelFlags {
         Ok(())
     }
 
+    /// The first of the flags that is given, with its value.
+    pub(in crate::cli) fn first_given(&self) -> Option<String> {
+        let number = |it: &Option<Typed<f64>>| it.as_ref().map(ToString::to_string);
+        let flags = [
+            ("a", number(&self.a)),
+            ("b", number(&self.b)),
+            ("xi", number(&self.xi)),
+            ("omega", number(&self.omega)),
+            ("g", number(&self.g)),
+            ("phi", number(&self.phi)),
+            ("tau", number(&self.tau)),
+            ("cycle", self.cycle.as_ref().map(ToString::to_string)),
+            ("p", number(&self.p)),
+            ("y", number(&self.y)),
+            ("q", number(&self.q)),
+            ("v", number(&self.v)),
+            ("phase", self.phase.map(|it| it.as_str().to_owned())),
+            ("problem", self.problem.as_ref().map(|it| it.display().to_string())),
+        ];
+        flags.into_iter().find_map(|(name, value)| Some(format!("--{name} {}", value?)))
+    }
+
     fn given(&self) -> Result<Given> {
         let mut given = match &self.problem {
             Some(path) => read_problem(path).map_err(|error| match told_as_system(path) {

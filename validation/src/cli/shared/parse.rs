@@ -118,6 +118,23 @@ pub(in crate::cli) fn angle(text: &str) -> Result<f64, String> {
     angle.ok_or_else(|| "accepted is a number, -1e15 to 1e15".to_owned())
 }
 
+/// A parameter of a system with its value.
+pub(in crate::cli) fn parameter_value(text: &str) -> Result<(String, f64), String> {
+    let parsed = text.split_once('=').and_then(|(name, value)| {
+        Some((name.trim(), value.trim().parse().ok().filter(|it: &f64| it.is_finite())?))
+    });
+    let parsed = parsed.map(|(name, value)| (name.to_owned(), value));
+    parsed.ok_or_else(|| "accepted is NAME=VALUE with a finite number".to_owned())
+}
+
+/// A state of a start with its value, a number or an expression.
+pub(in crate::cli) fn start_value(text: &str) -> Result<[String; 2], String> {
+    let parts = text.split_once('=').map(|(state, value)| [state.trim(), value.trim()]);
+    let parts = parts.filter(|it| it.iter().all(|part| !part.is_empty()));
+    let parts = parts.map(|it| it.map(str::to_owned));
+    parts.ok_or_else(|| "accepted is STATE=VALUE with a number or an expression".to_owned())
+}
+
 /// A cycle's number.
 pub(in crate::cli) fn cycle(text: &str) -> Result<Typed<i64>, String> {
     let value = integer(text);
