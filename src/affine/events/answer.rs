@@ -58,6 +58,12 @@ pub trait Running<'a, V> {
     /// The next event, sample or ending.
     fn next(&mut self) -> Option<Event<'a, V>>;
 
+    /// Lets a run without samples that has ended at its horizon go on to a later time, and says
+    /// whether it does.
+    fn go_on(&mut self, _until: f64) -> bool {
+        false
+    }
+
     /// The number of choices so far that rounding leaves open.
     fn undecidable(&self) -> u64;
 

@@ -91,6 +91,28 @@ impl<'a, A: Answer> Events<'a, A> {
     }
 }
 
+impl Events<'_, f64> {
+    /// Lets a run that has ended at its horizon go on to a later time, and says whether it does: a
+    /// run with samples does not. So a caller has the state at times of its own, and the events
+    /// between them.
+    ///
+    /// ```
+    /// use percuss::{Ending, System, gallery};
+    ///
+    /// let ball = System::from_toml(gallery::BOUNCING_BALL)?;
+    /// let solver = ball.solver::<f64>()?;
+    /// let mut events = solver.run().until(1.0)?;
+    /// let there = events.next().expect("the horizon, before the first impact");
+    /// assert_eq!((there.ending(), there.state()), (Some(Ending::Horizon), &[0.5, -1.0][..]));
+    /// assert!(events.next().is_none() && events.go_on(2.0));
+    /// assert_eq!(events.next().map(|it| it.name()), Some("impact"));
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    pub fn go_on(&mut self, until: f64) -> bool {
+        self.run.go_on(until)
+    }
+}
+
 impl<'a, A: Answer> Iterator for Events<'a, A> {
     type Item = Event<'a, A::Value>;
 

@@ -46,6 +46,10 @@ impl<'a, T: Number> Running<'a, T> for Plain<'a, T> {
         Some(self.event(step.kind(), step.event))
     }
 
+    fn go_on(&mut self, until: f64) -> bool {
+        !self.steps.has_samples() && self.steps.run.go_on(T::exact(until))
+    }
+
     fn undecidable(&self) -> u64 {
         self.steps.run.work().undecidable
     }
