@@ -95,8 +95,17 @@ const ROWS: &[Row] = &[
     (&["events"], "--max-events", &["0", "2e9"], "an integer, 1 to 1000000000"),
     (&["events"], "--digits", WORDS, "17, 25"),
     (&["events"], "--states", WORDS, "png and svg"),
-    (&["events"], "--set", &["", "x", "g=", "g=nan"], "NAME=VALUE with a finite number"),
-    (&["events"], "--start", &["/no/such.toml", "/"], "accepted is a readable file"),
+    (&[], "--set", &["", "x", "g=", "g=nan"], "NAME=VALUE with a finite number"),
+    (&[], "--start", &["/no/such.toml", "/"], "accepted is a readable file"),
+    (&[], "--at", &["", "x", "x=", "=1"], "STATE=VALUE"),
+    (&["events"], "--at", &["y=1", "mode=flight"], "accepted are t, x, v"),
+    (&["events"], "--at", &["x=nan", "x=w", "x=1/0"], "x"),
+    (&["events"], "--at", &["", "x", "x=", "=1"], "STATE=VALUE"),
+    (&["events"], "--mode", &["", "fall"], "accepted is one of flight"),
+    (&["simulate"], "--start", &["/no/such.toml"], "without SYSTEM"),
+    (&["simulate"], "--mode", &["flight"], "without SYSTEM"),
+    (&["simulate"], "--returns", INTEGERS, "0 to 1000000000"),
+    (&["simulate"], "--transient", INTEGERS, "0 to 1000000000"),
     (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
     (&["simulate"], "--max-periods", INTEGERS, "1 to 1000000000"),
     (&["poincare", "lyapunov"], "--periods", INTEGERS, "1 to 1000000000"),
@@ -191,7 +200,7 @@ fn arguments(verb: &str, flag: &str, value: &str) -> Vec<String> {
     let known = VERBS.iter().find(|it| it.0 == verb);
     let Some((_, usual)) = known else { panic!("{verb} is not in the table") };
     let mut words: Vec<String> = verb.split(' ').map(str::to_owned).collect();
-    let one_of = |name: &str| ["--periods", "--events", "--until"].contains(&name);
+    let one_of = |name: &str| ["--periods", "--events", "--until", "--returns"].contains(&name);
     for (name, usual) in usual.iter() {
         let replaced = verb == "simulate" && one_of(name) && one_of(flag);
         if *name != flag && !replaced && !name.starts_with("--") {
@@ -234,8 +243,7 @@ fn odd_values_of_every_flag() {
             for value in *values {
                 let words = arguments(verb, flag, value);
                 let words: Vec<&str> = words.iter().map(String::as_str).collect();
-                let name = if flag == "SHELL" { "SHELL" } else { flag };
-                refused(&words, &[name, value, accepted]);
+                refused(&words, &[flag, value, accepted]);
             }
         }
     }
@@ -297,6 +305,27 @@ fn flags_without_effect() {
         (
             vec!["events", "bouncing-ball", "--until", "1", "--digits", "25", "--format", "svg"],
             &["--digits 25", "picture"],
+        ),
+        (vec!["simulate", "--periods", "1", "--set", "e=0.5"], &["--set e=0.5", "without SYSTEM"]),
+        (vec!["simulate", "--periods", "1", "--at", "x=1"], &["--at x=1", "without SYSTEM"]),
+        (vec!["simulate", "--returns", "1"], &["--returns 1", "--periods"]),
+        (vec!["simulate", "--periods", "1", "--transient", "3"], &["--transient 3", "--cycle"]),
+        (vec!["simulate", "--periods", "1", "--format", "npz"], &["without SYSTEM", "csv"]),
+        (vec!["simulate", "bouncing-ball", "--until", "1", "--a", "3"], &["--a 3", "--set"]),
+        (vec!["simulate", "bouncing-ball", "--events", "1", "--p", "-1"], &["--p -1", "--at"]),
+        (vec!["simulate", "bouncing-ball", "--periods", "1"], &["--periods 1", "--returns"]),
+        (
+            vec!["simulate", "bouncing-ball", "--events", "1", "--max-periods", "7"],
+            &["--max-periods 7", "--until"],
+        ),
+        (vec!["simulate", "bouncing-ball", "--returns", "1"], &["--returns 1", "not forced"]),
+        (
+            vec!["simulate", "bouncing-ball", "--until", "1", "--transient", "1"],
+            &["--transient 1", "not forced", "--until"],
+        ),
+        (
+            vec!["simulate", "bouncing-ball", "--until", "1", "--format", "png"],
+            &["--format png", "npz", "events"],
         ),
         ([&diagram[..], &["--carry", "--reset"]].concat(), &["--carry", "--reset"]),
         (

@@ -49,6 +49,7 @@ mod score;
 mod score_your_integrator;
 mod scoreboard;
 mod simulate;
+mod simulate_system;
 mod spoiled;
 mod strobe_derivative;
 mod sweep;

@@ -1,5 +1,7 @@
 //! Numbers as text: the shortest form that reads back to the same f64.
 
+use std::fmt;
+
 /// Below this size, or from [`LARGE`] on, a number is written with an exponent.
 const SMALL: f64 = 1e-5;
 const LARGE: f64 = 1e16;
@@ -7,15 +9,24 @@ const LARGE: f64 = 1e16;
 /// The shortest text that reads back to `value`; not finite: `nan`, `inf`, `-inf`.
 #[must_use]
 pub fn shortest(value: f64) -> String {
-    let size = value.abs();
-    if value.is_nan() {
-        "nan".to_owned()
-    } else if value.is_infinite() {
-        if value > 0.0 { "inf" } else { "-inf" }.to_owned()
-    } else if size != 0.0 && !(SMALL..LARGE).contains(&size) {
-        format!("{value:e}")
-    } else {
-        format!("{value}")
+    Shortest(value).to_string()
+}
+
+/// A number that prints as [`shortest`] has it, for those who write many.
+pub struct Shortest(pub f64);
+
+impl fmt::Display for Shortest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (value, size) = (self.0, self.0.abs());
+        if value.is_nan() {
+            f.write_str("nan")
+        } else if value.is_infinite() {
+            f.write_str(if value > 0.0 { "inf" } else { "-inf" })
+        } else if size != 0.0 && !(SMALL..LARGE).contains(&size) {
+            write!(f, "{value:e}")
+        } else {
+            write!(f, "{value}")
+        }
     }
 }
 

@@ -55,6 +55,23 @@ impl<W: Write> Npz<W> {
         Ok(out.flush()?)
     }
 
+    /// Adds a list of texts.
+    ///
+    /// # Errors
+    /// What the archive objects to.
+    pub fn add_texts(&mut self, name: &str, texts: &[impl AsRef<str>]) -> Result<()> {
+        // NumPy has no texts of length 0.
+        let length = texts.iter().map(|it| it.as_ref().chars().count()).fold(1, usize::max);
+        self.0.start_file(format!("{name}.npy"), SimpleFileOptions::default())?;
+        let kind = npyz::DType::Plain(format!("<U{length}").parse()?);
+        let options = npyz::WriteOptions::<str>::new().dtype(kind).shape(&[texts.len() as u64]);
+        let mut writer = options.writer(&mut self.0).begin_nd()?;
+        for text in texts {
+            writer.push(text.as_ref())?;
+        }
+        Ok(writer.finish()?)
+    }
+
     /// Ends the file, and gives back what it was written to.
     ///
     /// # Errors

@@ -167,11 +167,16 @@ Examples:
       four samples a forcing period
   percuss simulate --periods 40 --output motion.png
       a picture of forty forcing periods
+  percuss simulate rigid-impact-oscillator --transient 500 --events 4
+      any system, after 500 forcing periods
 
 Words:
   phase           no-contact (the mass flies), contact (it presses the
                   slider), progression (the slider slips)
-  event           the instant at which a phase ends and the next begins
+  event           the instant at which a phase ends and the next begins,
+                  and a crossing that a SYSTEM watches
+  return          of a forced SYSTEM: one forcing period on, where the
+                  forcing has the angle that it has at the start
   forcing period  2 pi/omega, the unit of all periods in flags and
                   results
   drift           v, by which the slider has gone forward; per period,

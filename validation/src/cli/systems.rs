@@ -3,6 +3,7 @@
 use super::help;
 use super::shared::format::OutputFlags;
 use super::shared::list::{self, Format};
+use super::shared::system_choice::event_names;
 use crate::systems::SYSTEMS;
 use anyhow::Result;
 use clap::Args;
@@ -48,15 +49,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 
 fn line(name: &'static str, text: &str) -> Result<Line> {
     let system = System::parse(name, text)?;
-    let mut events: Vec<&str> = Vec::new();
-    for mode in &system.modes {
-        let until = mode.until.iter().map(|it| it.name.as_str());
-        for event in until.chain(mode.watch.iter().map(|it| it.name.as_str())) {
-            if !events.contains(&event) {
-                events.push(event);
-            }
-        }
-    }
+    let events = event_names(&system);
     let modes: Vec<&str> = system.modes.iter().map(|it| it.name.as_str()).collect();
     Ok(Line {
         name,

@@ -122,6 +122,23 @@ fn events_of_a_system() {
 }
 
 #[test]
+fn a_run_of_a_system() {
+    let ball = ["simulate", "bouncing-ball", "--format", "json"];
+    let value = json(&stdout(&[&ball[..], &["--events", "3"]].concat()));
+    assert_valid("simulate-system.schema.json", &value);
+    assert_eq!(value["rows"][3]["state"]["v"], 0.1875);
+    assert!(value["accumulation"].is_null() && value.get("undecidable").is_none());
+    let value = json(&text(&run(&[&ball[..], &["--until", "9"]].concat()).stdout));
+    assert_valid("simulate-system.schema.json", &value);
+    let [earliest, latest] =
+        ["earliest", "latest"].map(|it| value["accumulation"][it].as_f64().expect("a number"));
+    assert!(earliest <= 3.0 && 3.0 <= latest && latest - earliest < 1e-6, "{earliest} {latest}");
+    let value = json(&stdout(&[&ball[..], &["--until", "1", "--samples", "2"]].concat()));
+    assert_valid("simulate-system.schema.json", &value);
+    assert_eq!(value["rows"][1]["state"]["x"], 0.5);
+}
+
+#[test]
 fn cases() {
     let value = json(&stdout(&["cases", "--format", "json"]));
     assert_valid("cases.schema.json", &value);

@@ -1,8 +1,8 @@
 //! The ending of a run, and what is said of it on stderr.
 
-use super::no_progress;
 use super::progress::{Accumulation, Passed, RunEnd};
 use super::rows::Rows;
+use crate::cli::shared::run_ending::RunEnding;
 use percuss::{Ending, Event, Events, Kind, Proved};
 
 impl Rows<'_> {
@@ -15,25 +15,19 @@ impl Rows<'_> {
         end: &mut RunEnd,
     ) -> String {
         let Kind::End(ending) = event.kind() else { return event.name().to_owned() };
-        let note = match ending {
-            Ending::Accumulation => {
-                let (note, found) = accumulation(event);
-                end.accumulation = found;
-                note
-            }
-            Ending::LeavesDomain => "the boundary of the mode is reached".to_owned(),
-            Ending::NoProgress => no_progress::note(self.system, &passed.recent),
-            Ending::BeyondGuard => "the mode is entered beyond one of its guards".to_owned(),
-            Ending::Undecided => {
-                format!("what comes next is not decided by {} bits", events.bits())
-            }
-            _ => return event.name().to_owned(),
-        };
-        end.notes.push(format!("the run ends at {}: {note}", self.time(event)));
-        if ending == Ending::NoProgress {
-            end.notes.extend(no_progress::remedy(self.system, &passed.recent));
+        if ending == Ending::Accumulation {
+            end.accumulation = accumulation(event);
         }
-        end.undecided = !ending.is_decided();
+        let ends = end.accumulation.as_ref();
+        let ending = RunEnding {
+            ending,
+            time: self.time(event),
+            accumulation: ends.map(|it| [it.earliest.as_str(), &it.latest]),
+            bits: events.bits(),
+        };
+        let notes = ending.notes(self.system, &passed.last);
+        end.undecided = !ending.ending.is_decided();
+        end.notes.extend(notes);
         event.name().to_owned()
     }
 
@@ -46,18 +40,10 @@ impl Rows<'_> {
     }
 }
 
-/// The instant at which impacts accumulate, between two times after the last of them.
-fn accumulation(last: &Event<'_, Proved>) -> (String, Option<Accumulation>) {
+/// The two times, after the last impact, between which infinitely many impacts accumulate.
+fn accumulation(last: &Event<'_, Proved>) -> Option<Accumulation> {
     /// The digits of each end, which is rounded away from the other.
     const DIGITS: u8 = 30;
-    let ends = last.accumulation().and_then(|[earliest, latest]| {
-        Some(Accumulation { earliest: earliest.lower(DIGITS)?, latest: latest.upper(DIGITS)? })
-    });
-    let note = ends.as_ref().map_or_else(
-        || "infinitely many impacts accumulate".to_owned(),
-        |Accumulation { earliest, latest }| {
-            format!("infinitely many impacts accumulate between {earliest} and {latest}")
-        },
-    );
-    (note, ends)
+    let [earliest, latest] = last.accumulation()?;
+    Some(Accumulation { earliest: earliest.lower(DIGITS)?, latest: latest.upper(DIGITS)? })
 }

@@ -3,7 +3,6 @@
 
 mod draw;
 mod ending;
-mod no_progress;
 mod progress;
 mod rows;
 mod samples;

@@ -29,6 +29,14 @@ impl Destination {
         check_file("--output", path)
     }
 
+    /// A folder for files that wait until the result is written.
+    pub(in crate::cli) fn folder(&self) -> PathBuf {
+        match self {
+            Self::Stdout => std::env::temp_dir(),
+            Self::File(path) => folder_of(path).to_owned(),
+        }
+    }
+
     /// Whether what is written is seen on a terminal.
     pub(in crate::cli) fn is_terminal(&self) -> bool {
         matches!(self, Self::Stdout) && io::stdout().is_terminal()

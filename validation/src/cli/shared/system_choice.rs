@@ -44,11 +44,12 @@ pub(in crate::cli) struct SystemFlags {
 /// A system that was chosen, whose parameters can be set again.
 pub(in crate::cli) struct ChosenSystem {
     pub(in crate::cli) file: SystemFile,
+    /// The text of the file.
+    text: String,
     path: PathBuf,
 }
 
 impl SystemChoice {
-    #[expect(dead_code, reason = "the verbs of the dynamics take SYSTEM next")]
     /// The system that is chosen, if one is; its flags and those of the oscillator's model are
     /// refused each without what they belong to.
     pub(in crate::cli) fn chosen(&self, model: &ModelFlags) -> Result<Option<ChosenSystem>> {
@@ -70,7 +71,7 @@ impl SystemChoice {
 impl SystemFlags {
     /// The system of a path or of a name, with what the flags replace.
     pub(in crate::cli) fn system(&self, path: &Path) -> Result<ChosenSystem> {
-        let mut file = read(path)?;
+        let (mut file, text) = read(path)?;
         if let Some(path) = &self.start {
             replace_start(&mut file, path).context("--start")?;
         }
@@ -83,7 +84,7 @@ impl SystemFlags {
         if let Some(mode) = &self.mode {
             file.set_start_mode(mode, "--mode");
         }
-        Ok(ChosenSystem { file, path: path.to_owned() })
+        Ok(ChosenSystem { file, text, path: path.to_owned() })
     }
 
     /// Refuses the flags where no system is chosen.
@@ -117,14 +118,23 @@ impl ChosenSystem {
         let states = system.states.join(", ");
         let accepted =
             format!("one with mode and the states {states}, here or in --start FILE.toml");
-        match read_text(&self.path) {
-            Ok(text) => {
-                let name = self.path.display().to_string();
-                FileError::lacks(&name, &text, "start", &accepted).into()
+        let name = self.path.display().to_string();
+        FileError::lacks(&name, &self.text, "start", &accepted).into()
+    }
+}
+
+/// The names of a system's events, each once.
+pub(in crate::cli) fn event_names(system: &System) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for mode in &system.modes {
+        let until = mode.until.iter().map(|it| it.name.as_str());
+        for name in until.chain(mode.watch.iter().map(|it| it.name.as_str())) {
+            if !names.contains(&name) {
+                names.push(name);
             }
-            Err(error) => error.into(),
         }
     }
+    names
 }
 
 /// Takes start and parameters from a file, or from a case of the same system.
@@ -142,11 +152,11 @@ fn replace_start(file: &mut SystemFile, path: &Path) -> Result<()> {
     Ok(file.replace_from(&name, &text, is_case)?)
 }
 
-/// The file of this path, or of the system of this name.
-pub(in crate::cli) fn read(system: &Path) -> Result<SystemFile> {
+/// The file of this path, or of the system of this name, with its text.
+fn read(system: &Path) -> Result<(SystemFile, String)> {
     let name = system.display().to_string();
     if let Some(text) = named(&name).filter(|_| !system.is_file()) {
-        return Ok(SystemFile::read(&name, text)?);
+        return Ok((SystemFile::read(&name, text)?, text.to_owned()));
     }
     let text = read_text(system).map_err(|error| {
         if system.is_file() {
@@ -159,5 +169,5 @@ pub(in crate::cli) fn read(system: &Path) -> Result<SystemFile> {
         };
         anyhow!("{error}, or a name that percuss systems lists{near}")
     })?;
-    Ok(SystemFile::read(&name, &text)?)
+    Ok((SystemFile::read(&name, &text)?, text))
 }

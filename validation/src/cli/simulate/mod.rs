@@ -1,9 +1,11 @@
-//! `simulate`: one run, as a table of events, a table of samples, or a picture.
+//! `simulate`: one run, as a table of events, a table of samples, arrays or a picture; of the
+//! impact oscillator, or of any piecewise-affine system.
 
 mod csv;
 mod json;
 mod plan;
 mod rows;
+mod system;
 
 use super::help;
 use super::note;
@@ -11,20 +13,22 @@ use super::shared::format::OutputFlags;
 use super::shared::long_work;
 use super::shared::model::ModelFlags;
 use super::shared::parse::{self, MAX_PERIODS, Typed};
+use super::shared::system_choice::SystemChoice;
 use crate::picture;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
 use plan::{PlannedRun, RunEnding};
 use std::io::Write;
 
-/// Run the exact solver of the impact oscillator from one start
+/// Run the exact solver from one start: of the impact oscillator, or of a SYSTEM
 ///
-/// Answers what one motion does: the state at which each phase begins, or
-/// samples, or a picture. Between events the motion is a closed form, and each
-/// event is proved to be the first.
+/// Answers what one motion does: the state just after each event, or samples, or
+/// a picture. Between events the motion is a closed form, and each event is
+/// proved to be the first. A SYSTEM runs in f64: `percuss events` has its digits
+/// proved, at tens of times the cost.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = help::SIMULATE)]
-#[command(group(ArgGroup::new("length").required(true).args(["events", "periods", "until"])))]
+#[command(group(ArgGroup::new("length").required(true).args(["events", "periods", "until", "returns"])))]
 pub(super) struct Arguments {
     /// Ends after this many events
     #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, u64::MAX), allow_hyphen_values = true)]
@@ -35,7 +39,15 @@ pub(super) struct Arguments {
     /// Ends at this time, at or after the start
     #[arg(long, value_name = "TAU", value_parser = parse::time, allow_hyphen_values = true)]
     until: Option<Typed<f64>>,
-    /// Rows K times a forcing period instead of at each event
+    /// With a forced SYSTEM: ends after this many returns to the forcing's angle at the start, one
+    /// a forcing period
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
+    returns: Option<u64>,
+    /// With a forced SYSTEM: leaves out this many returns before the first row
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
+    transient: Option<u64>,
+    /// Rows K times a forcing period instead of at each event; of a SYSTEM without forcing K times
+    /// in its unit of time
     #[arg(long, value_name = "K", value_parser = parse::whole::<u32>(1, 4_294_967_295), allow_hyphen_values = true)]
     samples: Option<u32>,
     /// With --events: stops early after this many forcing periods [default: 1000000]
@@ -43,6 +55,8 @@ pub(super) struct Arguments {
     max_periods: Option<u64>,
     #[command(flatten)]
     output: OutputFlags<Format>,
+    #[command(flatten)]
+    system: SystemChoice,
     #[command(flatten)]
     model: ModelFlags,
 }
@@ -54,11 +68,20 @@ enum Format {
     Json,
     Png,
     Svg,
+    Npy,
+    Npz,
 }
 
 /// Makes the run; whether it was decided to its end.
 pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
+    match arguments.system.chosen(&arguments.model)? {
+        Some(system) => system::run(arguments, &system, format),
+        None => run_oscillator(arguments, format),
+    }
+}
+
+fn run_oscillator(arguments: &Arguments, format: Format) -> Result<bool> {
     check_effect(arguments, format)?;
     let destination = arguments.output.destination();
     let bar = long_work::run_bar(destination.is_terminal());
@@ -66,9 +89,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let mut ending = RunEnding::default();
     destination.write(|out| {
         ending = match format {
-            Format::Csv => write_rows(&plan, arguments.samples, &mut csv::Csv(out))?,
             Format::Json => write_rows(&plan, arguments.samples, &mut json::Json::new(out))?,
             Format::Png | Format::Svg => draw(&plan, format, out)?,
+            _ => write_rows(&plan, arguments.samples, &mut csv::Csv(out))?,
         };
         Ok(())
     })?;
@@ -77,8 +100,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     Ok(!ending.undecided)
 }
 
-/// Refuses flags that the run takes no notice of.
+/// Refuses flags that the run takes no notice of, and what belongs to runs of a SYSTEM.
 fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
+    let counts = [("--returns", arguments.returns), ("--transient", arguments.transient)];
+    if let Some((flag, count)) = counts.iter().find_map(|(flag, count)| Some((flag, (*count)?))) {
+        bail!("{flag} {count} is not accepted without SYSTEM: --periods is, and --cycle");
+    }
+    if matches!(format, Format::Npy | Format::Npz) {
+        bail!("arrays are not accepted without SYSTEM: csv, json, png and svg are");
+    }
     if let (Some(most), None) = (arguments.max_periods, arguments.events) {
         bail!("--max-periods {most} has no effect here: accepted is it with --events");
     }

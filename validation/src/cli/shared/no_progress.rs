@@ -1,12 +1,37 @@
 //! What is said of a run that makes no progress: which events take turns in one instant, why, and
 //! what to write in the system's file.
 
-use super::progress::{AT_ONCE, Turned};
+use percuss::Kind;
 use percuss::affine::{Rational, Row, System, Until, is_unit};
 use std::collections::VecDeque;
 
 /// The largest number of events that are named.
 const MOST_NAMED: usize = 6;
+
+/// The number of `until` events in one instant that ends a run, and that are kept to name them.
+const AT_ONCE: usize = 64;
+
+/// An `until` of a mode by its index, with the mode that it begins.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Turned {
+    mode: usize,
+    until: usize,
+    next: usize,
+}
+
+/// The last `until` events of a run, the latest first.
+#[derive(Default)]
+pub(in crate::cli) struct LastTurns(VecDeque<Turned>);
+
+impl LastTurns {
+    /// Keeps an event, where it is an `until`, with the mode that it begins.
+    pub(in crate::cli) fn add(&mut self, kind: Kind, next: usize) {
+        if let Kind::Until(mode, until) = kind {
+            self.0.truncate(AT_ONCE - 1);
+            self.0.push_front(Turned { mode, until, next });
+        }
+    }
+}
 
 /// An `until` of a run, with its mode and the one that it begins.
 struct Turn<'a> {
@@ -15,10 +40,9 @@ struct Turn<'a> {
     next: usize,
 }
 
-/// The events that take turns, by their names and modes; `recent` are a run's last events with the
-/// modes that they begin, the last first.
-pub(super) fn note(system: &System, recent: &VecDeque<Turned>) -> String {
-    let turns = turns(system, recent);
+/// The events that take turns, by their names and modes.
+pub(super) fn note(system: &System, last: &LastTurns) -> String {
+    let turns = turns(system, &last.0);
     let name = |mode: usize| &system.modes[mode].name;
     let named = turns.iter().take(MOST_NAMED).map(|turn| {
         let Turn { until, mode, next } = turn;
@@ -37,8 +61,8 @@ pub(super) fn note(system: &System, recent: &VecDeque<Turned>) -> String {
 }
 
 /// Why the events take turns, and what to write.
-pub(super) fn remedy(system: &System, recent: &VecDeque<Turned>) -> Option<String> {
-    let turns = turns(system, recent);
+pub(super) fn remedy(system: &System, last: &LastTurns) -> Option<String> {
+    let turns = turns(system, &last.0);
     let text = match &turns[..] {
         [] => return None,
         [own] if own.mode == own.next && own.leaves_its_guard(system) => format!(
@@ -102,7 +126,7 @@ impl Turn<'_> {
 }
 
 /// A row times a matrix.
-fn times(row: &Row, matrix: &[Row]) -> Row {
+pub(in crate::cli) fn times(row: &Row, matrix: &[Row]) -> Row {
     let column = |n: usize| {
         let terms = row.iter().zip(matrix).map(|(factor, row)| factor * &row[n]);
         terms.fold(Rational::ZERO, |sum, term| sum + term)
