@@ -40,6 +40,8 @@ const VERBS: &[(&str, &[(&str, &str)])] = &[
     ("cases", &[]),
     ("systems", &[]),
     ("events", &[("SYSTEM", "bouncing-ball"), ("--until", "1")]),
+    ("check", &[("SYSTEM", "bouncing-ball")]),
+    ("new", &[("NAME", "mine")]),
     ("sweep run", &[("--plan", "no.toml"), ("--out", "/proc/nowhere")]),
     ("sweep status", &[("--plan", "no.toml"), ("--out", "/proc/nowhere")]),
     ("sweep merge", &[("--plan", "no.toml"), ("--out", "/proc/nowhere"), ("--output", "a.npz")]),
@@ -98,14 +100,15 @@ const ROWS: &[Row] = &[
     (&[], "--set", &["", "x", "g=", "g=nan"], "NAME=VALUE with a finite number"),
     (&[], "--start", &["/no/such.toml", "/"], "accepted is a readable file"),
     (&[], "--at", &["", "x", "x=", "=1"], "STATE=VALUE"),
-    (&["events"], "--at", &["y=1", "mode=flight"], "accepted are t, x, v"),
-    (&["events"], "--at", &["x=nan", "x=w", "x=1/0"], "x"),
-    (&["events"], "--at", &["", "x", "x=", "=1"], "STATE=VALUE"),
-    (&["events"], "--mode", &["", "fall"], "accepted is one of flight"),
+    (&["events", "check"], "--at", &["y=1", "mode=flight"], "accepted are t, x, v"),
+    (&["events", "check"], "--at", &["x=nan", "x=w", "x=1/0"], "x"),
+    (&["events", "check"], "--at", &["", "x", "x=", "=1"], "STATE=VALUE"),
+    (&["events", "check"], "--mode", &["", "fall"], "accepted is one of flight"),
     (&["simulate"], "--start", &["/no/such.toml"], "without SYSTEM"),
     (&["simulate"], "--mode", &["flight"], "without SYSTEM"),
     (&["simulate"], "--returns", INTEGERS, "0 to 1000000000"),
     (&["simulate"], "--transient", INTEGERS, "0 to 1000000000"),
+    (&["new"], "NAME", &["", "Mine", "a b", "a--b", "../a"], "joined by hyphens"),
     (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
     (&["simulate"], "--max-periods", INTEGERS, "1 to 1000000000"),
     (&["poincare", "lyapunov"], "--periods", INTEGERS, "1 to 1000000000"),
@@ -235,6 +238,7 @@ fn odd_values_of_every_flag() {
     // It answers a protocol of its own and takes no flags but those of all verbs.
     found.retain(|(verb, _)| verb != "bench worker");
     found.push(("completions".to_owned(), "SHELL".to_owned()));
+    found.push(("new".to_owned(), "NAME".to_owned()));
     assert!(found.len() > 150, "{}", found.len());
     for (verb, flag) in &found {
         let rows = rows(verb, flag);

@@ -14,6 +14,7 @@ mod bad_input;
 mod bench;
 mod browser;
 mod case_files;
+mod check_and_new;
 mod command_line;
 mod contributing;
 mod counted_work;

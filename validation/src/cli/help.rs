@@ -135,6 +135,27 @@ Words:
   trouble  the difficulty for integrators for which the system was
            chosen";
 
+pub(super) const CHECK: &str = "\
+Examples:
+  percuss check bouncing-ball
+      a system inside the program
+  percuss check my-rig.system.toml --set gap=0.5
+      a file of your own, with another parameter
+
+Words:
+  mode   a set of affine equations that holds between two events
+  until  a guard that ends its mode where it becomes true
+  watch  a guard whose crossings are events and end nothing
+  zero   by the model: whatever rounded numbers say; after an event,
+         by this event alone";
+
+pub(super) const NEW: &str = "\
+Examples:
+  percuss new my-rig
+      writes my-rig.system.toml
+  percuss new second-rig
+      writes second-rig.system.toml";
+
 pub(super) const EVENTS: &str = "\
 Examples:
   percuss events bouncing-ball --events 3

@@ -5,6 +5,7 @@ mod basins;
 mod bench;
 mod bifurcation;
 mod cases;
+mod check;
 mod completions;
 mod engines;
 mod events;
@@ -12,6 +13,7 @@ mod export;
 mod help;
 mod lyapunov;
 mod man;
+mod new;
 mod orbits;
 mod poincare;
 mod reproduce;
@@ -60,6 +62,8 @@ enum Verb {
     Bench(bench::Arguments),
     Events(events::Arguments),
     Systems(systems::Arguments),
+    Check(check::Arguments),
+    New(new::Arguments),
     Simulate(Box<simulate::Arguments>),
     Poincare(Box<poincare::Arguments>),
     Lyapunov(Box<lyapunov::Arguments>),
@@ -132,6 +136,8 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Cases(cases) => cases::run(cases).map(|()| DONE),
         Verb::Events(events) => events::run(events),
         Verb::Systems(systems) => systems::run(systems).map(|()| DONE),
+        Verb::Check(check) => check::run(check).map(|()| DONE),
+        Verb::New(new) => new::run(new).map(|()| DONE),
         Verb::Completions(completions) => completions::run(completions).map(|()| DONE),
         Verb::Man(man) => man::run(man).map(|()| DONE),
     };

@@ -104,6 +104,11 @@ impl SystemFlags {
 }
 
 impl ChosenSystem {
+    /// The text of the system's file, as it was before flags replaced anything.
+    pub(in crate::cli) fn text(&self) -> &str {
+        &self.text
+    }
+
     /// The system, which has a start.
     pub(in crate::cli) fn system(&self) -> Result<System> {
         let system = self.file.system()?;
