@@ -18,6 +18,8 @@
 //! ```
 
 pub use crate::affine::{
-    Direction, Expression, Forcing, LARGEST_DIMENSION, Mode, ModeBuilder, RationalError, Row,
-    StartPoint, Successor, SystemBuilder, SystemFile, TROUBLE, Until, UntilBuilder, Watch,
+    Direction, Exponents, Expression, Forcing, Guard, LARGEST_DIMENSION, Mode, ModeBuilder,
+    NoOrbit, NoReturn, Orbit, Passage, Place, RationalError, Return, Returns, Row, Section,
+    SectionMap, StartPoint, Successor, SystemBuilder, SystemFile, TROUBLE, Until, UntilBuilder,
+    Watch,
 };

@@ -112,7 +112,7 @@ const PACKAGES: [Package; 7] = [
 
 /// The rooms of `src/affine/`, each allowed to use those before it. What the folder exports comes
 /// from all of them.
-const AFFINE_ROOMS: [&str; 12] = [
+const AFFINE_ROOMS: [&str; 13] = [
     "model",
     "zeros",
     "arithmetic",
@@ -123,6 +123,7 @@ const AFFINE_ROOMS: [&str; 12] = [
     "solver",
     "run",
     "events",
+    "returns",
     "gallery",
     EXPORTS,
 ];

@@ -6,7 +6,7 @@
 //! the tests use it as it is.
 
 // The rooms, each of which uses only those before it: model, zeros, arithmetic, modal, closed_form,
-// guards, first_crossing, solver, run, events; gallery is beside them.
+// guards, first_crossing, solver, run, events, returns; gallery is beside them.
 mod arithmetic;
 mod closed_form;
 pub(crate) mod events;
@@ -15,6 +15,7 @@ pub mod gallery;
 mod guards;
 mod modal;
 mod model;
+mod returns;
 mod run;
 mod solver;
 mod zeros;
@@ -32,7 +33,14 @@ pub use model::system::{
     Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, TROUBLE,
     Until, Watch, is_unit,
 };
+pub use returns::exponents::Exponents;
+pub use returns::map::SectionMap;
+pub use returns::orbit::{NoOrbit, Orbit};
+pub use returns::passage::Passage;
+pub use returns::section::{Guard, Section};
+pub use returns::walk::{NoReturn, Return, Returns};
 pub use run::Run;
 pub use run::follow::{Followed, Follower, Imposed};
+pub use run::place::Place;
 pub use solver::Solver;
 pub use solver::event::{Ending, Errors, Event, What};

@@ -75,7 +75,7 @@ impl Batches {
 
     /// The means per forcing period of what has grown by these sums at the beginning and at the end
     /// of each batch.
-    pub(super) fn means<S>(self, sums: &[S], grown: impl Fn(&S, &S) -> f64) -> Vec<f64> {
+    pub(crate) fn means<S>(self, sums: &[S], grown: impl Fn(&S, &S) -> f64) -> Vec<f64> {
         let mean = |(pair, k): (&[S], u64)| {
             let length = self.end(k) - self.end(k - 1);
             grown(&pair[0], &pair[1]) / length as f64
@@ -99,7 +99,7 @@ impl Batches {
 
     /// Whether some quantities, given by their batch means, scatter about one value each; the
     /// latest change where they do not.
-    pub(super) fn stationarity(self, quantities: &[Vec<f64>]) -> Stationarity {
+    pub(crate) fn stationarity(self, quantities: &[Vec<f64>]) -> Stationarity {
         if (self.count as usize) < LEAST_FOR_CHANGE {
             return Stationarity::Unknown;
         }
@@ -112,7 +112,7 @@ impl Batches {
 
 /// The standard error of the mean of batch means, with Student's factor: that many on either side
 /// hold the true mean in 68.3 of 100 runs. NaN for a single batch.
-pub(super) fn standard_error(means: &[f64]) -> f64 {
+pub(crate) fn standard_error(means: &[f64]) -> f64 {
     let count = means.len() as f64;
     let mean = means.iter().sum::<f64>() / count;
     let scatter: f64 = means.iter().map(|it| (it - mean).powi(2)).sum();

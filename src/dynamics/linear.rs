@@ -14,7 +14,7 @@ pub type ReIm = [f64; 2];
 
 /// `after * before`.
 #[must_use]
-pub fn product(after: &Jacobian, before: &Jacobian) -> Jacobian {
+pub fn product<const N: usize>(after: &[[f64; N]; N], before: &[[f64; N]; N]) -> [[f64; N]; N] {
     after.map(|row| {
         std::array::from_fn(|column| row.iter().zip(before).map(|(r, b)| r * b[column]).sum())
     })
@@ -22,7 +22,7 @@ pub fn product(after: &Jacobian, before: &Jacobian) -> Jacobian {
 
 /// `matrix * vector`.
 #[must_use]
-pub fn apply(matrix: &Jacobian, vector: &StrobePoint) -> StrobePoint {
+pub fn apply<const N: usize>(matrix: &[[f64; N]; N], vector: &[f64; N]) -> [f64; N] {
     matrix.map(|row| dot(&row, vector))
 }
 

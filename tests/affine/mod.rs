@@ -17,6 +17,8 @@ mod known;
 mod limits;
 mod oscillator;
 mod random;
+mod return_orbits;
+mod returns;
 mod sizes;
 mod spectra;
 mod still;

@@ -87,6 +87,11 @@ impl<A: Answer> Solver<A> {
         A::system(&self.prepared)
     }
 
+    /// The system, prepared.
+    pub(in crate::affine) fn prepared(&self) -> &A::Prepared {
+        &self.prepared
+    }
+
     /// A run from the system's own start, whose length is said next.
     pub fn run(&self) -> Run<'_, A> {
         Run::of(&self.prepared, self.system().start.as_ref().map(Cow::Borrowed))

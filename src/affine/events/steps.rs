@@ -3,7 +3,7 @@
 
 use super::event::Kind;
 use super::request::{Horizon, Request};
-use crate::affine::arithmetic::clock::Time;
+use crate::affine::arithmetic::clock::{Time, full_turn};
 use crate::affine::model::error::SystemError;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::System;
@@ -129,12 +129,4 @@ impl<T: Number> Sampling<T> {
         let is_within = if self.is_backward { time >= self.end } else { time <= self.end };
         is_within.then_some(time)
     }
-}
-
-/// 2 pi, by Newton's method for the zero of the sine, which triples the digits each time.
-fn full_turn<T: Number>() -> T {
-    /// From an f64 to more than 1,400 digits.
-    const STEPS: usize = 4;
-    let half = (0..STEPS).fold(T::exact(std::f64::consts::PI), |half, _| half + half.sin_cos().0);
-    half + half
 }

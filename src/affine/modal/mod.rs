@@ -22,7 +22,7 @@ use self::matrix::{
 pub(super) use self::matrix::{exponential, multiples, row_times};
 use self::polynomial::{Eigenvalue, eigenvalues};
 use self::quasi_triangular::triangular;
-use crate::affine::arithmetic::real::BigReal;
+use crate::affine::arithmetic::real::{BigReal, bits_for};
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::Row;
 use crate::numeric::number::{Bound, ScaledF64};
@@ -94,6 +94,17 @@ impl Block {
     pub fn moves_alone_from(&self, first: usize) -> bool {
         self.matrix[first..].iter().all(|row| row[..first].iter().all(BigReal::is_zero))
     }
+}
+
+/// The eigenvalues of a matrix, real and imaginary part, each as often as it is one; none if the
+/// iteration does not converge.
+pub(super) fn spectrum(matrix: &[Row]) -> Option<Vec<[f64; 2]>> {
+    let both = |it: Eigenvalue| {
+        let [re, im] = [&it.value.re, &it.value.im].map(BigReal::to_f64);
+        let values = if it.is_real() { vec![[re, 0.0]] } else { vec![[re, im], [re, -im]] };
+        std::iter::repeat_n(values, it.multiplicity).flatten()
+    };
+    Some(eigenvalues(matrix, bits_for::<f64>())?.into_iter().flat_map(both).collect())
 }
 
 /// The blocks of a matrix, in numbers of so many bits. Entries of z that do not depend on each

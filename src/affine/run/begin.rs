@@ -13,6 +13,8 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::system::{LARGEST_DIMENSION, StartPoint};
 use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Event, What};
+use crate::affine::solver::pool::Loan;
+use crate::affine::solver::start_cache::RunStart;
 use crate::numeric::number::{Bound, Number};
 use std::collections::VecDeque;
 
@@ -63,14 +65,24 @@ impl<T: Number> Solver<T> {
         let begin = graph.run_start(&self.system, start, || self.time_and_state(start));
         let item = || format!("a start of {}", self.system.name);
         let begin = begin.ok_or_else(|| SystemError::Undecidable { item: item() })?;
-        let mode = start.mode;
+        Ok(self.not_begun(graph, begin, Time { high: until, low: T::zero() }))
+    }
+
+    /// A run at a node of the structural zeros whose first segment is not entered yet.
+    pub(super) fn not_begun<'a>(
+        &'a self,
+        graph: Loan<'a, T>,
+        begin: RunStart<T>,
+        horizon: Time<T>,
+    ) -> Run<'a, T> {
+        let mode = graph.node(begin.node).mode;
         let first =
             Event { what: What::Start, time: begin.time, state: Vec::new(), mode, errors: None };
-        Ok(Run {
+        Run {
             solver: self,
             graph,
             work: SearchWork::default(),
-            horizon: until,
+            horizon,
             node: begin.node,
             entered: begin.time,
             state: begin.state,
@@ -92,7 +104,7 @@ impl<T: Number> Solver<T> {
             exact: None,
             start: first.clone(),
             last: first,
-        })
+        }
     }
 
     /// The time and the state of a start, rounded to the arithmetic.
@@ -110,7 +122,7 @@ impl<T: Number> Solver<T> {
 
 impl<T: Number> Run<'_, T> {
     /// Begins the run, with the errors of the start where they are followed.
-    fn begin(&mut self, enclosure: Option<Enclosure<T::Bound>>) {
+    pub(super) fn begin(&mut self, enclosure: Option<Enclosure<T::Bound>>) {
         self.start = self.event(What::Start, self.entered, &self.state);
         self.start.errors = enclosure.as_ref().map(|it| self.errors(it));
         self.last.clone_from(&self.start);

@@ -146,7 +146,7 @@ impl<T: Number> Follower<'_, T> {
         let solver = run.solver;
         (run.node, self.undecided_before) = (node, run.work.undecidable);
         (run.entered, run.state) = begin;
-        run.horizon = horizon;
+        run.horizon = Time { high: horizon, low: T::zero() };
         run.queue.clear();
         (run.ended, run.events_in_instant, run.restitution) = (false, 0, None);
         let until_guards = low_bits(solver.system.modes[self.mode].until.len());

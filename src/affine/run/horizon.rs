@@ -17,7 +17,7 @@ impl<T: Number> Run<'_, T> {
     pub fn go_on(&mut self, until: T) -> bool {
         let goes_on = self.queue.is_empty() && self.ending() == Some(&Ending::Horizon);
         if goes_on {
-            (self.horizon, self.ended) = (until, false);
+            (self.horizon, self.ended) = (Time { high: until, low: T::zero() }, false);
             (self.ends.left.to_crossing, self.ends.passed) = (T::zero(), Passed::none());
         }
         goes_on

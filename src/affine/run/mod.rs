@@ -5,8 +5,9 @@
 //! picks the successor. [`accumulation`] encloses where impacts accumulate, and [`enclosure`]
 //! carries the errors along in a run that follows them. [`horizon`] has the errors at a time that
 //! is given, and [`given_up`] the motion that is known where such a run is not decided. [`follow`]
-//! continues the records of a run that someone else has made. Read this file first, then `crossed`
-//! and `transition`.
+//! continues the records of a run that someone else has made, [`place`] is where a run may be cut
+//! and go on with another state, and [`variation`] carries small changes of the state along. Read
+//! this file first, then `crossed` and `transition`.
 
 mod accumulation;
 mod begin;
@@ -17,9 +18,11 @@ pub mod follow;
 mod given_up;
 mod horizon;
 mod origins;
+pub mod place;
 mod reduction;
 mod transition;
 mod undecided;
+pub mod variation;
 
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{Vector, all_finite, twice_summed_rounding};
@@ -41,7 +44,7 @@ pub struct Run<'a, T: Number> {
     solver: &'a Solver<T>,
     graph: Loan<'a, T>,
     work: SearchWork,
-    horizon: T,
+    horizon: Time<T>,
     node: usize,
     /// The time at which the segment was entered, and the state there.
     entered: Time<T>,
@@ -307,7 +310,7 @@ impl<'a, T: Number> Run<'a, T> {
         let Some((mut time, state)) = self.present() else { return self.end(Ending::Undecided) };
         if limit > T::zero() {
             // The time since an entry long before is rounded; the horizon is not.
-            time = Time { high: self.horizon, low: T::zero() };
+            time = self.horizon;
         }
         let enclosure = self.errors_at_given_time(mode, limit, &time, &state);
         let errors = enclosure.map(|it| self.errors_near(&it, &time));
@@ -318,7 +321,7 @@ impl<'a, T: Number> Run<'a, T> {
     /// The time until the horizon, in two words.
     #[inline]
     fn time_left(&self) -> Time<T> {
-        let Time { high, low } = Time { high: self.horizon, low: T::zero() }.since(&self.entered);
+        let Time { high, low } = self.horizon.since(&self.entered);
         Time { high: self.solver.directed(high), low: self.solver.directed(low) }
     }
 

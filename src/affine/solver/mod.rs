@@ -7,7 +7,7 @@
 
 pub mod event;
 pub mod pool;
-mod start_cache;
+pub mod start_cache;
 
 use crate::affine::arithmetic::clock::{Clock, Time};
 use crate::affine::arithmetic::real::{BigReal, bits_for};
@@ -43,6 +43,8 @@ pub(super) struct SolverMode<T: Number> {
     pub matrix: Vec<Vector<T>>,
     /// The mode's guards: those of `until`, then those of `watch`.
     pub guards: Vec<ModalRow<T>>,
+    /// The rows of the mode's guards, in the entries of z.
+    pub rows: Vec<Vector<T>>,
     /// The matrices of the resets of `until`.
     pub resets: Vec<Vec<Vector<T>>>,
     /// For each reset, the entries of z that it changes, with their rows.
@@ -106,6 +108,7 @@ impl<T: Number> Solver<T> {
                 flow: flows[n].clone(),
                 matrix: mode.matrix.iter().map(numbers).collect(),
                 guards: guards.iter().map(guard).collect(),
+                rows: guards.iter().map(|it| numbers(it)).collect(),
                 resets: resets.collect(),
                 changes: mode.until.iter().map(|it| changes(&it.reset)).collect(),
                 conditions: conditions.collect(),

@@ -1,0 +1,204 @@
+//! Lyapunov exponents along the returns of a motion, with what events do to small changes.
+//!
+//! A frame of small changes is carried along and made orthonormal again after each piece of a
+//! segment that is short beside the fastest rate, and after each event, so that what decays fast is
+//! not lost beside what grows. An event that makes changes of one direction vanish removes a vector
+//! of the frame: the last exponent is minus infinity from there on.
+
+use super::map::SectionMap;
+use super::walk::{NoReturn, Walk};
+use crate::affine::arithmetic::vector::Vector;
+use crate::affine::run::place::Place;
+use crate::affine::run::variation::{Variation, is_at_once};
+use crate::affine::solver::Solver;
+use crate::affine::solver::event::Event;
+use crate::dynamics::batches::{Batches, Stationarity, standard_error};
+
+/// The most that a rate times a piece of a segment may be: a change then decays by a factor that
+/// f64 has digits for.
+const LONGEST_PIECE: f64 = 8.0;
+
+/// The most pieces of a segment.
+const MOST_PIECES: f64 = 10_000.0;
+
+/// A direction of which an event leaves no larger share of the largest change is gone.
+const GONE: f64 = 1e-11;
+
+/// Lyapunov exponents of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exponents {
+    /// The exponents per return, largest first, as many as states: minus infinity for a direction
+    /// that events make vanish.
+    pub per_return: Vec<f64>,
+    /// Their standard errors, from the scatter of the batches; NaN beside minus infinity.
+    pub standard_error: Vec<f64>,
+    /// The mean time of a return.
+    pub mean_return_time: f64,
+    /// The number of batches.
+    pub batches: u64,
+    /// Whether the exponents of the batches scatter about one value each.
+    pub stationarity: Stationarity,
+    /// The number of choices that rounding left open.
+    pub undecidable: u64,
+}
+
+impl Exponents {
+    /// The exponents per unit of time: of an autonomous system one of them is 0.
+    #[must_use]
+    pub fn per_time(&self) -> Vec<f64> {
+        self.per_return.iter().map(|it| it / self.mean_return_time).collect()
+    }
+}
+
+/// The growth so far of the frame's vectors, and the time.
+struct Mark {
+    growth: Vec<f64>,
+    time: f64,
+}
+
+impl SectionMap<'_, f64> {
+    /// The exponents of the motion from a place over `returns` returns, at least one. Before these
+    /// the frame of small changes finds its directions in `settling` returns. `seen` is told the
+    /// number of returns so far.
+    ///
+    /// # Errors
+    /// A motion that does not return as often.
+    pub fn exponents(
+        &self,
+        place: &Place<f64>,
+        settling: u64,
+        returns: u64,
+        seen: &mut dyn FnMut(u64),
+    ) -> Result<Exponents, NoReturn> {
+        let batches = Batches::of(returns);
+        let mut walk = Walk::begin(self, place, false);
+        let mut frame = Frame::of(self.solver());
+        let mut marks: Vec<Mark> = Vec::new();
+        let mut passed = 0;
+        for k in 0..=batches.count() {
+            while passed < settling + batches.end(k) {
+                let event = walk.next(&mut |from, to| frame.pass(from, to))?;
+                let time = event.time.value();
+                frame.settle(event);
+                frame.time = time;
+                passed += 1;
+                seen(passed);
+            }
+            marks.push(frame.mark(place));
+        }
+        let undecidable = walk.undecidable();
+        Ok(exponents(batches, returns.max(1), &marks, frame.columns(), undecidable))
+    }
+}
+
+/// The exponents that the marks at the ends of all batches have, with so many vectors left.
+fn exponents(
+    batches: Batches,
+    returns: u64,
+    marks: &[Mark],
+    left: usize,
+    undecidable: u64,
+) -> Exponents {
+    let states = marks.first().map_or(0, |it| it.growth.len());
+    let mean = |n: usize| batches.means(marks, |a, b| b.growth[n] - a.growth[n]);
+    let means: Vec<Vec<f64>> = (0..left).map(mean).collect();
+    let ends = [marks.first(), marks.last()];
+    let [Some(first), Some(last)] = ends else {
+        return Exponents {
+            per_return: Vec::new(),
+            standard_error: Vec::new(),
+            mean_return_time: f64::NAN,
+            batches: 0,
+            stationarity: Stationarity::Unknown,
+            undecidable,
+        };
+    };
+    let whole = |n: usize| (last.growth[n] - first.growth[n]) / returns as f64;
+    let mut all: Vec<(f64, f64)> =
+        (0..left).map(|n| (whole(n), standard_error(&means[n]))).collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    all.resize(states, (f64::NEG_INFINITY, f64::NAN));
+    Exponents {
+        per_return: all.iter().map(|it| it.0).collect(),
+        standard_error: all.iter().map(|it| it.1).collect(),
+        mean_return_time: (last.time - first.time) / returns as f64,
+        batches: batches.count(),
+        stationarity: batches.stationarity(&means),
+        undecidable,
+    }
+}
+
+/// Orthonormal small changes that are carried along, with the logarithms of their growth.
+struct Frame<'a> {
+    solver: &'a Solver<f64>,
+    variation: Variation<f64>,
+    growth: Vec<f64>,
+    time: f64,
+}
+
+impl<'a> Frame<'a> {
+    fn of(solver: &'a Solver<f64>) -> Self {
+        let variation = Variation::of_each_state(solver);
+        let growth = vec![0.0; solver.system().states.len()];
+        Self { solver, variation, growth, time: f64::NAN }
+    }
+
+    fn columns(&self) -> usize {
+        self.variation.columns.len()
+    }
+
+    fn mark(&self, start: &Place<f64>) -> Mark {
+        let time = if self.time.is_nan() { start.time.value() } else { self.time };
+        Mark { growth: self.growth.clone(), time }
+    }
+
+    /// Carries the frame from one event to the next one.
+    fn pass(&mut self, from: &Event<f64>, to: &Event<f64>) {
+        if !is_at_once(from, to) {
+            self.settle(from);
+            let elapsed = to.time.since(&from.time).value();
+            let speed = self.solver.modes[from.mode].flow.speed;
+            let pieces = libm::ceil(speed * elapsed / LONGEST_PIECE).clamp(1.0, MOST_PIECES);
+            for _ in 0..pieces as usize {
+                self.variation.flow(self.solver, from.mode, elapsed / pieces);
+                self.renew(0.0);
+            }
+        }
+        self.variation.jump(self.solver, from, to);
+    }
+
+    /// Takes the frame to the fixed time of an event, without what the event has made vanish.
+    fn settle(&mut self, at: &Event<f64>) {
+        if self.variation.delays.is_some() {
+            self.variation.settle(self.solver, at);
+            self.renew(GONE);
+        }
+    }
+
+    /// Makes the frame orthonormal, and counts the growth of its vectors.
+    fn renew(&mut self, gone: f64) {
+        let columns = std::mem::take(&mut self.variation.columns);
+        let largest = columns.iter().map(length).fold(0.0, f64::max);
+        let mut kept: Vec<Vector<f64>> = Vec::with_capacity(columns.len());
+        for mut column in columns {
+            // Once more, because the first time leaves the roundings of what it takes away.
+            for _ in 0..2 {
+                for other in &kept {
+                    let share: f64 = column.iter().zip(other).map(|(a, b)| a * b).sum();
+                    column.iter_mut().zip(other).for_each(|(it, by)| *it -= share * by);
+                }
+            }
+            let length = length(&column);
+            if length <= gone * largest || length == 0.0 {
+                continue;
+            }
+            self.growth[kept.len()] += libm::log(length);
+            kept.push(column.map(|it| it / length));
+        }
+        self.variation.columns = kept;
+    }
+}
+
+fn length(column: &Vector<f64>) -> f64 {
+    column.iter().map(|it| it * it).sum::<f64>().sqrt()
+}

@@ -1,0 +1,152 @@
+//! The return map of a section, and the times at which a motion may return to it.
+
+use super::section::{Resolved, Returning, Section};
+use crate::affine::arithmetic::clock::{Time, full_turn};
+use crate::affine::arithmetic::vector::is_f64;
+use crate::affine::model::error::SystemError;
+use crate::affine::model::system::{Forcing, System};
+use crate::affine::run::place::Place;
+use crate::affine::solver::Solver;
+use crate::numeric::double_double::DoubleDouble;
+use crate::numeric::number::Number;
+
+/// The longest time of a return that is waited for, in the system's units of time.
+pub const USUAL_LONGEST: f64 = 1000.0;
+
+/// The return map of a section of a system.
+pub struct SectionMap<'a, T: Number> {
+    solver: &'a Solver<T>,
+    section: Resolved,
+    longest: T,
+    /// The forcing period, and the first time of the strobe's angle.
+    period: Option<[Time<T>; 2]>,
+}
+
+impl<'a, T: Number> SectionMap<'a, T> {
+    /// The return map of a section; returns are waited for at most 1000
+    /// [`time_scale`](System::time_scale).
+    ///
+    /// # Errors
+    /// A strobe of a system without forcing, and an event that the system has not.
+    pub fn new(solver: &'a Solver<T>, section: &Section) -> Result<Self, SystemError> {
+        let system = solver.system();
+        let resolved = section.resolved(system)?;
+        let angle = match resolved.returns {
+            Returning::Strobe(angle) => angle,
+            Returning::Events(_) => 0.0,
+        };
+        let period = system.forcing.as_ref().map(|it| strobes(it, angle));
+        let longest = T::exact(USUAL_LONGEST * system.time_scale);
+        Ok(Self { solver, section: resolved, longest, period })
+    }
+
+    /// Waits for a return no longer than this time.
+    #[must_use]
+    pub fn within(self, longest: T) -> Self {
+        Self { longest, ..self }
+    }
+
+    /// The system of the map.
+    #[must_use]
+    pub fn system(&self) -> &'a System {
+        self.solver.system()
+    }
+
+    /// The rates of the states at a place.
+    #[must_use]
+    pub fn rates(&self, place: &Place<T>) -> Vec<T> {
+        let rates = self.solver.rates(place.mode, &place.time, &place.state);
+        rates[..place.state.len()].to_vec()
+    }
+
+    /// Whether the section's points have times of their own beside their states: those of an event
+    /// in a forced system.
+    #[must_use]
+    pub fn has_times(&self) -> bool {
+        self.period.is_some() && matches!(self.section.returns, Returning::Events(_))
+    }
+
+    /// The time from a place to another; of a forced system less whole forcing periods.
+    #[must_use]
+    pub fn time_apart(&self, from: &Place<T>, to: &Place<T>) -> T {
+        let apart = to.time.since(&from.time).value();
+        let Some([period, _]) = &self.period else { return T::zero() };
+        let turns = libm::round((apart / period.high).to_f64());
+        Time { high: apart, low: T::zero() }.since(&multiple(period, turns)).value()
+    }
+
+    /// The place with the same motion at the earliest time that is not negative.
+    #[must_use]
+    pub fn rebased(&self, place: &Place<T>) -> Place<T> {
+        let time = match &self.period {
+            Some([period, _]) => {
+                let turns = libm::floor((place.time.value() / period.high).to_f64());
+                place.time.since(&multiple(period, turns))
+            }
+            None => Time { high: T::zero(), low: T::zero() },
+        };
+        place.moved_to(time, place.state.clone())
+    }
+
+    pub(super) fn solver(&self) -> &'a Solver<T> {
+        self.solver
+    }
+
+    pub(super) fn section(&self) -> &Resolved {
+        &self.section
+    }
+
+    /// The number of the first strobe after a time, or at it where that counts.
+    pub(super) fn strobe_after(&self, time: &Time<T>, counts_this: bool) -> f64 {
+        /// Times so close to a strobe, beside a forcing period, are it.
+        const AT_IT: f64 = 1e-9;
+        let Some([period, first]) = &self.period else { return 0.0 };
+        let turns = (time.since(first).value() / period.high).to_f64();
+        let nearest = libm::round(turns);
+        match (turns - nearest).abs() <= AT_IT * turns.abs().max(1.0) {
+            true if counts_this => nearest,
+            true => nearest + 1.0,
+            false => libm::ceil(turns),
+        }
+    }
+
+    /// The time up to which a run goes from a return: that of the strobe of this number, or the
+    /// longest that is waited for.
+    pub(super) fn horizon(&self, returned: &Time<T>, strobe: f64) -> Time<T> {
+        match (&self.section.returns, &self.period) {
+            (Returning::Strobe(_), Some([period, first])) => {
+                let Time { high, low } = multiple(period, strobe);
+                first.after(high).after(low)
+            }
+            _ => returned.after(self.longest),
+        }
+    }
+}
+
+/// A forcing period, and the time at which omega t is an angle first.
+fn strobes<T: Number>(forcing: &Forcing, angle: f64) -> [Time<T>; 2] {
+    [(1.0, 0.0), (0.0, angle)].map(|(turns, angle)| time_of(forcing, turns, angle))
+}
+
+/// The time that so many turns and an angle take, in two words.
+fn time_of<T: Number>(forcing: &Forcing, turns: f64, angle: f64) -> Time<T> {
+    if !is_f64::<T>() {
+        return Time { high: rounded_time(forcing, turns, angle), low: T::zero() };
+    }
+    let time: DoubleDouble = rounded_time(forcing, turns, angle);
+    let high = time.to_f64();
+    let low = (time - DoubleDouble::exact(high)).to_f64();
+    Time { high: T::exact(high), low: T::exact(low) }
+}
+
+fn rounded_time<T: Number>(forcing: &Forcing, turns: f64, angle: f64) -> T {
+    let omega = Time::<T>::of(&forcing.omega).value();
+    (T::exact(turns) * full_turn::<T>() + T::exact(angle)) / omega
+}
+
+/// A whole multiple of a time.
+fn multiple<T: Number>(time: &Time<T>, count: f64) -> Time<T> {
+    let count = T::exact(count);
+    let high = count * time.high;
+    Time { high, low: count.product_error(time.high) + count * time.low }
+}

@@ -1,0 +1,17 @@
+//! Return maps of a system: where its motions return to a section, and the derivative of that.
+//!
+//! [`section`] says what a section is, [`map`] when a motion may return to it, and [`walk`] follows
+//! a motion from one return to the next; [`passage`] has the derivative of that. [`shooting`] is
+//! any return map as [`newton`] sees it, which solves for [`orbit`]s, and [`multipliers`] has their
+//! stability. [`exponents`] has the mean growth of small changes along any motion. Read them in
+//! this order.
+
+pub mod exponents;
+pub mod map;
+mod multipliers;
+mod newton;
+pub mod orbit;
+pub mod passage;
+pub mod section;
+mod shooting;
+pub mod walk;

@@ -1,0 +1,188 @@
+//! Sections through the motions of a system, and the events of a system that they name.
+
+use crate::affine::model::error::SystemError;
+use crate::affine::model::system::System;
+use crate::affine::solver::event::What;
+use std::fmt;
+
+/// A section through the motions of a system: instants of one forcing angle, or an event.
+///
+/// ```
+/// use percuss::system::Section;
+///
+/// assert_eq!(Section::strobe(0.5).to_string(), "strobe:0.5");
+/// let third = Section::event("impact").in_mode("free").every(3);
+/// assert_eq!(third.to_string(), "impact@free");
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    cut: Cut,
+    every: u32,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Cut {
+    Strobe(f64),
+    Event { name: String, mode: Option<String> },
+}
+
+impl Section {
+    /// The instants at which omega t has this angle modulo 2 pi, in radians; phi is not included.
+    #[must_use]
+    pub fn strobe(angle: f64) -> Self {
+        Self { cut: Cut::Strobe(angle), every: 1 }
+    }
+
+    /// An event of this name, in any mode; watched events serve too. Its points are the states just
+    /// after it.
+    #[must_use]
+    pub fn event(name: &str) -> Self {
+        Self { cut: Cut::Event { name: name.to_owned(), mode: None }, every: 1 }
+    }
+
+    /// The event only where it is one of this mode, which holds before it.
+    #[must_use]
+    pub fn in_mode(self, mode: &str) -> Self {
+        let cut = match self.cut {
+            Cut::Event { name, .. } => Cut::Event { name, mode: Some(mode.to_owned()) },
+            strobe @ Cut::Strobe(_) => strobe,
+        };
+        Self { cut, ..self }
+    }
+
+    /// Every so many of these instants alone; 0 is taken for 1.
+    #[must_use]
+    pub fn every(self, count: u32) -> Self {
+        Self { every: count.max(1), ..self }
+    }
+
+    /// The section of a system that is not told one: the strobe at the angle 0 where it is forced.
+    ///
+    /// # Errors
+    /// A system without forcing: one of its events has to be named.
+    pub fn usual(system: &System) -> Result<Self, SystemError> {
+        let section = Self::strobe(0.0);
+        section.resolved(system).map(|_| section)
+    }
+
+    /// The section among the events of a system.
+    pub(super) fn resolved(&self, system: &System) -> Result<Resolved, SystemError> {
+        let returns = match &self.cut {
+            Cut::Strobe(_) if system.forcing.is_none() => {
+                let what = format!(
+                    "{} has no forcing, and so no strobe: accepted is one of its events, {}",
+                    system.name,
+                    names(system)
+                );
+                return Err(error(what));
+            }
+            Cut::Strobe(angle) if !angle.is_finite() => {
+                return Err(error(format!("the angle {angle} is not accepted: a number is")));
+            }
+            Cut::Strobe(angle) => Returning::Strobe(*angle),
+            Cut::Event { name, mode } => Returning::Events(events(system, name, mode.as_deref())?),
+        };
+        Ok(Resolved { returns, every: self.every })
+    }
+}
+
+impl fmt::Display for Section {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.cut {
+            Cut::Strobe(angle) => write!(f, "strobe:{angle}"),
+            Cut::Event { name, mode: None } => f.write_str(name),
+            Cut::Event { name, mode: Some(mode) } => write!(f, "{name}@{mode}"),
+        }
+    }
+}
+
+/// A section whose events are known by their indices.
+#[derive(Clone, Debug)]
+pub(super) struct Resolved {
+    pub returns: Returning,
+    pub every: u32,
+}
+
+/// The instants at which a motion returns.
+#[derive(Clone, Debug)]
+pub(super) enum Returning {
+    Strobe(f64),
+    Events(Vec<Guard>),
+}
+
+/// An event by its mode and its index, among those of `until` or of `watch`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Guard {
+    /// The index of the mode that holds the event.
+    pub mode: usize,
+    /// The index of the event among its kind.
+    pub index: usize,
+    /// Whether the event is only watched.
+    pub is_watched: bool,
+}
+
+impl Guard {
+    /// The guard of an event of a run; none of a start or an ending.
+    pub(super) fn of<T>(what: &What<T>) -> Option<Self> {
+        match *what {
+            What::Until(mode, index) => Some(Self { mode, index, is_watched: false }),
+            What::Watch(mode, index) => Some(Self { mode, index, is_watched: true }),
+            What::Start | What::End(_) => None,
+        }
+    }
+
+    /// The names of the event and of its mode, as `impact@free`.
+    #[must_use]
+    pub fn name(&self, system: &System) -> String {
+        let mode = &system.modes[self.mode];
+        let event = if self.is_watched {
+            &mode.watch[self.index].name
+        } else {
+            &mode.until[self.index].name
+        };
+        format!("{event}@{}", mode.name)
+    }
+}
+
+/// All events of a system, mode by mode, with their names.
+fn all(system: &System) -> impl Iterator<Item = (Guard, &str)> {
+    system.modes.iter().enumerate().flat_map(|(mode, own)| {
+        let guard = move |index, is_watched| Guard { mode, index, is_watched };
+        let until = own.until.iter().map(|it| it.name.as_str()).enumerate();
+        let watch = own.watch.iter().map(|it| it.name.as_str()).enumerate();
+        let until = until.map(move |(index, name)| (guard(index, false), name));
+        until.chain(watch.map(move |(index, name)| (guard(index, true), name)))
+    })
+}
+
+fn events(system: &System, name: &str, mode: Option<&str>) -> Result<Vec<Guard>, SystemError> {
+    let there: Vec<Guard> = all(system).filter(|it| it.1 == name).map(|it| it.0).collect();
+    if there.is_empty() {
+        let (own, accepted) = (&system.name, names(system));
+        return Err(error(format!("{name} is no event of {own}: accepted are {accepted}")));
+    }
+    let Some(mode) = mode else { return Ok(there) };
+    let is_own = |it: &&Guard| system.modes[it.mode].name == mode;
+    let own: Vec<Guard> = there.iter().filter(is_own).copied().collect();
+    if own.is_empty() {
+        let modes: Vec<_> = there.iter().map(|it| it.name(system)).collect();
+        let accepted = modes.join(", ");
+        return Err(error(format!("{name}@{mode} is no event: accepted are {accepted}")));
+    }
+    Ok(own)
+}
+
+/// The names of all events, each once.
+fn names(system: &System) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for (_, name) in all(system) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    if names.is_empty() { "none, because it has none".to_owned() } else { names.join(", ") }
+}
+
+fn error(what: String) -> SystemError {
+    SystemError::Name { item: "section".to_owned(), what }
+}

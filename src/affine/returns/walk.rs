@@ -1,0 +1,159 @@
+//! A motion from one return to its section to the next.
+
+use super::map::SectionMap;
+use super::section::{Guard, Returning};
+use crate::affine::model::ending::Ending;
+use crate::affine::run::Run;
+use crate::affine::run::place::Place;
+use crate::affine::solver::event::{self as engine, Event, What};
+use crate::numeric::number::Number;
+use std::fmt;
+
+/// The reason for which a motion does not return to its section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NoReturn {
+    /// Nothing happens there within the longest time of a return: the motion comes to rest, or goes
+    /// elsewhere.
+    Equilibrium,
+    /// The run ends.
+    Ended(Ending),
+    /// The return is one of several events of one instant, between which no run begins.
+    AmidEvents,
+}
+
+impl fmt::Display for NoReturn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Equilibrium => f.write_str("the motion does not return to the section"),
+            Self::Ended(ending) => write!(f, "the run ends: {ending}"),
+            Self::AmidEvents => f.write_str("the section's event is one of several at once"),
+        }
+    }
+}
+
+impl std::error::Error for NoReturn {}
+
+/// A motion that is followed from return to return.
+pub(super) struct Walk<'a, T: Number> {
+    map: &'a SectionMap<'a, T>,
+    run: Run<'a, T>,
+    last: Event<T>,
+    /// The number of the next strobe from the angle's first after time zero.
+    strobe: f64,
+}
+
+impl<'a, T: Number> Walk<'a, T> {
+    /// The motion from a place on. A strobe at that place is the first return where `counts_first`
+    /// says so.
+    pub fn begin(map: &'a SectionMap<'a, T>, place: &Place<T>, counts_first: bool) -> Self {
+        let strobe = map.strobe_after(&place.time, counts_first);
+        let until = map.horizon(&place.time, strobe);
+        let run = map.solver().run_at(place, until);
+        let last = run.start();
+        Self { map, run, last, strobe }
+    }
+
+    /// The next return; `see` is shown each event on the way, with the one before it.
+    pub fn next(
+        &mut self,
+        see: &mut dyn FnMut(&Event<T>, &Event<T>),
+    ) -> Result<&Event<T>, NoReturn> {
+        let mut left = self.map.section().every;
+        let mut returned = self.last.time;
+        while left > 0 {
+            self.run.go_on_to(self.map.horizon(&returned, self.strobe));
+            let event = self.run.next().ok_or(NoReturn::Ended(Ending::Horizon))?;
+            see(&self.last, &event);
+            self.last = event;
+            if self.returns()? {
+                returned = self.last.time;
+                self.strobe += 1.0;
+                left -= 1;
+            }
+        }
+        Ok(&self.last)
+    }
+
+    /// Whether the last event is a return.
+    fn returns(&self) -> Result<bool, NoReturn> {
+        match (&self.last.what, &self.map.section().returns) {
+            (What::End(engine::Ending::Horizon), Returning::Strobe(_)) => Ok(true),
+            (What::End(engine::Ending::Horizon), Returning::Events(_)) => {
+                Err(NoReturn::Equilibrium)
+            }
+            (What::End(ending), _) => Err(NoReturn::Ended(Ending::from(ending))),
+            (what, Returning::Events(guards)) => {
+                Ok(Guard::of(what).is_some_and(|it| guards.contains(&it)))
+            }
+            (_, Returning::Strobe(_)) => Ok(false),
+        }
+    }
+
+    /// The place of the last return.
+    pub fn place(&mut self) -> Result<Place<T>, NoReturn> {
+        self.run.place().ok_or(NoReturn::AmidEvents)
+    }
+
+    /// The number of choices so far that rounding left open.
+    pub fn undecidable(&self) -> u64 {
+        self.run.work().undecidable
+    }
+}
+
+/// A point of a section: the state just after the event there, or at the strobe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Return<T> {
+    /// The index of the mode that goes on.
+    pub mode: usize,
+    /// The time.
+    pub time: T,
+    /// The states, in the order of [`System::states`](crate::System::states).
+    pub state: Vec<T>,
+}
+
+/// The returns of a motion to its section, as an iterator; the first error is the last item.
+pub struct Returns<'a, T: Number> {
+    walk: Walk<'a, T>,
+    is_over: bool,
+}
+
+impl<'a, T: Number> Returns<'a, T> {
+    pub(super) fn begin(map: &'a SectionMap<'a, T>, place: &Place<T>) -> Self {
+        Self { walk: Walk::begin(map, place, true), is_over: false }
+    }
+
+    /// The place of the last return, from which a motion may go on.
+    ///
+    /// # Errors
+    /// A return that is one of several events of one instant.
+    pub fn place(&mut self) -> Result<Place<T>, NoReturn> {
+        self.walk.place()
+    }
+
+    /// The number of ties, touches and entries so far that rounding does not decide.
+    #[must_use]
+    pub fn undecidable(&self) -> u64 {
+        self.walk.undecidable()
+    }
+}
+
+impl<T: Number> Iterator for Returns<'_, T> {
+    type Item = Result<Return<T>, NoReturn>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.is_over {
+            return None;
+        }
+        let point = |it: &Event<T>| Return {
+            mode: it.mode,
+            time: it.time.value(),
+            state: it.state.clone(),
+        };
+        let next = self.walk.next(&mut |_, _| ()).map(point);
+        self.is_over = next.is_err();
+        Some(next)
+    }
+}
+
+impl<T: Number> std::iter::FusedIterator for Returns<'_, T> {}

@@ -1,0 +1,134 @@
+//! Small changes of a run's state, carried along it: the derivative of the motion.
+//!
+//! Between events a change moves by exp(M t). An event of `until` with the guard w and the reset R
+//! comes later by dT = -(w dz)/(w M z), with the change dz and the state z just before it; just
+//! after it, at the moved time, the state has changed by R (dz + M z dT). At a fixed time that is
+//! less M' z' dT, with the state z' and the matrix M' that follow. An event that fires at the
+//! instant at which its mode is entered does so for every state that the model allows there: it
+//! comes later by the same dT, and has its reset alone.
+//!
+//! The forcing angle has no change of its own at a fixed time, and so the entries of cos theta, sin
+//! theta and 1 stay zero there.
+
+use crate::affine::arithmetic::clock::Time;
+use crate::affine::arithmetic::vector::{Vector, dot};
+use crate::affine::closed_form::modal_state::ModalState;
+use crate::affine::model::system::LARGEST_DIMENSION;
+use crate::affine::solver::Solver;
+use crate::affine::solver::event::{Event, What};
+use crate::numeric::number::Number;
+
+/// Changes of the state along a run, as columns.
+#[derive(Clone, Debug)]
+pub struct Variation<T> {
+    /// The changes of z: at a fixed time, or where there are delays at the delayed one.
+    pub columns: Vec<Vector<T>>,
+    /// The delays of the event at which the columns are; none where they are at a fixed time.
+    pub delays: Option<Vec<T>>,
+}
+
+impl<T: Number> Variation<T> {
+    /// Changes at a fixed time.
+    #[must_use]
+    pub fn at_fixed_time(columns: Vec<Vector<T>>) -> Self {
+        Self { columns, delays: None }
+    }
+
+    /// A change of each state alone.
+    #[must_use]
+    pub fn of_each_state(solver: &Solver<T>) -> Self {
+        let unit = |n: usize| std::array::from_fn(|k| if k == n { T::one() } else { T::zero() });
+        Self::at_fixed_time((0..solver.system().states.len()).map(unit).collect())
+    }
+
+    /// Carries the changes from one event of a run to the next one, or to the horizon.
+    pub fn pass(&mut self, solver: &Solver<T>, from: &Event<T>, to: &Event<T>) {
+        if !is_at_once(from, to) {
+            self.settle(solver, from);
+            self.flow(solver, from.mode, to.time.since(&from.time).value());
+        }
+        self.jump(solver, from, to);
+    }
+
+    /// Takes the changes to the fixed time of the event at which they are.
+    pub fn settle(&mut self, solver: &Solver<T>, at: &Event<T>) {
+        let Some(delays) = self.delays.take() else { return };
+        let rates = solver.rates(at.mode, &at.time, &at.state);
+        let states = at.state.len();
+        for (column, delay) in self.columns.iter_mut().zip(delays) {
+            column.iter_mut().zip(&rates).for_each(|(it, rate)| *it = *it - *rate * delay);
+            // The angle is that of the time, which is fixed.
+            column[states..].fill(T::zero());
+        }
+    }
+
+    /// Carries changes at a fixed time along a mode.
+    pub fn flow(&mut self, solver: &Solver<T>, mode: usize, elapsed: T) {
+        let flow = &solver.modes[mode].flow;
+        for column in &mut self.columns {
+            let y = flow.co_ordinates(column);
+            let modal = ModalState { y, ..ModalState::default() };
+            *column = flow.state(&flow.at(&modal, elapsed).y);
+        }
+    }
+
+    /// Carries changes across an event; at a horizon, whose time is fixed, nothing happens.
+    pub fn jump(&mut self, solver: &Solver<T>, from: &Event<T>, to: &Event<T>) {
+        let (mode, guard, until) = match to.what {
+            What::Until(mode, index) => (mode, index, Some(index)),
+            What::Watch(mode, index) => (mode, solver.system.modes[mode].until.len() + index, None),
+            What::Start | What::End(_) => return,
+        };
+        if !is_at_once(from, to) {
+            self.delay(solver, mode, guard, to, &solver.state_at(from, &to.time));
+        }
+        for column in &mut self.columns {
+            let before = *column;
+            for (n, factors) in until.iter().flat_map(|it| &solver.modes[mode].changes[*it]) {
+                let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
+                column[*n] = terms.fold(T::zero(), |sum, term| sum + term);
+            }
+        }
+    }
+
+    /// Delays changes to the crossing of a guard, at which the state is given.
+    fn delay(
+        &mut self,
+        solver: &Solver<T>,
+        mode: usize,
+        guard: usize,
+        event: &Event<T>,
+        state: &[T],
+    ) {
+        let own = &solver.modes[mode];
+        let row = &own.rows[guard];
+        let dimension = own.flow.dimension;
+        let rates = solver.rates(mode, &event.time, state);
+        let slope = dot(row, &rates, dimension);
+        let delayed = |column: &mut Vector<T>| {
+            let delay = -dot(row, column, dimension) / slope;
+            column.iter_mut().zip(&rates).for_each(|(it, rate)| *it = *it + *rate * delay);
+            delay
+        };
+        self.delays = Some(self.columns.iter_mut().map(delayed).collect());
+    }
+}
+
+/// Whether an event fires at the instant at which its mode is entered.
+pub fn is_at_once<T: Number>(from: &Event<T>, to: &Event<T>) -> bool {
+    let is_until = matches!(to.what, What::Until(..));
+    is_until && to.time.since(&from.time).value() == T::zero()
+}
+
+impl<T: Number> Solver<T> {
+    /// The rates M z of a state in a mode.
+    pub(in crate::affine) fn rates(&self, mode: usize, time: &Time<T>, state: &[T]) -> Vector<T> {
+        let z = self.complete(state, time);
+        let own = &self.modes[mode];
+        let mut rates = [T::zero(); LARGEST_DIMENSION];
+        for (rate, row) in rates.iter_mut().zip(&own.matrix) {
+            *rate = dot(row, &z, own.flow.dimension);
+        }
+        rates
+    }
+}

@@ -1,0 +1,175 @@
+//! Orbits and exponents of return maps, beside closed forms and the oscillator's own.
+
+use percuss::affine::{Exponents, Orbit, Place, SectionMap, Solver, System};
+use percuss::dynamics::orbit::{Orbit as StrobeOrbit, scan};
+use percuss::dynamics::strobe::StrobeMap;
+use percuss::system::Section;
+use percuss::{Instant, Model, Parameters, gallery};
+
+const RELAY: &str = include_str!("../../validation/systems/relay-feedback.system.toml");
+const OSCILLATOR: &str = include_str!("../../validation/systems/percussive-oscillator.system.toml");
+
+/// What runs of a few events and Newton's method leave, beside 1.
+const ROUNDINGS: f64 = 1e-12;
+
+/// A system, and what is asked of its return map from the place of the return after `skipped`.
+fn at_return<R>(
+    text: &str,
+    section: &Section,
+    skipped: usize,
+    asked: impl Fn(&SectionMap<'_, f64>, &Place<f64>) -> R,
+) -> R {
+    let system = System::parse("test.system.toml", text).unwrap();
+    let solver = Solver::<f64>::new(&system).unwrap();
+    let map = SectionMap::new(&solver, section).unwrap();
+    let mut returns = map.returns(system.start.as_ref().unwrap()).unwrap();
+    returns.by_ref().take(skipped + 1).for_each(|it| {
+        it.unwrap();
+    });
+    asked(&map, &returns.place().unwrap())
+}
+
+fn orbit(text: &str, section: &Section, skipped: usize, period: u32) -> Orbit {
+    at_return(text, section, skipped, |map, place| map.orbit(place, period).unwrap())
+}
+
+fn exponents(text: &str, section: &Section, skipped: usize, returns: u64) -> Exponents {
+    at_return(text, section, skipped, |map, place| {
+        map.exponents(place, 60, returns, &mut |_| ()).unwrap()
+    })
+}
+
+/// The state just before a switch of the relay's symmetric cycle with this half period, from
+/// (1 + E) x = (1 - E) (1, 1, 1) with E = exp(A h) = exp(-h) ((1, h, h^2/2), (0, 1, h), (0, 0, 1)).
+fn relay_state(half: f64) -> [f64; 3] {
+    let e = (-half).exp();
+    let square = 0.5 * half * half;
+    let third = (1.0 - e) / (1.0 + e);
+    let second = (1.0 - e - e * half - e * half * third) / (1.0 + e);
+    let right = 1.0 - e - e * half - e * square;
+    let first = (right - e * half * second - e * square * third) / (1.0 + e);
+    [first, second, third]
+}
+
+/// The half period of the relay's cycle, at which the first state is delta: by bisection.
+fn relay_half_period(delta: f64) -> f64 {
+    let (mut low, mut high) = (1.0, 3.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if relay_state(middle)[0] > delta { high = middle } else { low = middle }
+    }
+    low
+}
+
+/// The traces of D^2 and of its square, with the derivative D = (1 - f w/(w f)) E of half a cycle:
+/// the sums of the multipliers, and of their squares.
+fn relay_sums(half: f64) -> [f64; 2] {
+    let [x, y, z] = relay_state(half);
+    let field = [y - x, z - y, 1.0 - z];
+    let e = (-half).exp();
+    let flow = [[e, e * half, 0.5 * e * half * half], [0.0, e, e * half], [0.0, 0.0, e]];
+    let derivative: [[f64; 3]; 3] = std::array::from_fn(|i| {
+        std::array::from_fn(|j| flow[i][j] - field[i] * flow[0][j] / field[0])
+    });
+    let square = |m: [[f64; 3]; 3]| -> [[f64; 3]; 3] {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| m[i][k] * m[k][j]).sum()))
+    };
+    let whole = square(derivative);
+    [whole, square(whole)].map(|it| it[0][0] + it[1][1] + it[2][2])
+}
+
+#[test]
+fn the_relays_cycle_is_that_of_its_closed_form() {
+    let half = relay_half_period(0.01);
+    let cycle = orbit(RELAY, &Section::event("switch-down"), 1, 2);
+    assert_eq!(cycle.period(), 1);
+    assert!((cycle.time - 2.0 * half).abs() < ROUNDINGS, "{} {half}", cycle.time);
+    for (found, known) in cycle.points[0].state.iter().zip(relay_state(half)) {
+        assert!((found - known).abs() < ROUNDINGS, "{:?} {half}", cycle.points);
+    }
+    let [first, second, last] = cycle.multipliers[..] else { panic!("{:?}", cycle.multipliers) };
+    assert_eq!((first[1], second[1], last), (0.0, 0.0, [0.0; 2]));
+    let [sum, squares] = relay_sums(half);
+    assert!((first[0] + second[0] - sum).abs() < ROUNDINGS);
+    assert!((first[0] * first[0] + second[0] * second[0] - squares).abs() < ROUNDINGS);
+}
+
+/// The exponents of a motion on a stable cycle are the logarithms of its multipliers, and one along
+/// the motion is zero.
+#[test]
+fn exponents_of_cycles_are_logarithms_of_multipliers() {
+    let section = Section::event("switch-down");
+    let cycle = orbit(RELAY, &section, 1, 1);
+    let found = exponents(RELAY, &section, 30, 64);
+    let known = [1.0, cycle.multipliers[0][0], cycle.multipliers[1][0]].map(f64::ln);
+    for (found, known) in found.per_return.iter().zip(known) {
+        assert!((found - known).abs() < 1e-10, "{found} {known}");
+    }
+    assert!((found.mean_return_time - cycle.time).abs() < ROUNDINGS);
+}
+
+/// The volume of small changes shrinks by exp(-damping t), and by r^2 in an impact with restitution
+/// r: so the exponents' sum is known from the number of impacts, in chaos too.
+#[test]
+fn exponents_sum_to_the_contraction() {
+    let returns = 500;
+    let section = Section::strobe(0.0);
+    let found = exponents(gallery::IMPACT_OSCILLATOR, &section, 60, returns);
+    let impacts = at_return(gallery::IMPACT_OSCILLATOR, &section, 120, |map, place| {
+        let mut impacts = 0;
+        let mut at = place.clone();
+        for _ in 0..returns {
+            let passage = map.passage(&at).unwrap();
+            impacts += passage.events.iter().filter(|it| !it.is_watched).count();
+            at = passage.image;
+        }
+        impacts as f64
+    });
+    let period = std::f64::consts::TAU / 2.8;
+    let known = -0.1 * period + 2.0 * 0.75_f64.ln() * impacts / returns as f64;
+    let sum: f64 = found.per_return.iter().sum();
+    assert!((sum - known).abs() < 1e-9, "{sum} {known}");
+}
+
+/// The oscillator without its drift, which grows and closes no orbit.
+fn without_drift(xi: &str, omega: &str) -> String {
+    let text = OSCILLATOR
+        .replace(", \"v\"]", "]")
+        .replace(", \"v' = 0\"", "")
+        .replace("    \"v' = y + (q - 1)/(2*xi)\",\n", "")
+        .replace("\nv = 0\n", "\n");
+    let text = text.replace("xi = 0.01", &format!("xi = {xi}"));
+    text.replace("frequency = 1.4", &format!("frequency = {omega}"))
+}
+
+/// Each orbit that the oscillator's own scan finds, from its first point.
+#[test]
+fn the_oscillators_orbits_are_its_own() {
+    let text = without_drift("0.1", "1.6");
+    let parameters = Parameters { xi: 0.1, omega: 1.6, ..Parameters::default() };
+    let model = Model::new(parameters).unwrap();
+    let map = StrobeMap::new(model, Instant::at(1.6, 0.0, 0));
+    let found = scan(&map, 6, &mut |_| ());
+    let flies = |it: &&StrobeOrbit| it.phases[0] == percuss::Phase::NoContact;
+    let known: Vec<&StrobeOrbit> = found.iter().filter(flies).collect();
+    assert!(known.len() >= 4, "{}", known.len());
+    let system = System::parse("oscillator.system.toml", &text).unwrap();
+    let solver = Solver::<f64>::new(&system).unwrap();
+    let map = SectionMap::new(&solver, &Section::strobe(0.0)).unwrap();
+    for known in known {
+        let start = system.start_at("no-contact", 0.0, &known.points[0]).unwrap();
+        let mut returns = map.returns(&start).unwrap();
+        returns.next().unwrap().unwrap();
+        let orbit = map.orbit(&returns.place().unwrap(), known.period()).unwrap();
+        assert_eq!(orbit.period() as u32, known.period());
+        for (found, own) in orbit.points.iter().zip(&known.points) {
+            let apart = found.state.iter().zip(own).map(|(a, b)| (a - b).abs());
+            assert!(apart.fold(0.0, f64::max) < ROUNDINGS, "{orbit:?} {known:?}");
+        }
+        for (found, own) in orbit.multipliers.iter().zip(known.multipliers) {
+            // Of products of six returns that grow and decay.
+            let apart = (found[0] - own[0]).hypot(found[1] - own[1]);
+            assert!(apart < 1e-9 * (1.0 + own[0].hypot(own[1])), "{orbit:?} {known:?}");
+        }
+    }
+}
