@@ -62,6 +62,9 @@ const MISSING_FOLDER: &[&str] = &["/no/such/folder/file.json"];
 /// The steps of a sweep.
 const SWEEP: &[&str] = &["sweep run", "sweep status", "sweep merge"];
 
+/// The verbs of the dynamics that take a SYSTEM.
+const OF_SYSTEMS: &[&str] = &["poincare", "lyapunov", "orbit"];
+
 /// The verbs that a row is for (all where empty), a flag, values that are refused, and what the
 /// line says is accepted.
 type Row = (&'static [&'static str], &'static str, &'static [&'static str], &'static str);
@@ -98,17 +101,29 @@ const ROWS: &[Row] = &[
     (&["events"], "--digits", WORDS, "17, 25"),
     (&["events"], "--states", WORDS, "png and svg"),
     (&[], "--set", &["", "x", "g=", "g=nan"], "NAME=VALUE with a finite number"),
-    (&[], "--start", &["/no/such.toml", "/"], "accepted is a readable file"),
+    (&["events", "check"], "--start", &["/no/such.toml", "/"], "accepted is a readable file"),
     (&[], "--at", &["", "x", "x=", "=1"], "STATE=VALUE"),
     (&["events", "check"], "--at", &["y=1", "mode=flight"], "accepted are t, x, v"),
     (&["events", "check"], "--at", &["x=nan", "x=w", "x=1/0"], "x"),
-    (&["events", "check"], "--at", &["", "x", "x=", "=1"], "STATE=VALUE"),
     (&["events", "check"], "--mode", &["", "fall"], "accepted is one of flight"),
     (&["simulate"], "--start", &["/no/such.toml"], "without SYSTEM"),
     (&["simulate"], "--mode", &["flight"], "without SYSTEM"),
     (&["simulate"], "--returns", INTEGERS, "0 to 1000000000"),
     (&["simulate"], "--transient", INTEGERS, "0 to 1000000000"),
     (&["new"], "NAME", &["", "Mine", "a b", "a--b", "../a"], "joined by hyphens"),
+    (OF_SYSTEMS, "--start", &["/no/such.toml"], "without SYSTEM"),
+    (OF_SYSTEMS, "--mode", &["flight"], "without SYSTEM"),
+    (OF_SYSTEMS, "--every", INTEGERS, "1 to 1000000000"),
+    (OF_SYSTEMS, "--every", &["2"], "without SYSTEM"),
+    (OF_SYSTEMS, "--max-time", NUMBERS, "accepted is a positive number"),
+    (OF_SYSTEMS, "--max-time", &["0", "-1"], "accepted is a positive number"),
+    (OF_SYSTEMS, "--max-time", &["5"], "without SYSTEM"),
+    (&["poincare", "lyapunov"], "--returns", INTEGERS, "1 to 1000000000"),
+    (&["poincare", "lyapunov"], "--returns", &["3"], "without SYSTEM"),
+    (&["lyapunov", "orbit"], "--section", &["", "1,5", "-inf", "a@", "strobe:x"], "-1e15 to 1e15"),
+    (&["lyapunov", "orbit"], "--section", &["0.5", "impact"], "without SYSTEM"),
+    (&["orbit"], "--transient", INTEGERS, "0 to 1000000000"),
+    (&["orbit"], "--transient", &["3"], "without SYSTEM"),
     (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
     (&["simulate"], "--max-periods", INTEGERS, "1 to 1000000000"),
     (&["poincare", "lyapunov"], "--periods", INTEGERS, "1 to 1000000000"),
@@ -205,7 +220,8 @@ fn arguments(verb: &str, flag: &str, value: &str) -> Vec<String> {
     let mut words: Vec<String> = verb.split(' ').map(str::to_owned).collect();
     let one_of = |name: &str| ["--periods", "--events", "--until", "--returns"].contains(&name);
     for (name, usual) in usual.iter() {
-        let replaced = verb == "simulate" && one_of(name) && one_of(flag);
+        let has_lengths = ["simulate", "poincare", "lyapunov"].contains(&verb);
+        let replaced = has_lengths && one_of(name) && one_of(flag);
         if *name != flag && !replaced && !name.starts_with("--") {
             words.push((*usual).to_owned());
         } else if *name != flag && !replaced {
@@ -276,6 +292,12 @@ fn negative_values_belong_to_their_flags() {
 const SCORED: [&str; 7] =
     ["score", "--name", "mine", "--tolerance", "1e-6", "--answers", "/no/such"];
 
+/// A section of a system that is not forced, to which the flag `--section` is missing.
+const RELAY: [&str; 6] = ["poincare", "relay-feedback", "--transient", "1", "--returns", "2"];
+
+/// A section of a system with a count of forcing periods.
+const SECTION: [&str; 6] = ["poincare", "relay-feedback", "--transient", "1", "--periods", "3"];
+
 #[test]
 fn flags_without_effect() {
     let grid = ["--grid", "1x1", "--window", "-1,1,-1,1", "--transient", "1"];
@@ -330,6 +352,19 @@ fn flags_without_effect() {
         (
             vec!["simulate", "bouncing-ball", "--until", "1", "--format", "png"],
             &["--format png", "npz", "events"],
+        ),
+        (SECTION.to_vec(), &["--periods 3", "--returns"]),
+        ([&RELAY[..], &["--section", "0.5"]].concat(), &["--section 0.5", "strobe:0.5"]),
+        ([&RELAY[..], &["--section", "strobe"]].concat(), &["section", "no forcing", "switch-up"]),
+        ([&RELAY[..], &["--section", "switch"]].concat(), &["switch is no event", "switch-up"]),
+        (
+            [&RELAY[..], &["--section", "switch-up@up"]].concat(),
+            &["switch-up@up", "switch-up@down"],
+        ),
+        ([&RELAY[..], &["--xi", "1"]].concat(), &["--xi 1", "--set"]),
+        (
+            vec!["orbit", "relay-feedback", "--section", "switch-up", "--period", "1", "--all"],
+            &["--all", "SYSTEM"],
         ),
         ([&diagram[..], &["--carry", "--reset"]].concat(), &["--carry", "--reset"]),
         (

@@ -56,6 +56,7 @@ mod strobe_derivative;
 mod sweep;
 mod system_cases;
 mod system_grazes;
+mod system_sections;
 mod systems;
 mod systems_page;
 mod terminal;

@@ -209,10 +209,15 @@ Examples:
       four points
   percuss poincare --transient 500 --periods 3000 --output section.png
       a picture
+  percuss poincare relay-feedback --section switch-up --transient 5 \\
+      --returns 3
+      a system's states just after an event
 
 Words:
   strobe          the state once a forcing period, where the forcing
                   angle has one value
+  section         of a SYSTEM: strobes, or the states just after an
+                  event; a motion returns to it
   forcing period  2 pi/omega, the unit of all periods in flags and
                   results
   transient       forcing periods at the beginning that are left out
@@ -225,6 +230,9 @@ Examples:
       a chaotic motion
   percuss lyapunov --xi 0.5 --omega 1.4 --transient 500 --periods 100
       a periodic one
+  percuss lyapunov relay-feedback --section switch-up --transient 20 \\
+      --returns 100
+      of a system, from event to event
 
 Words:
   exponent        mean rate, per forcing period, at which a small
@@ -317,10 +325,14 @@ Examples:
   percuss orbit --xi 0.1 --omega 1.6 --period 6 --all \\
       --output orbits.json
       the same as JSON
+  percuss orbit relay-feedback --section switch-up --period 1 \\
+      --format table
+      of a system, from the motion that its start leads to
 
 Words:
   orbit           a motion that repeats, but for its drift, after a
-                  whole number of forcing periods
+                  whole number of forcing periods, or of returns to a
+                  SYSTEM's section
   multiplier      factor by which a small deviation from an orbit grows
                   in one turn; below 1 in size: stable
   residual        what is left of the equation that the orbit solves,

@@ -273,6 +273,36 @@ fn orbit() {
 }
 
 #[test]
+fn orbit_of_a_system() {
+    let relay = ["orbit", "relay-feedback", "--section", "switch-up", "--period"];
+    let found = json_of(&[&relay[..], &["2"]].concat(), 0);
+    assert_valid("orbit-system.schema.json", &found);
+    assert_eq!((&found["period"], &found["stable"]), (&1.into(), &true.into()));
+    assert_eq!(found["events"], serde_json::json!(["switch-down@up", "switch-up@down"]));
+    // Impacts that accumulate have no orbit.
+    let ball = ["orbit", "bouncing-ball", "--section", "impact", "--period", "1"];
+    let none = json_of(&[&ball[..], &["--transient", "90"]].concat(), 1);
+    assert_valid("orbit-system.schema.json", &none);
+    assert_eq!(none["converged"], false);
+}
+
+#[test]
+fn exponents_of_a_system() {
+    let of = |system: &str, section: &str| {
+        let words = ["lyapunov", system, "--section", section, "--transient", "30", "--returns"];
+        let value = json_of(&[&words[..], &["60"]].concat(), 0);
+        assert_valid("lyapunov-system.schema.json", &value);
+        value
+    };
+    let relay = of("relay-feedback", "switch-up");
+    // One of a motion without forcing is zero, to the roundings of sixty returns.
+    let first = relay["exponents_per_time"][0].as_f64().expect("a number");
+    assert!(first.abs() < 1e-12, "{first}");
+    let ball = of("bouncing-ball", "impact");
+    assert_eq!(ball["mean_return_time"], Value::Null);
+}
+
+#[test]
 fn follow() {
     let interval = ["continue", "--parameter", "omega", "--xi", "0.1", "--from", "1.6"];
     let six = [&interval[..], &["--to", "1.56", "--period", "6", "--doubled"]].concat();

@@ -16,5 +16,6 @@ pub(super) mod programs;
 pub(super) mod progress;
 pub(super) mod reports;
 pub(super) mod run_ending;
+pub(super) mod section;
 pub(super) mod system_choice;
 pub(super) mod terminal;

@@ -135,6 +135,50 @@ pub(in crate::cli) fn start_value(text: &str) -> Result<[String; 2], String> {
     parts.ok_or_else(|| "accepted is STATE=VALUE with a number or an expression".to_owned())
 }
 
+/// The section of a motion, as it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::cli) enum SectionChoice {
+    /// A number alone: an angle of the impact oscillator.
+    Angle(f64),
+    /// `strobe`, or `strobe:ANGLE`.
+    Strobe(f64),
+    /// `EVENT`, or `EVENT@MODE`.
+    Event(String, Option<String>),
+}
+
+/// A section.
+pub(in crate::cli) fn section(text: &str) -> Result<Typed<SectionChoice>, String> {
+    let is_name = |it: &str| {
+        let is_part = |it: char| it.is_ascii_lowercase() || it.is_ascii_digit() || it == '-';
+        it.starts_with(|first: char| first.is_ascii_lowercase()) && it.chars().all(is_part)
+    };
+    let accepted = || {
+        "accepted is a number, -1e15 to 1e15, or with SYSTEM strobe, strobe:ANGLE, EVENT or \
+         EVENT@MODE"
+            .to_owned()
+    };
+    let value = match (text.strip_prefix("strobe:"), text.split_once('@')) {
+        (Some(angle_text), _) => SectionChoice::Strobe(angle(angle_text).map_err(|_| accepted())?),
+        (_, Some((event, mode))) if is_name(event) && is_name(mode) => {
+            SectionChoice::Event(event.to_owned(), Some(mode.to_owned()))
+        }
+        _ if text == "strobe" => SectionChoice::Strobe(0.0),
+        _ => match angle(text) {
+            Ok(angle) => SectionChoice::Angle(angle),
+            Err(_) if is_name(text) => SectionChoice::Event(text.to_owned(), None),
+            Err(_) => return Err(accepted()),
+        },
+    };
+    Ok(Typed { value, text: text.to_owned() })
+}
+
+/// A positive number.
+pub(in crate::cli) fn positive(text: &str) -> Result<Typed<f64>, String> {
+    let value = number(text).filter(|it| *it > 0.0 && it.is_finite());
+    let value = value.ok_or_else(|| "accepted is a positive number".to_owned())?;
+    Ok(Typed { value, text: text.to_owned() })
+}
+
 /// A cycle's number.
 pub(in crate::cli) fn cycle(text: &str) -> Result<Typed<i64>, String> {
     let value = integer(text);

@@ -12,12 +12,16 @@ use percuss::dynamics::lyapunov::Spectrum;
 /// Exponents at each point; a point is one tile.
 pub(super) struct ExponentWork {
     arguments: Arguments,
+    periods: u64,
 }
 
 impl ExponentWork {
     pub(super) fn new(arguments: Arguments) -> Result<Self> {
-        long_work::check_horizon(arguments.transient, arguments.periods)?;
-        Ok(Self { arguments })
+        // A system has no place in a plan, and its flags are refused without one.
+        arguments.system.chosen(&arguments.model)?;
+        let periods = arguments.periods_of_oscillator()?;
+        long_work::check_horizon(arguments.transient, periods)?;
+        Ok(Self { arguments, periods })
     }
 }
 
@@ -27,9 +31,10 @@ impl SweepVerb for ExponentWork {
     }
 
     fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
-        let Arguments { transient, periods, model, .. } = &self.arguments;
+        let Arguments { transient, model, .. } = &self.arguments;
         let problem = model.at(point).problem()?;
-        records::bytes(&arrays(&Spectrum::of(&problem.model, problem.entry, *transient, *periods)))
+        let found = Spectrum::of(&problem.model, problem.entry, *transient, self.periods);
+        records::bytes(&arrays(&found))
     }
 
     fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
@@ -37,9 +42,9 @@ impl SweepVerb for ExponentWork {
     }
 
     fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
-        let Arguments { transient, periods, model, .. } = &self.arguments;
+        let Arguments { transient, model, .. } = &self.arguments;
         let problem = model.at(point).problem()?;
-        Ok(vec![records::events(&problem.model, problem.entry, transient + periods)])
+        Ok(vec![records::events(&problem.model, problem.entry, transient + self.periods)])
     }
 }
 

@@ -1,28 +1,40 @@
 //! `orbit`: periodic orbits, by Newton's method.
 
+mod of_system;
+
 use super::super::help;
 use super::json::{OrbitJson, OrbitsJson};
 use super::table;
 use crate::cli::shared::format::OutputFlags;
 use crate::cli::shared::long_work;
 use crate::cli::shared::model::ModelFlags;
-use crate::cli::shared::parse;
+use crate::cli::shared::parse::{self, MAX_PERIODS};
+use crate::cli::shared::section::{SectionFlags, without_system};
+use crate::cli::shared::system_choice::SystemChoice;
 use crate::cli::{DONE, OUT_OF_BOUNDS, note, say};
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use percuss::dynamics::orbit::{Orbit, scan};
 use percuss::dynamics::strobe::StrobeMap;
 
-/// Find periodic orbits, stable or not, from a guess (--p, --y, --q) or from a scan of starts
+/// Find periodic orbits, stable or not, from a guess, a scan of starts, or the start of a SYSTEM
 ///
-/// Answers which motions repeat after K forcing periods, and whether they are
-/// stable.
+/// Answers which motions repeat after K forcing periods, or after K returns to a
+/// section of a SYSTEM, and whether they are stable.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = help::ORBIT)]
 pub(crate) struct Arguments {
-    /// Forcing periods of the orbit; one that closes after a divisor is reported with that
+    #[command(flatten)]
+    system: SystemChoice,
+    /// Forcing periods of the orbit, with SYSTEM returns to the section; one that closes after a
+    /// divisor is reported with that
     #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true)]
     period: u32,
+    /// With SYSTEM: returns after which the motion from the start is the guess [default: 0]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
+    transient: Option<u64>,
+    #[command(flatten)]
+    section: SectionFlags,
     /// Prints all orbits that the scan finds, not the first alone; a table prints them all anyway
     #[arg(long)]
     all: bool,
@@ -45,6 +57,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     let destination = arguments.output.destination();
     let usual = if destination.is_terminal() { OrbitFormat::Table } else { OrbitFormat::Json };
     let format = arguments.output.format(usual)?;
+    if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
+        return of_system::run(arguments, &chosen, format);
+    }
+    arguments.section.refuse()?;
+    if let Some(transient) = arguments.transient {
+        bail!("{}", without_system("--transient", &transient));
+    }
     let (problem, guessed) = arguments.model.guess(None)?;
     if guessed && arguments.all {
         bail!(

@@ -1,4 +1,6 @@
-//! `lyapunov`: the exponents of one motion.
+//! `lyapunov`: the exponents of one motion, of the impact oscillator or of a SYSTEM.
+
+mod system;
 
 use super::help;
 use super::note;
@@ -8,28 +10,39 @@ use super::shared::long_work;
 use super::shared::model::{ModelFlags, ParametersJson};
 use super::shared::parse::{self, MAX_PERIODS};
 use super::shared::progress::Progress;
+use super::shared::section::{SectionFlags, without_system};
+use super::shared::system_choice::SystemChoice;
 use super::shared::terminal::endless_notice;
 use crate::case::Problem;
-use anyhow::Result;
-use clap::Args;
+use anyhow::{Result, bail};
+use clap::{ArgGroup, Args};
 use percuss::Segment;
 use percuss::dynamics::batches::{BATCHES, Batches, LEAST_COUNT, LEAST_LENGTH, Stationarity};
 use percuss::dynamics::lyapunov::Spectrum;
 use serde::Serialize;
 
-/// Compute the Lyapunov exponents and the drift of one motion, with their errors
+/// Compute the Lyapunov exponents of one motion, with their errors; of the oscillator its drift too
 ///
 /// Answers whether a motion is chaotic, how fast it forgets a disturbance, and
-/// how fast it goes forward on average.
+/// how fast it goes forward on average. Of a SYSTEM the motion is measured from
+/// return to return to a section.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = help::LYAPUNOV)]
+#[command(group(ArgGroup::new("length").required(true).args(["periods", "returns"])))]
 pub(super) struct Arguments {
-    /// Forcing periods that are left out
+    #[command(flatten)]
+    pub(super) system: SystemChoice,
+    /// Forcing periods that are left out, with SYSTEM returns to the section
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
     pub(super) transient: u64,
     /// Forcing periods over which the exponents are taken, at least 1
     #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(1, MAX_PERIODS), allow_hyphen_values = true)]
-    pub(super) periods: u64,
+    pub(super) periods: Option<u64>,
+    /// With SYSTEM: returns to the section over which the exponents are taken, at least 1
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(1, MAX_PERIODS), allow_hyphen_values = true)]
+    pub(super) returns: Option<u64>,
+    #[command(flatten)]
+    pub(super) section: SectionFlags,
     #[command(flatten)]
     output: OutputFlags<Format>,
     #[command(flatten)]
@@ -54,21 +67,24 @@ struct Json {
 /// Writes the exponents; whether the motion was decided to its end.
 pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     arguments.output.format(Format::Json)?;
+    if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
+        if let Some(periods) = arguments.periods {
+            bail!("--periods {periods} is not accepted with SYSTEM: --returns is");
+        }
+        return system::run(arguments, &chosen, arguments.returns.unwrap_or(1));
+    }
+    let periods = arguments.periods_of_oscillator()?;
     let problem = arguments.model.problem()?;
-    long_work::check_horizon(arguments.transient, arguments.periods)?;
-    let found = spectrum(arguments, &problem);
+    long_work::check_horizon(arguments.transient, periods)?;
+    let found = spectrum(arguments.transient, periods, &problem);
     let json = Json {
         schema: 1,
         percuss: env!("CARGO_PKG_VERSION"),
         parameters: problem.model.parameters().into(),
         exponents_per_period: found.exponents_per_period,
         standard_error: found.standard_error,
-        batches: Batches::of(arguments.periods).count(),
-        stationary: match found.stationarity {
-            Stationarity::Unknown => None,
-            Stationarity::Stationary => Some(true),
-            Stationarity::ChangesAfter(_) => Some(false),
-        },
+        batches: Batches::of(periods).count(),
+        stationary: stationary(found.stationarity),
         contraction_per_period: found.contraction_per_period,
         drift_per_period: found.drift_per_period,
         drift_standard_error: found.drift_standard_error,
@@ -82,15 +98,33 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     } else if let Some(endless) = found.endless {
         note(&endless_notice(endless));
     } else {
-        tell_errors(arguments, found.stationarity);
+        tell_errors(arguments.transient, periods, found.stationarity);
     }
     Ok(!found.undecidable)
 }
 
+impl Arguments {
+    /// The number of forcing periods of the impact oscillator's motion.
+    pub(super) fn periods_of_oscillator(&self) -> Result<u64> {
+        self.section.refuse()?;
+        let returns = || without_system("--returns", &self.returns.unwrap_or(1));
+        let Some(periods) = self.periods else { bail!("{}", returns()) };
+        Ok(periods)
+    }
+}
+
+/// Whether batches scatter about one value; nothing where too few tell.
+const fn stationary(stationarity: Stationarity) -> Option<bool> {
+    match stationarity {
+        Stationarity::Unknown => None,
+        Stationarity::Stationary => Some(true),
+        Stationarity::ChangesAfter(_) => Some(false),
+    }
+}
+
 /// One line where the means and their errors are not those of a motion that has settled, or the
 /// run is too short for errors that hold.
-fn tell_errors(arguments: &Arguments, stationarity: Stationarity) {
-    let Arguments { transient, periods, .. } = *arguments;
+fn tell_errors(transient: u64, periods: u64, stationarity: Stationarity) {
     if let Stationarity::ChangesAfter(after) = stationarity {
         let settled = rounded_up(transient + after + periods / BATCHES);
         note(&format!(
@@ -114,8 +148,7 @@ fn rounded_up(number: u64) -> u64 {
     number.div_ceil(unit) * unit
 }
 
-fn spectrum(arguments: &Arguments, problem: &Problem) -> Spectrum {
-    let Arguments { transient, periods, .. } = *arguments;
+fn spectrum(transient: u64, periods: u64, problem: &Problem) -> Spectrum {
     let Problem { model, entry, .. } = problem;
     let end = entry.instant.after_periods(transient + periods, 1);
     let bar = Some(long_work::share_bar());

@@ -1,0 +1,108 @@
+//! `lyapunov SYSTEM`: the exponents of one motion, from its returns to a section.
+
+use super::{Arguments, stationary};
+use crate::cli::note;
+use crate::cli::shared::long_work;
+use crate::cli::shared::section::{tell_no_return, tell_undecidable};
+use crate::cli::shared::system_choice::ChosenSystem;
+use anyhow::Result;
+use percuss::affine::{Exponents, NoReturn, SectionMap, Solver, System};
+use percuss::dynamics::batches::Stationarity;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The most returns of the transient in which the directions of small changes are found.
+const SETTLING: u64 = 200;
+
+/// The number of returns between two updates of the progress bar.
+const RARELY: u64 = 64;
+
+#[derive(Serialize)]
+struct Json<'a> {
+    schema: u32,
+    percuss: &'static str,
+    system: &'a str,
+    parameters: &'a BTreeMap<String, f64>,
+    states: &'a [String],
+    exponents_per_time: Vec<f64>,
+    exponents_per_return: Vec<f64>,
+    standard_error: Vec<f64>,
+    mean_return_time: Option<f64>,
+    batches: u64,
+    /// Null where too few batches tell.
+    stationary: Option<bool>,
+}
+
+/// Writes the exponents; whether the motion was decided to its end.
+pub(super) fn run(arguments: &Arguments, chosen: &ChosenSystem, returns: u64) -> Result<bool> {
+    let system = chosen.system()?;
+    let solver = Solver::<f64>::new(&system)?;
+    let map = arguments.section.map(&solver)?;
+    let found = exponents(&map, arguments.transient, returns)?;
+    arguments.output.destination().json(&json(&system, found.as_ref().ok()))?;
+    match found {
+        Ok(found) => {
+            tell_undecidable(found.undecidable);
+            if let Stationarity::ChangesAfter(after) = found.stationarity {
+                note(&format!(
+                    "the motion changes on the way: the means of its batches differ before and \
+                     after {after} of {returns} returns"
+                ));
+            }
+            Ok(true)
+        }
+        Err((why, passed)) => Ok(tell_no_return(why, passed)),
+    }
+}
+
+/// The exponents, or why the motion does not return as often, and how often it does.
+fn exponents(
+    map: &SectionMap<'_, f64>,
+    transient: u64,
+    returns: u64,
+) -> Result<Result<Exponents, (NoReturn, u64)>> {
+    let settling = transient.min(SETTLING);
+    let bar = long_work::share_bar();
+    let share = |done: u64| bar.show_share(done as f64 / (transient + returns) as f64);
+    let mut before = map.returns(map.system().start()?)?;
+    let mut passed = 0;
+    // One more, because the run begins at a return.
+    for point in before.by_ref().take((transient - settling) as usize + 1) {
+        if let Err(why) = point {
+            bar.finish_and_clear();
+            return Ok(Err((why, passed)));
+        }
+        passed += 1;
+        if passed.is_multiple_of(RARELY) {
+            share(passed);
+        }
+    }
+    let begun = passed;
+    let found = before.place().and_then(|place| {
+        map.exponents(&place, settling, returns, &mut |count| {
+            passed = begun + count;
+            if passed.is_multiple_of(RARELY) {
+                share(passed);
+            }
+        })
+    });
+    bar.finish_and_clear();
+    Ok(found.map_err(|why| (why, passed)))
+}
+
+/// The JSON; lists are empty and numbers null where the motion does not return as often.
+fn json<'a>(system: &'a System, found: Option<&Exponents>) -> Json<'a> {
+    Json {
+        schema: 1,
+        percuss: env!("CARGO_PKG_VERSION"),
+        system: &system.name,
+        parameters: &system.parameters,
+        states: &system.states,
+        exponents_per_time: found.map(Exponents::per_time).unwrap_or_default(),
+        exponents_per_return: found.map(|it| it.per_return.clone()).unwrap_or_default(),
+        standard_error: found.map(|it| it.standard_error.clone()).unwrap_or_default(),
+        mean_return_time: found.map(|it| it.mean_return_time),
+        batches: found.map_or(0, |it| it.batches),
+        stationary: found.and_then(|it| stationary(it.stationarity)),
+    }
+}

@@ -1,0 +1,130 @@
+//! `orbit SYSTEM`: a periodic orbit of a section's return map, from the start of a system.
+
+use super::{Arguments, OrbitFormat};
+use crate::cli::shared::section::tell_undecidable;
+use crate::cli::shared::system_choice::ChosenSystem;
+use crate::cli::{DONE, OUT_OF_BOUNDS, note, say};
+use anyhow::{Result, bail};
+use percuss::affine::{NoOrbit, Orbit, SectionMap, Solver, System};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// The JSON of `orbit SYSTEM`; if no orbit was found, the lists are empty and the numbers null.
+#[derive(Serialize)]
+struct OrbitJson<'a> {
+    schema: u32,
+    percuss: &'static str,
+    system: &'a str,
+    parameters: &'a BTreeMap<String, f64>,
+    states: &'a [String],
+    converged: bool,
+    period: Option<usize>,
+    time: Option<f64>,
+    points: Vec<PointJson<'a>>,
+    events: Vec<String>,
+    multipliers: Vec<[f64; 2]>,
+    stable: Option<bool>,
+    /// The smallest residual that was reached; null where there was none.
+    residual: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct PointJson<'a> {
+    mode: &'a str,
+    state: &'a [f64],
+}
+
+/// Finds and writes the orbit.
+pub(super) fn run(arguments: &Arguments, chosen: &ChosenSystem, format: OrbitFormat) -> Result<u8> {
+    if arguments.all {
+        bail!("--all is not accepted with SYSTEM, whose start leads to one orbit");
+    }
+    let system = chosen.system()?;
+    let solver = Solver::<f64>::new(&system)?;
+    let map = arguments.section.map(&solver)?;
+    let found = found(&map, arguments)?;
+    let destination = arguments.output.destination();
+    match format {
+        OrbitFormat::Json => destination.json(&json(&system, &found))?,
+        OrbitFormat::Table => {
+            let text = found.as_ref().map(|it| table(&system, it)).unwrap_or_default();
+            destination.write(|out| Ok(out.write_all(text.as_bytes())?))?;
+        }
+    }
+    Ok(match found {
+        Ok(orbit) => {
+            if !orbit.is_decided {
+                note(
+                    "rounding leaves the order of two events of the orbit open: its multipliers are \
+                     those of one side",
+                );
+            }
+            DONE
+        }
+        Err(why) => {
+            say(&why.to_string());
+            OUT_OF_BOUNDS
+        }
+    })
+}
+
+/// The orbit that is reached from the return after the transient.
+fn found(map: &SectionMap<'_, f64>, arguments: &Arguments) -> Result<Result<Orbit, NoOrbit>> {
+    let mut returns = map.returns(map.system().start()?)?;
+    let transient = arguments.transient.unwrap_or(0);
+    let wanted = returns.by_ref().take(transient as usize + 1);
+    if let Some(why) = wanted.filter_map(Result::err).last() {
+        return Ok(Err(NoOrbit::NoReturn(why)));
+    }
+    let guess = returns.place();
+    tell_undecidable(returns.undecidable());
+    Ok(guess.map_err(NoOrbit::NoReturn).and_then(|it| map.orbit(&it, arguments.period)))
+}
+
+fn json<'a>(system: &'a System, found: &'a Result<Orbit, NoOrbit>) -> OrbitJson<'a> {
+    let orbit = found.as_ref().ok();
+    let residual = match found {
+        Ok(orbit) => Some(orbit.residual),
+        Err(NoOrbit::Stalled(residual) | NoOrbit::NoDerivative(residual)) => Some(*residual),
+        Err(_) => None,
+    };
+    let points = orbit.iter().flat_map(|it| &it.points);
+    let point = points.map(|it| PointJson { mode: &system.modes[it.mode].name, state: &it.state });
+    OrbitJson {
+        schema: 1,
+        percuss: env!("CARGO_PKG_VERSION"),
+        system: &system.name,
+        parameters: &system.parameters,
+        states: &system.states,
+        converged: orbit.is_some(),
+        period: orbit.map(Orbit::period),
+        time: orbit.map(|it| it.time),
+        points: point.collect(),
+        events: orbit.map(|it| it.event_names(system)).unwrap_or_default(),
+        multipliers: orbit.map(|it| it.multipliers.clone()).unwrap_or_default(),
+        stable: orbit.map(Orbit::is_stable),
+        residual,
+    }
+}
+
+/// The orbit for people, a line each for what it is, its multipliers, events and points.
+fn table(system: &System, orbit: &Orbit) -> String {
+    let mut text = String::new();
+    let stable = if orbit.is_stable() { "stable" } else { "unstable" };
+    let (period, time, residual) = (orbit.period(), orbit.time, orbit.residual);
+    let _ = writeln!(text, "period {period}, time {time:.6}, {stable}, residual {residual:.1e}");
+    let number = |[re, im]: &[f64; 2]| match *im == 0.0 {
+        true => format!("{re:.6}"),
+        false => format!("{re:.6}{im:+.6}i"),
+    };
+    let multipliers: Vec<_> = orbit.multipliers.iter().map(number).collect();
+    let _ = writeln!(text, "multipliers {}", multipliers.join(", "));
+    let _ = writeln!(text, "events {}", orbit.event_names(system).join(", "));
+    for point in &orbit.points {
+        let states = system.states.iter().zip(&point.state);
+        let state: Vec<_> = states.map(|(name, value)| format!("{name} {value:.6}")).collect();
+        let _ = writeln!(text, "{}: {}", system.modes[point.mode].name, state.join(", "));
+    }
+    text
+}

@@ -1,0 +1,128 @@
+//! `poincare SYSTEM`: the returns of one motion to a section.
+
+use super::{Arguments, Format, MAX_PICTURE};
+use crate::cli::shared::long_work::{self, Bar};
+use crate::cli::shared::section::{columns, tell_no_return, tell_undecidable};
+use crate::cli::shared::system_choice::ChosenSystem;
+use crate::number::shortest;
+use crate::picture::{self, Figure, Layer, Plot};
+use anyhow::{Result, bail};
+use npyz::WriterBuilder;
+use percuss::affine::{NoReturn, Return, Solver, System};
+use std::io::Write;
+
+/// The number of returns between two updates of the progress bar.
+const RARELY: u64 = 64;
+
+/// Writes the section; whether the motion was decided to its end.
+pub(super) fn run(
+    arguments: &Arguments,
+    chosen: &ChosenSystem,
+    format: Format,
+    count: u64,
+) -> Result<bool> {
+    let system = chosen.system()?;
+    let solver = Solver::<f64>::new(&system)?;
+    let map = arguments.section_of_system.map(arguments.section.as_ref(), &solver)?;
+    let destination = arguments.output.destination();
+    let bar = long_work::run_bar(destination.is_terminal());
+    let mut returns = map.returns(system.start()?)?;
+    let (mut seen, mut end) = (0, None);
+    let all = arguments.transient + count;
+    let shown = returns.by_ref().take(all as usize).map_while(|it| {
+        seen += 1;
+        if let Some(bar) = bar.as_ref().filter(|_| seen % RARELY == 0) {
+            bar.show_share(seen as f64 / all as f64);
+        }
+        end = it.as_ref().err().copied();
+        it.ok()
+    });
+    let points = shown.skip(arguments.transient as usize);
+    destination.write(|out| match format {
+        Format::Csv => write_csv(&system, points, out),
+        Format::Npy => write_npy(&system, points, count, out),
+        Format::Png => draw(&system, points, arguments, out),
+    })?;
+    bar.iter().for_each(Bar::finish_and_clear);
+    tell_undecidable(returns.undecidable());
+    Ok(end.is_none_or(|why: NoReturn| tell_no_return(why, seen - 1)))
+}
+
+fn write_csv(
+    system: &System,
+    points: impl Iterator<Item = Return<f64>>,
+    out: &mut dyn Write,
+) -> Result<()> {
+    writeln!(out, "n,time,mode,{}", columns(&system.states).join(","))?;
+    for (n, point) in points.enumerate() {
+        let state: Vec<_> = point.state.iter().map(|it| shortest(*it)).collect();
+        let (time, mode) = (shortest(point.time), &system.modes[point.mode].name);
+        writeln!(out, "{n},{time},{mode},{}", state.join(","))?;
+    }
+    Ok(())
+}
+
+fn write_npy(
+    system: &System,
+    points: impl Iterator<Item = Return<f64>>,
+    count: u64,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let shape = [count, system.states.len() as u64];
+    let options = npyz::WriteOptions::<f64>::new().default_dtype().shape(&shape);
+    let mut writer = options.writer(out).begin_nd()?;
+    let mut written = 0;
+    for point in points {
+        writer.extend(point.state)?;
+        written += 1;
+    }
+    // The shape stands at the beginning of the file.
+    if written < count {
+        bail!("the section ends after {written} points of {count}; --format csv writes them");
+    }
+    Ok(writer.finish()?)
+}
+
+/// The plane of the first two states; of a system with one state, the returns one by one.
+fn draw(
+    system: &System,
+    points: impl Iterator<Item = Return<f64>>,
+    arguments: &Arguments,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let axes = match &system.states[..] {
+        [first, second, ..] => [first.clone(), second.clone()],
+        states => ["return".to_owned(), states.concat()],
+    };
+    let place = |(n, it): (usize, Return<f64>)| match it.state[..] {
+        [first, second, ..] => [first, second],
+        _ => [n as f64, it.state[0]],
+    };
+    let points: Vec<[f64; 2]> = points.enumerate().map(place).collect();
+    let section = arguments.section.as_ref().map_or("strobe", |it| it.text.as_str());
+    let figure = Figure {
+        title: system.name.clone(),
+        caption: format!(
+            "{} returns to {section}, after {} returns",
+            points.len(),
+            arguments.transient
+        ),
+        columns: 1,
+        panel: (1200, 800),
+        plots: vec![Plot {
+            title: String::new(),
+            axes,
+            window: None,
+            layers: vec![Layer::cloud(points, picture::INK)],
+        }],
+    };
+    Ok(out.write_all(&picture::png(&figure)?)?)
+}
+
+/// Refuses a picture of more points than show anything.
+pub(super) fn check_size(format: Format, count: u64) -> Result<()> {
+    if format == Format::Png && count > MAX_PICTURE {
+        bail!("--returns {count} is not accepted for a picture: at most {MAX_PICTURE}");
+    }
+    Ok(())
+}

@@ -1,0 +1,117 @@
+//! The section of a SYSTEM's motions at which verbs of the dynamics look.
+
+use super::parse::{self, SectionChoice, Typed};
+use super::terminal::note;
+use anyhow::{Result, anyhow, bail};
+use clap::Args;
+use percuss::Ending;
+use percuss::affine::{NoReturn, Section, SectionMap, Solver};
+
+/// How often, and how long, returns to a section are waited for.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "SYSTEM and its start")]
+pub(in crate::cli) struct ReturnFlags {
+    /// Takes every N-th return to the section alone [default: 1]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, 1_000_000_000), allow_hyphen_values = true)]
+    every: Option<u32>,
+    /// The longest time to wait for a return [default: 1000 of the SYSTEM's units of time]
+    #[arg(long, value_name = "T", value_parser = parse::positive, allow_hyphen_values = true)]
+    max_time: Option<Typed<f64>>,
+}
+
+/// The section of a verb that has none without SYSTEM.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "SYSTEM and its start")]
+pub(in crate::cli) struct SectionFlags {
+    /// The section: strobe[:ANGLE] at a forcing angle omega t mod 2 pi, or EVENT or EVENT@MODE,
+    /// just after it [default: strobe:0 where the SYSTEM is forced]
+    #[arg(long, value_name = "SECTION", value_parser = parse::section, allow_hyphen_values = true)]
+    section: Option<Typed<SectionChoice>>,
+    #[command(flatten)]
+    returns: ReturnFlags,
+}
+
+impl SectionFlags {
+    /// The return map of the section.
+    pub(in crate::cli) fn map<'a>(&self, solver: &'a Solver<f64>) -> Result<SectionMap<'a, f64>> {
+        self.returns.map(self.section.as_ref(), solver)
+    }
+
+    /// Refuses the flags where no system is chosen.
+    pub(in crate::cli) fn refuse(&self) -> Result<()> {
+        if let Some(section) = &self.section {
+            bail!("{}", without_system("--section", section));
+        }
+        self.returns.refuse()
+    }
+}
+
+impl ReturnFlags {
+    /// The return map of a section, the strobe at the angle 0 where none is given.
+    pub(in crate::cli) fn map<'a>(
+        &self,
+        section: Option<&Typed<SectionChoice>>,
+        solver: &'a Solver<f64>,
+    ) -> Result<SectionMap<'a, f64>> {
+        let section = match section.map(|it| (&it.value, it)) {
+            Some((SectionChoice::Angle(_), it)) => bail!(
+                "--section {it} is not accepted with SYSTEM: strobe:{it}, EVENT and EVENT@MODE are"
+            ),
+            Some((SectionChoice::Strobe(angle), _)) => Section::strobe(*angle),
+            Some((SectionChoice::Event(name, None), _)) => Section::event(name),
+            Some((SectionChoice::Event(name, Some(mode)), _)) => Section::event(name).in_mode(mode),
+            None => Section::strobe(0.0),
+        };
+        let section = section.every(self.every.unwrap_or(1));
+        let map = SectionMap::new(solver, &section).map_err(|error| anyhow!("--{error}"))?;
+        Ok(match &self.max_time {
+            Some(longest) => map.within(longest.value),
+            None => map,
+        })
+    }
+
+    /// Refuses the flags where no system is chosen.
+    pub(in crate::cli) fn refuse(&self) -> Result<()> {
+        let every = self.every.map(|it| without_system("--every", &it));
+        let longest = self.max_time.as_ref().map(|it| without_system("--max-time", it));
+        match every.or(longest) {
+            Some(line) => bail!("{line}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The line that refuses a flag of a system where none is chosen.
+pub(in crate::cli) fn without_system(flag: &str, value: &dyn std::fmt::Display) -> String {
+    format!(
+        "{flag} {value} is not accepted without SYSTEM: accepted is it after a *.system.toml, or a \
+         name that percuss systems prints"
+    )
+}
+
+/// Says that a motion has not returned as often as was asked; whether the model says so, and not
+/// the arithmetic.
+pub(in crate::cli) fn tell_no_return(why: NoReturn, returns: u64) -> bool {
+    note(&format!("equilibrium or end after {returns} returns: {why}"));
+    match why {
+        NoReturn::Ended(ending) => {
+            matches!(ending, Ending::Accumulation | Ending::Horizon | Ending::LeavesDomain)
+        }
+        NoReturn::Equilibrium => true,
+        _ => false,
+    }
+}
+
+/// One line where rounding takes one side of ties and touches.
+pub(in crate::cli) fn tell_undecidable(count: u64) {
+    if count > 0 {
+        note(&format!("{count} ties or touches are not decided by f64: the run takes one side"));
+    }
+}
+
+/// The columns of states: one whose name is that of another column is `state.NAME`.
+pub(in crate::cli) fn columns(states: &[String]) -> Vec<String> {
+    let is_taken = |name: &str| ["n", "time", "mode", "event"].contains(&name);
+    let column = |it: &String| if is_taken(it) { format!("state.{it}") } else { it.clone() };
+    states.iter().map(column).collect()
+}
