@@ -15,7 +15,7 @@ struct Package {
 }
 
 /// All packages, in the order in which they are compiled.
-const PACKAGES: [Package; 7] = [
+const PACKAGES: [Package; 8] = [
     Package {
         sources: "src",
         rooms: &[
@@ -102,6 +102,27 @@ const PACKAGES: [Package; 7] = [
         sources: "validation/src",
         rooms: &["provenance", "unfinished", "sweep", "report", "cli"],
         least_uses: 150,
+    },
+    Package {
+        sources: "python/src",
+        rooms: &[
+            "failure",
+            "long_work",
+            "collect",
+            "solvers",
+            "asked",
+            "motion",
+            "rows",
+            "stream",
+            "system",
+            "oscillator",
+            "dynamics",
+            "diagram",
+            "survey",
+            "scores",
+            "command",
+        ],
+        least_uses: 15,
     },
     Package {
         sources: "validation/xtask/src",

@@ -1,0 +1,73 @@
+"""Exact events of systems with impacts, friction and switches, and ODE solvers held against them.
+
+Examples
+--------
+An event with proved digits, and the motion between events:
+
+>>> import percuss
+>>> run = percuss.systems["bouncing-ball"](e=0.6).events(until=24, digits=25)
+>>> print(run.digits.time[2], run.ending)
+2.399999999999999966693309 accumulation
+>>> run.sol(1.0)
+array([ 0.5, -0.5])
+
+Which start leads where:
+
+>>> basins = percuss.Oscillator().basins((-1, 1), (-1, 1), grid=8, transient=100)
+>>> basins.labels.shape
+(8, 8)
+
+A verdict on an integrator:
+
+>>> from scipy.integrate import solve_ivp
+>>> report = percuss.score(solve_ivp, method="DOP853", rtol=1e-6, cases="small-b")
+>>> report.summary["error"]
+0
+"""
+
+from importlib.metadata import version as _version
+
+from percuss._build import Mode, Until, Watch, build
+from percuss._oscillator import Oscillator, Simulation
+from percuss._problem import Answer, EventRule, Happened, ModeRule, Problem, Successor
+from percuss._report import Report, ScoreFailure
+from percuss._results import Attractor, Basins, Bifurcation, Lyapunov, Orbit, Section
+from percuss._run import Digits, Enclosure, Run, Sol, Stream
+from percuss._score import case_names, problem, score
+from percuss._system import System, Systems, systems
+
+__version__ = _version("percuss")
+
+__all__ = [
+    "Answer",
+    "Attractor",
+    "Basins",
+    "Bifurcation",
+    "Digits",
+    "Enclosure",
+    "EventRule",
+    "Happened",
+    "Lyapunov",
+    "Mode",
+    "ModeRule",
+    "Orbit",
+    "Oscillator",
+    "Problem",
+    "Report",
+    "Run",
+    "ScoreFailure",
+    "Section",
+    "Simulation",
+    "Sol",
+    "Stream",
+    "Successor",
+    "System",
+    "Systems",
+    "Until",
+    "Watch",
+    "build",
+    "case_names",
+    "problem",
+    "score",
+    "systems",
+]

@@ -1,0 +1,221 @@
+"""The native part of the package, in the names of Rust; `percuss` gives it its face."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+class System:
+    @staticmethod
+    def parse(place: str, text: str) -> System: ...
+    @staticmethod
+    def named(name: str) -> System | None: ...
+    def with_parameters(self, values: dict[str, float]) -> System: ...
+    def with_start(self, text: str) -> System: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def why(self) -> str: ...
+    @property
+    def source(self) -> str: ...
+    @property
+    def trouble(self) -> list[str]: ...
+    @property
+    def states(self) -> list[str]: ...
+    @property
+    def modes(self) -> list[str]: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def time_scale(self) -> float: ...
+    @property
+    def omega(self) -> float | None: ...
+    @property
+    def event_names(self) -> list[str]: ...
+    @property
+    def start_time(self) -> float | None: ...
+    def events(
+        self,
+        until: float | None,
+        count: int | None,
+        digits: int,
+        max_bits: int | None,
+        max_events: int | None,
+        backward: bool,
+    ) -> Rows: ...
+    def simulate(
+        self,
+        until: float | None,
+        count: int | None,
+        max_events: int | None,
+        backward: bool,
+    ) -> Rows: ...
+    def stream(
+        self,
+        until: float | None,
+        count: int | None,
+        digits: int,
+        max_bits: int | None,
+        backward: bool,
+    ) -> Stream: ...
+
+class Rows:
+    def __len__(self) -> int: ...
+    def times(self) -> Floats: ...
+    def states(self) -> Floats: ...
+    def modes(self) -> NDArray[np.int64]: ...
+    def names(self) -> list[str]: ...
+    def digits(self, most: int) -> tuple[list[str], list[list[str]]] | None: ...
+    def errors(self) -> tuple[Floats, Floats] | None: ...
+    def at(self, times: Floats) -> Floats: ...
+    @property
+    def ending(self) -> str | None: ...
+    @property
+    def is_decided(self) -> bool: ...
+    @property
+    def cause(self) -> str | None: ...
+    @property
+    def accumulation(self) -> tuple[str, str] | None: ...
+    @property
+    def bits(self) -> int: ...
+    @property
+    def undecidable(self) -> int: ...
+
+class Row:
+    @property
+    def time(self) -> float: ...
+    @property
+    def state(self) -> Floats: ...
+    @property
+    def mode(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def digits(self) -> tuple[str, list[str]]: ...
+
+class Stream(Iterator[Row]):
+    def __iter__(self) -> Stream: ...
+    def __next__(self) -> Row: ...
+    @property
+    def ending(self) -> str | None: ...
+    @property
+    def cause(self) -> str | None: ...
+
+class Simulated(TypedDict):
+    phases: list[str]
+    times: Floats
+    states: Floats
+    undecidable: int
+    endless: str | None
+
+class Exponents(TypedDict):
+    exponents_per_period: list[float]
+    standard_error: list[float]
+    stationary: bool | None
+    contraction_per_period: float
+    drift_per_period: float
+    drift_standard_error: float
+    undecidable: bool
+
+class FoundOrbit(TypedDict):
+    points: Floats
+    multipliers: list[tuple[float, float]]
+    phases: list[str]
+    stable: bool
+    residual: float
+    drift_per_period: float
+
+class Diagrammed(TypedDict):
+    values: Floats
+    steps: NDArray[np.int64]
+    points: Floats
+    drift_per_period: Floats
+    drift_standard_error: Floats
+    escapes: NDArray[np.bool_]
+    undecidable: NDArray[np.bool_]
+
+class Found(TypedDict):
+    kind: str
+    period: int | None
+    fraction: float
+    fraction_error: float
+    points: Floats
+    drift_per_period: float
+    drift_standard_error: float
+    lyapunov_per_period: float
+    lyapunov_error: float
+
+class Surveyed(TypedDict):
+    p: Floats
+    y: Floats
+    labels: NDArray[np.int32]
+    attractors: list[Found]
+    escaping: float
+    unresolved: float
+
+class Oscillator:
+    def __new__(
+        cls,
+        a: float,
+        b: float,
+        xi: float,
+        omega: float,
+        g: float,
+        phi: float,
+        tau: float,
+        cycle: int,
+        p: float,
+        y: float,
+        q: float | None,
+        v: float,
+        phase: str | None,
+    ) -> Oscillator: ...
+    @property
+    def period(self) -> float: ...
+    @property
+    def started(self) -> tuple[str, float, list[float]]: ...
+    def simulate(
+        self,
+        until: float | None,
+        count: int | None,
+        periods: int | None,
+        max_periods: int | None,
+    ) -> Simulated: ...
+
+def poincare(oscillator: Oscillator, transient: int, periods: int, section: float) -> Floats: ...
+def lyapunov(oscillator: Oscillator, transient: int, periods: int) -> Exponents: ...
+def orbits(oscillator: Oscillator, period: int, from_start: bool) -> list[FoundOrbit]: ...
+def bifurcation(
+    oscillator: Oscillator,
+    parameter: str,
+    from_: float,
+    to: float,
+    steps: int,
+    transient: int,
+    periods: int,
+    reset: bool,
+    /,
+) -> Diagrammed: ...
+def basins(
+    oscillator: Oscillator,
+    window: tuple[tuple[float, float], tuple[float, float]],
+    grid: tuple[int, int],
+    transient: int,
+    max_period: int,
+    /,
+) -> Surveyed: ...
+
+class Cases:
+    def __new__(cls, names: set[str]) -> Cases: ...
+    @property
+    def names(self) -> list[str]: ...
+    def ask(self, name: str) -> str: ...
+    def beyond_budget(self, method: dict[str, Any]) -> list[str]: ...
+    def judge(self, answers: Sequence[dict[str, Any]], out: str) -> None: ...
+
+def case_names() -> list[str]: ...
+def system_names() -> list[str]: ...
+def command(words: list[str]) -> int: ...

@@ -1,0 +1,292 @@
+"""Runs: the start, the events and the ending, as arrays and as proved digits."""
+
+from __future__ import annotations
+
+import sys
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from percuss import _percuss
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Floats = NDArray[np.float64]
+Texts = NDArray[np.str_]
+
+
+class Digits(NamedTuple):
+    """Decimals all of whose digits are proved."""
+
+    time: Texts
+    """Times, shape (n,)."""
+    state: Texts
+    """States, shape (n, d)."""
+
+
+class Enclosure(NamedTuple):
+    """Numbers between which the true ones lie, rounded outward."""
+
+    time: Floats
+    """Lower and upper bounds of the times, shape (n, 2)."""
+    state: Floats
+    """Lower and upper bounds of the states, shape (n, d, 2)."""
+
+
+def _between(middle: Floats, error: Floats) -> Floats:
+    """The two ends of intervals, given by their middles, rounded to f64, and bounds of errors."""
+    is_exact = error == 0
+    # A middle is rounded to f64, and so is what is taken off it: a unit each.
+    low = np.nextafter(np.nextafter(middle, -np.inf) - error, -np.inf)
+    high = np.nextafter(np.nextafter(middle, np.inf) + error, np.inf)
+    zero = is_exact & (middle == 0)
+    return np.stack([np.where(zero, 0.0, low), np.where(zero, 0.0, high)], axis=-1)
+
+
+class Sol:
+    """The motion between the events of a run, as a function of the time.
+
+    It is called as SciPy's dense output is. A time outside the run raises ``ValueError``; at the
+    time of an event the state is that just after it.
+    """
+
+    def __init__(self, rows: _percuss.Rows) -> None:
+        self._rows = rows
+
+    def __call__(self, t: ArrayLike) -> Floats:
+        """Compute the state at times of the run.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (m,)
+            Times, in the system's unit.
+
+        Returns
+        -------
+        ndarray, shape (d,) or (d, m)
+            The states.
+        """
+        times = np.asarray(t, dtype=np.float64)
+        if times.ndim > 1:
+            raise ValueError(f"t of {times.ndim} dimensions is not accepted: 0 or 1 are")
+        states = self._rows.at(np.ascontiguousarray(np.atleast_1d(times)))
+        return states[0] if times.ndim == 0 else states.T
+
+
+class Run:
+    """A run of a system: its start, each of its events, and its ending.
+
+    Row k is row k of the command ``percuss events``: row 0 is the start, whose name is empty, and
+    a run that ends by itself has its ending last.
+
+    Attributes
+    ----------
+    states : list of str
+        The names of the d states.
+    ending : str or None
+        ``end`` (the time that was asked for), ``accumulation``, ``leaves-domain``, ``no-progress``,
+        ``beyond-guard``, ``undecided``, ``stopped`` (by ``max_events``), ``no-digits``, or None
+        where the run has the number of events that was asked for.
+    """
+
+    def __init__(
+        self, rows: _percuss.Rows, states: list[str], modes: list[str], digits: int
+    ) -> None:
+        self._rows = rows
+        self._modes = modes
+        self._digits = digits
+        self.states = states
+        self.ending = rows.ending
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @cached_property
+    def time(self) -> Floats:
+        """The times in the system's unit, shape (n,); the f64 next to the proved ones."""
+        return self._rows.times()
+
+    @cached_property
+    def state(self) -> Floats:
+        """The states just after the events, shape (n, d)."""
+        return self._rows.states()
+
+    @cached_property
+    def mode(self) -> Texts:
+        """The names of the modes that begin or go on, shape (n,)."""
+        return np.array(self._modes)[self._rows.modes()]
+
+    @cached_property
+    def name(self) -> Texts:
+        """The names of the events, shape (n,): that of the start is empty."""
+        return np.array(self._rows.names(), dtype=np.str_)
+
+    @cached_property
+    def digits(self) -> Digits:
+        """The decimals that the command prints: all their digits are proved.
+
+        Raises
+        ------
+        AttributeError
+            Of a run in f64, of which no digit is proved.
+        """
+        found = self._rows.digits(self._digits)
+        if found is None:
+            raise AttributeError("a run in f64 has no proved digits: one of events() has")
+        time, state = found
+        shape = (len(self), len(self.states))
+        return Digits(np.array(time, dtype=np.str_), np.array(state, dtype=np.str_).reshape(shape))
+
+    @cached_property
+    def enclosure(self) -> Enclosure:
+        """Numbers between which the true times and states lie.
+
+        Raises
+        ------
+        AttributeError
+            Of a run in f64, whose errors have no bounds.
+        """
+        errors = self._rows.errors()
+        if errors is None:
+            raise AttributeError("a run in f64 has no bounds of its errors: one of events() has")
+        return Enclosure(_between(self.time, errors[0]), _between(self.state, errors[1]))
+
+    @property
+    def sol(self) -> Sol:
+        """The motion between the events, called as SciPy's dense output is."""
+        return Sol(self._rows)
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether the run ends because the model says so or because the time is over."""
+        return self._rows.is_decided
+
+    @property
+    def cause(self) -> str | None:
+        """The cause of an ending that was not decided."""
+        return self._rows.cause
+
+    @property
+    def accumulation(self) -> tuple[str, str] | None:
+        """The times between which infinitely many impacts accumulate, as decimals."""
+        return self._rows.accumulation
+
+    @property
+    def bits(self) -> int:
+        """The bits of the arithmetic that the run came to."""
+        return self._rows.bits
+
+    @property
+    def undecidable(self) -> int:
+        """The choices that rounding leaves open; 0 of a run with proved digits."""
+        return self._rows.undecidable
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Make a table of the run, with the columns of the command; needs pandas."""
+        import pandas as pd
+
+        head = {"time": self.time, "event": self.name, "mode": self.mode}
+        columns: dict[str, Any] = dict(head)
+        for place, state in enumerate(self.states):
+            # A state whose name is a column's is named as the command names it.
+            columns[f"state.{state}" if state in {"n", *head} else state] = self.state[:, place]
+        return pd.DataFrame(columns).rename_axis("n")
+
+    def plot(self, ax: Any = None, *, points: int = 1000) -> Any:
+        """Draw the states over the time, with a mark at each event; needs matplotlib.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            The axes to draw on; new ones by default.
+        points : int, optional
+            The number of times between start and end.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            ax = plt.figure().add_subplot()
+        times = np.union1d(np.linspace(self.time[0], self.time[-1], points), self.time)
+        states = self.sol(times)
+        for place, name in enumerate(self.states):
+            (line,) = ax.plot(times, states[place], label=name, linewidth=1)
+            ax.plot(self.time, self.state[:, place], ".", color=line.get_color(), markersize=4)
+        ax.set_xlabel("time")
+        ax.set_ylabel(", ".join(self.states))
+        if len(self.states) > 1:
+            ax.legend(loc="upper right", frameon=False)
+        return ax
+
+    def __repr__(self) -> str:
+        ending = "" if self.ending is None else f", ending {self.ending!r}"
+        return f"Run({len(self)} rows from {self.time[0]:.6g} to {self.time[-1]:.6g}{ending})"
+
+
+class Stream:
+    """The rows of a run one by one, none of which is kept.
+
+    Each has ``time``, ``state``, ``mode``, ``name`` and ``digits`` (the time's, then those of the
+    states). ``ending`` and ``cause`` are known once the run is over.
+    """
+
+    def __init__(self, rows: _percuss.Stream) -> None:
+        self._rows = rows
+
+    def __iter__(self) -> Stream:
+        return self
+
+    def __next__(self) -> _percuss.Row:
+        return next(self._rows)
+
+    @property
+    def ending(self) -> str | None:
+        """The ending, as that of a :class:`Run`."""
+        return self._rows.ending
+
+    @property
+    def cause(self) -> str | None:
+        """The cause of an ending that was not decided."""
+        return self._rows.cause
+
+
+def whole(name: str, number: Any, least: int = 0, most: int = sys.maxsize) -> int:
+    """A number as an integer of a range.
+
+    Raises
+    ------
+    TypeError
+        What is no integer.
+    ValueError
+        An integer outside the range.
+    """
+    if isinstance(number, bool) or not hasattr(number, "__index__"):
+        raise TypeError(f"{name} = {number!r} is not accepted: an integer is")
+    integer: int = number.__index__()
+    if not least <= integer <= most:
+        raise ValueError(f"{name} = {integer} is not accepted: {least} to {most} is")
+    return integer
+
+
+def real(name: str, number: Any) -> float:
+    """A number as an f64.
+
+    Raises
+    ------
+    TypeError
+        What is no number.
+    """
+    if isinstance(number, (str, bytes)):
+        raise TypeError(f"{name} = {number!r} is not accepted: a number is")
+    try:
+        return float(number)
+    except TypeError:
+        raise TypeError(f"{name} = {number!r} is not accepted: a number is") from None
+    except OverflowError:
+        raise ValueError(f"{name} is not accepted: it is too large for an f64") from None

@@ -1,0 +1,154 @@
+"""The pytest plugin: each case of percuss is a test of a solver.
+
+``pytest --percuss=mylib.adapters:solve --percuss-cases="graze*" --percuss-rtol=1e-6,1e-9``
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from percuss._report import Report, reason
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options of the plugin."""
+    group = parser.getgroup("percuss", "solvers held against the proved events of percuss")
+    group.addoption(
+        "--percuss",
+        metavar="MODULE:SOLVER",
+        help="test this solver: a function like scipy.integrate.solve_ivp, or one that takes a"
+        " percuss.Problem and returns a percuss.Answer",
+    )
+    group.addoption("--percuss-cases", metavar="PATTERNS", default="*", help="cases, with commas")
+    group.addoption("--percuss-rtol", metavar="T,...", default="1e-6,1e-9", help="tolerances")
+    group.addoption("--percuss-method", metavar="METHOD", help="the method that the solver takes")
+    group.addoption(
+        "--percuss-setup",
+        metavar="SETUP",
+        default="experts",
+        help="of a solver like solve_ivp: experts, documentation, or both with a comma",
+    )
+    group.addoption("--percuss-kind", metavar="CLASS", help="explicit, implicit, multistep, taylor")
+    group.addoption("--percuss-order", metavar="N", type=int, help="the order of the method")
+    group.addoption("--percuss-out", metavar="DIR", help="a folder for the files of the report")
+    group.addoption(
+        "--percuss-known",
+        metavar="FILE",
+        help="declared shortcomings: lines of CASE or CASE@TOLERANCE, a space, and the reason;"
+        " these tests have to fail",
+    )
+
+
+def _solver(name: str) -> Any:
+    """The solver of a name such as `scipy.integrate:solve_ivp`."""
+    module, separator, attribute = name.partition(":")
+    if not separator:
+        raise pytest.UsageError(f"--percuss={name} is not accepted: MODULE:SOLVER is")
+    try:
+        found: Any = importlib.import_module(module)
+        for part in attribute.split("."):
+            found = getattr(found, part)
+    except (ImportError, AttributeError) as error:
+        raise pytest.UsageError(f"--percuss={name}: {error}") from error
+    return found
+
+
+def _known(path: str | None) -> dict[str, str]:
+    """The declared shortcomings, with their reasons."""
+    if path is None:
+        return {}
+    try:
+        lines = Path(path).read_text(encoding="utf-8").splitlines()
+    except OSError as error:
+        raise pytest.UsageError(f"--percuss-known={path}: {error.strerror}") from error
+    named = (line.split(maxsplit=1) for line in lines if line.strip() and line[0] != "#")
+    return {words[0]: words[1] if len(words) > 1 else "declared" for words in named}
+
+
+def _report(config: pytest.Config) -> Report:
+    """The judgement of the solver on all cases that are asked for."""
+    import percuss
+
+    option = config.getoption
+    tolerances = option("--percuss-rtol")
+    try:
+        return percuss.score(
+            _solver(option("--percuss")),
+            method=option("--percuss-method"),
+            rtol=[float(it) for it in tolerances.split(",")],
+            cases=option("--percuss-cases").split(","),
+            setup=option("--percuss-setup").split(","),
+            kind=option("--percuss-kind"),
+            order=option("--percuss-order"),
+            out=option("--percuss-out"),
+        )
+    except (ValueError, TypeError) as error:
+        raise pytest.UsageError(f"--percuss: {error}") from error
+
+
+class RowFailure(Exception):
+    """A row that is out of bounds or gave no result."""
+
+
+class Row(pytest.Item):
+    """A row of the report, as a test."""
+
+    def __init__(self, *, row: dict[str, Any], **options: Any) -> None:
+        super().__init__(**options)
+        self.row = row
+
+    def runtest(self) -> None:
+        """Fail where the row does."""
+        verdict = self.row["verdict"]
+        if verdict in ("fail", "error"):
+            raise RowFailure(reason(self.row))
+        if verdict in ("not-run", "unavailable", "not-scored"):
+            pytest.skip(f"{verdict}: {self.row['why']}")
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """Say the row's reason, without lines of this file."""
+        if isinstance(excinfo.value, RowFailure):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, None, str]:
+        """The place and the name of the test."""
+        return self.path, None, f"percuss: {self.name}"
+
+
+class Rows(pytest.Collector):
+    """The rows of the report."""
+
+    def collect(self) -> Iterator[Row]:
+        """One test a row; declared shortcomings are expected to fail."""
+        known = _known(self.config.getoption("--percuss-known"))
+        for row in _report(self.config).rows:
+            tolerance = f"{row['tolerance']:g}"
+            item = Row.from_parent(
+                self, name=f"{row['case']}[{row['engine']}-{tolerance}]", row=row
+            )
+            why = known.get(f"{row['case']}@{tolerance}", known.get(row["case"]))
+            if why is not None:
+                item.add_marker(pytest.mark.xfail(reason=why, strict=True))
+            yield item
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session: pytest.Session) -> None:
+    """Say early what is wrong with the solver's name."""
+    name = session.config.getoption("--percuss")
+    if name is not None:
+        _solver(name)
+
+
+def pytest_collection_modifyitems(session: pytest.Session, items: list[pytest.Item]) -> None:
+    """Put the rows behind the tests that files have."""
+    if session.config.getoption("--percuss") is None:
+        return
+    rows = Rows.from_parent(session, name="percuss")
+    items.extend(rows.collect())

@@ -1,0 +1,72 @@
+//! A run as it is asked for, and what all runs of a system share.
+
+use crate::collect::{End, Kept, Limits, walk};
+use crate::failure::value;
+use crate::solvers::Solvers;
+use percuss::{Proved, SystemError};
+
+/// The part of a system that its runs share.
+pub(crate) struct Shared {
+    pub(crate) system: percuss::System,
+    pub(crate) directions: [Solvers; 2],
+}
+
+impl Shared {
+    pub(crate) fn solvers(&self, backward: bool) -> &Solvers {
+        &self.directions[usize::from(backward)]
+    }
+}
+
+/// The length of a run, and how it is made.
+#[derive(Clone, Copy)]
+pub(crate) struct Asked {
+    pub(crate) until: f64,
+    pub(crate) limits: Limits,
+    pub(crate) digits: usize,
+    pub(crate) max_bits: u32,
+    pub(crate) backward: bool,
+}
+
+impl Shared {
+    /// A run in numbers with proved digits, whose rows are given to `keep`.
+    pub(crate) fn proved<E: From<SystemError>>(
+        &self,
+        asked: Asked,
+        keep: &mut dyn FnMut(Kept<Proved>) -> Result<(), E>,
+    ) -> Result<End, E> {
+        let solver = self.solvers(asked.backward).proved(&self.system, asked.backward)?;
+        let run = solver.run().digits(asked.digits).max_bits(asked.max_bits);
+        walk(run.until(asked.until)?, asked.limits, keep)
+    }
+
+    /// A run in f64, whose rows are given to `keep`.
+    pub(crate) fn plain<E: From<SystemError>>(
+        &self,
+        asked: Asked,
+        keep: &mut dyn FnMut(Kept<f64>) -> Result<(), E>,
+    ) -> Result<End, E> {
+        let solver = self.solvers(asked.backward).plain(&self.system, asked.backward)?;
+        walk(solver.run().until(asked.until)?, asked.limits, keep)
+    }
+}
+
+/// The failure of a run: of the system, or an exception of Python.
+pub(crate) enum Failure {
+    System(SystemError),
+    Python(pyo3::PyErr),
+}
+
+impl From<SystemError> for Failure {
+    fn from(error: SystemError) -> Self {
+        Self::System(error)
+    }
+}
+
+impl From<Failure> for pyo3::PyErr {
+    fn from(failure: Failure) -> Self {
+        match failure {
+            Failure::System(error) => value(error),
+            Failure::Python(error) => error,
+        }
+    }
+}

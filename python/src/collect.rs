@@ -1,0 +1,132 @@
+//! The events of a run one by one, ended as the command `events` ends them.
+
+use percuss::{Answer, Ending, Event, Events, Proved};
+
+/// The number of digits of which a time needs one.
+const FEW: usize = 6;
+
+/// The ending of a run that has as many events as it may have.
+const STOPPED: &str = "stopped";
+
+/// The ending of a run whose time has no digit left.
+const NO_DIGITS: &str = "no-digits";
+
+/// The limits of a run besides its time.
+#[derive(Clone, Copy)]
+pub(crate) struct Limits {
+    /// The number of events that are wanted.
+    pub(crate) count: Option<usize>,
+    /// The number of events after which a run is stopped.
+    pub(crate) most: Option<usize>,
+    /// The unit of time of the system.
+    pub(crate) time_scale: f64,
+}
+
+/// A row of a run: the start, an event, or the ending.
+#[derive(Clone)]
+pub(crate) struct Kept<V> {
+    /// The event's name, or that of the ending; nothing for the start.
+    pub(crate) name: String,
+    /// The index of the mode that begins.
+    pub(crate) mode: usize,
+    pub(crate) time: V,
+    pub(crate) state: Vec<V>,
+}
+
+/// The end of a run.
+#[derive(Clone, Default)]
+pub(crate) struct End {
+    /// Its name; none where the run has the number of events that was asked for.
+    pub(crate) name: Option<String>,
+    /// Whether the model says so or the time is over.
+    pub(crate) is_decided: bool,
+    pub(crate) cause: Option<String>,
+    /// The earliest and the latest time at which impacts accumulate.
+    pub(crate) accumulation: Option<[String; 2]>,
+    pub(crate) bits: u32,
+    /// The choices that rounding leaves open.
+    pub(crate) undecidable: u64,
+}
+
+/// A number of a run.
+pub(crate) trait Value: Clone + Send + Sync + 'static {
+    /// Whether a time of this value has a digit, in a system with this unit of time.
+    fn is_known(&self, time_scale: f64) -> bool;
+
+    /// The two decimals between which the number lies.
+    fn between(&self) -> [Option<String>; 2];
+}
+
+impl Value for Proved {
+    fn is_known(&self, time_scale: f64) -> bool {
+        // A time next to zero has few digits though it is known well.
+        self.error() <= f64::EPSILON * time_scale || self.digits(FEW) != Some(0)
+    }
+
+    fn between(&self) -> [Option<String>; 2] {
+        /// The digits that the command shows of the times of an accumulation.
+        const DIGITS: u8 = 30;
+        [self.lower(DIGITS), self.upper(DIGITS)]
+    }
+}
+
+impl Value for f64 {
+    fn is_known(&self, _: f64) -> bool {
+        self.is_finite()
+    }
+
+    fn between(&self) -> [Option<String>; 2] {
+        [Some(format!("{self:?}")), Some(format!("{self:?}"))]
+    }
+}
+
+/// Goes through a run, its start first, and gives each row to `keep`, which may end it by an error.
+pub(crate) fn walk<A, E>(
+    mut events: Events<'_, A>,
+    limits: Limits,
+    keep: &mut dyn FnMut(Kept<A::Value>) -> Result<(), E>,
+) -> Result<End, E>
+where
+    A: Answer,
+    A::Value: Value,
+{
+    let mut end = End { is_decided: true, ..End::default() };
+    let mut last = row(&events.start(), String::new());
+    keep(last.clone())?;
+    let mut passed = 0;
+    while limits.count.is_none_or(|wanted| passed < wanted) {
+        let Some(event) = events.next() else { break };
+        if event.ending().is_none() && limits.most.is_some_and(|most| passed >= most) {
+            end.name = Some(STOPPED.to_owned());
+            keep(Kept { name: STOPPED.to_owned(), ..last })?;
+            break;
+        }
+        passed += 1;
+        if !event.time().is_known(limits.time_scale) {
+            end.name = Some(NO_DIGITS.to_owned());
+            break;
+        }
+        last = row(&event, event.name().to_owned());
+        if let Some(ending) = event.ending() {
+            end.name = Some(ending.as_str().to_owned());
+            end.is_decided = ending.is_decided();
+            end.accumulation = (ending == Ending::Accumulation).then(|| between(&event)).flatten();
+        }
+        keep(last.clone())?;
+    }
+    end.cause = events.cause().map(|it| it.to_string());
+    (end.bits, end.undecidable) = (events.bits(), events.undecidable());
+    Ok(end)
+}
+
+fn row<V: Clone>(event: &Event<'_, V>, name: String) -> Kept<V> {
+    let (time, state) = (event.time().clone(), event.state().to_vec());
+    Kept { name, mode: event.mode_index(), time, state }
+}
+
+/// The times between which impacts accumulate.
+fn between<V: Value>(event: &Event<'_, V>) -> Option<[String; 2]> {
+    let [from, to] = event.accumulation()?;
+    let ([earliest, _], [_, latest]) = (from.between(), to.between());
+    Some([earliest?, latest?])
+}

@@ -1,0 +1,46 @@
+//! The native part of the Python package `percuss`: systems and their runs, the oscillator and its
+//! dynamics, the judgement of answers, and the command.
+//!
+//! What users meet is the package in `python/percuss/`, which gives these classes their faces.
+//! Nothing is computed here that the libraries do not compute, so every number is the command's.
+
+mod asked;
+mod collect;
+mod command;
+mod diagram;
+mod dynamics;
+mod failure;
+mod long_work;
+mod motion;
+mod oscillator;
+mod rows;
+mod scores;
+mod solvers;
+mod stream;
+mod survey;
+mod system;
+
+use pyo3::prelude::pymodule;
+
+/// The native part of the package `percuss`.
+#[pymodule]
+mod _percuss {
+    #[pymodule_export]
+    use super::command::command;
+    #[pymodule_export]
+    use super::diagram::bifurcation;
+    #[pymodule_export]
+    use super::dynamics::{lyapunov, orbits, poincare};
+    #[pymodule_export]
+    use super::oscillator::Oscillator;
+    #[pymodule_export]
+    use super::rows::Rows;
+    #[pymodule_export]
+    use super::scores::{Cases, case_names};
+    #[pymodule_export]
+    use super::stream::{Row, Stream};
+    #[pymodule_export]
+    use super::survey::basins;
+    #[pymodule_export]
+    use super::system::{System, system_names};
+}

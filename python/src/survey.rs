@@ -1,0 +1,104 @@
+//! The oscillator's attractors and their basins.
+
+use crate::dynamics::MOST_PERIODS_OF_AN_ORBIT;
+use crate::failure::value;
+use crate::long_work::interruptible;
+use crate::oscillator::{MAX_PERIODS, Oscillator};
+use crate::rows::table;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use percuss::dynamics::attractor::{Basins, Grid, Label, SearchLimits, Window};
+use percuss::dynamics::strobe::StrobeMap;
+use pyo3::IntoPyObject;
+use pyo3::prelude::{Bound, PyResult, Python, pyfunction};
+
+/// The most cells along a side of a grid.
+const MOST_CELLS: u32 = 65_536;
+
+/// The most cells of a grid.
+const MOST_STARTS: u64 = 1 << 28;
+
+/// The attractor that each start of a grid reaches.
+#[derive(IntoPyObject)]
+pub(crate) struct Surveyed<'py> {
+    p: Bound<'py, PyArray1<f64>>,
+    y: Bound<'py, PyArray1<f64>>,
+    labels: Bound<'py, PyArray2<i32>>,
+    attractors: Vec<Found<'py>>,
+    escaping: f64,
+    unresolved: f64,
+}
+
+/// An attractor.
+#[derive(IntoPyObject)]
+pub(crate) struct Found<'py> {
+    kind: &'static str,
+    period: Option<u32>,
+    fraction: f64,
+    fraction_error: f64,
+    points: Bound<'py, PyArray2<f64>>,
+    drift_per_period: f64,
+    drift_standard_error: f64,
+    lyapunov_per_period: f64,
+    lyapunov_error: f64,
+}
+
+/// The attractors of a grid of starts, and the label of each start.
+#[pyfunction]
+pub(crate) fn basins<'py>(
+    py: Python<'py>,
+    oscillator: &Oscillator,
+    window: ([f64; 2], [f64; 2]),
+    grid: [u32; 2],
+    transient: u64,
+    max_period: u32,
+) -> PyResult<Surveyed<'py>> {
+    let ((p, y), [columns, rows]) = (window, grid);
+    let window = Window { p, y };
+    window.check().map_err(value)?;
+    let is_side = |it: u32| (1..=MOST_CELLS).contains(&it);
+    if !(is_side(columns) && is_side(rows) && u64::from(columns) * u64::from(rows) <= MOST_STARTS) {
+        return Err(value(format!(
+            "grid = ({columns}, {rows}) is not accepted: 1 to {MOST_CELLS} each, and at most \
+             {MOST_STARTS} starts, are"
+        )));
+    }
+    if !(1..=MAX_PERIODS).contains(&transient) {
+        return Err(value(format!(
+            "transient = {transient} is not accepted: 1 to {MAX_PERIODS} are"
+        )));
+    }
+    if !(1..=MOST_PERIODS_OF_AN_ORBIT).contains(&max_period) {
+        return Err(value(format!(
+            "max_period = {max_period} is not accepted: 1 to {MOST_PERIODS_OF_AN_ORBIT} are"
+        )));
+    }
+    let Oscillator { model, start, entry } = oscillator;
+    let map = StrobeMap::new(*model, entry.instant);
+    let grid = Grid { window, columns, rows, q: start.q.unwrap_or(0.0) };
+    let limits = SearchLimits { transient, max_period };
+    let found = interruptible(py, |stop| Basins::of(&map, &grid, limits, &|_| stop.look()))?;
+    let labels = found.labels.iter().map(|it| it.number()).collect();
+    let labels = PyArray1::from_vec(py, labels).reshape([rows as usize, columns as usize])?;
+    let attractors = found.attractors.iter().enumerate().map(|(n, it)| {
+        let label = Label::Attractor(n);
+        Ok(Found {
+            kind: it.kind.as_str(),
+            period: it.period(),
+            fraction: found.fraction(label),
+            fraction_error: found.fraction_error(label),
+            points: table(py, it.points.concat(), 3)?,
+            drift_per_period: it.drift_per_period,
+            drift_standard_error: it.drift_standard_error,
+            lyapunov_per_period: it.lyapunov_per_period,
+            lyapunov_error: it.lyapunov_error,
+        })
+    });
+    Ok(Surveyed {
+        p: PyArray1::from_vec(py, grid.p()),
+        y: PyArray1::from_vec(py, grid.y()),
+        labels,
+        attractors: attractors.collect::<PyResult<_>>()?,
+        escaping: found.fraction(Label::Escaping),
+        unresolved: found.fraction(Label::Unresolved),
+    })
+}

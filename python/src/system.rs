@@ -1,0 +1,260 @@
+//! A system: read, changed, and run.
+
+use crate::asked::{Asked, Failure, Shared};
+use crate::collect::{End, Kept, Limits, Value};
+use crate::failure::{arguments, value};
+use crate::long_work::Patience;
+use crate::motion::Beginning;
+use crate::rows::{Numbers, Rows};
+use crate::stream::Stream;
+use percuss::SystemError;
+use percuss::affine::{BITS, LONGEST, SystemFile};
+use percuss_validation::systems::{SYSTEMS, named};
+use pyo3::prelude::{PyResult, Python, pyclass, pyfunction, pymethods};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The most bits that a run may take.
+const MOST_BITS: u32 = BITS[BITS.len() - 1];
+
+/// The most significant digits that may be asked for.
+const MOST_DIGITS: usize = 300;
+
+/// A piecewise-affine system.
+#[pyclass(frozen, module = "percuss._percuss")]
+pub(crate) struct System {
+    file: SystemFile,
+    shared: Arc<Shared>,
+}
+
+impl System {
+    fn of(file: SystemFile) -> Result<Self, SystemError> {
+        let system = file.system()?;
+        let shared = Arc::new(Shared { system, directions: Default::default() });
+        Ok(Self { file, shared })
+    }
+
+    /// The run that is asked for, whose numbers are checked.
+    fn asked(
+        &self,
+        (until, count, max_events): (Option<f64>, Option<usize>, Option<usize>),
+        (digits, max_bits): (usize, Option<u32>),
+        backward: bool,
+    ) -> PyResult<Asked> {
+        let system = &self.shared.system;
+        let start = system.start().map_err(value)?.time.to_f64();
+        for (name, number) in [("count", count), ("max_events", max_events)] {
+            if number == Some(0) {
+                return Err(value(format!("{name} = 0 is not accepted: 1 or more is")));
+            }
+        }
+        if !(1..=MOST_DIGITS).contains(&digits) {
+            return Err(value(format!(
+                "digits = {digits} is not accepted: 1 to {MOST_DIGITS} are"
+            )));
+        }
+        let bits = max_bits.unwrap_or(MOST_BITS);
+        if !(BITS[0]..=MOST_BITS).contains(&bits) {
+            let [least, most] = [BITS[0], MOST_BITS];
+            return Err(value(format!("max_bits = {bits} is not accepted: {least} to {most} are")));
+        }
+        let direction = if backward { -1.0 } else { 1.0 };
+        let ahead = |until: f64| direction * (until - start);
+        let until = match until {
+            None => start + direction * LONGEST * system.time_scale,
+            Some(until) if until.is_finite() && ahead(until) >= 0.0 => until,
+            Some(until) => {
+                let side = if backward { "before" } else { "after" };
+                return Err(value(format!(
+                    "until = {until} is not accepted: a finite time at or {side} the start at \
+                     {start} is"
+                )));
+            }
+        };
+        let limits = Limits { count, most: max_events, time_scale: system.time_scale };
+        Ok(Asked { until, limits, digits, max_bits: bits, backward })
+    }
+}
+
+/// All rows of a run.
+fn all<V: Value + Beginning>(
+    run: impl FnOnce(&mut dyn FnMut(Kept<V>) -> Result<(), Failure>) -> Result<End, Failure>,
+) -> Result<(Vec<Kept<V>>, End), Failure> {
+    let (mut rows, mut patience) = (Vec::new(), Patience::new());
+    let end = run(&mut |row| {
+        rows.push(row);
+        patience.step().map_err(Failure::Python)
+    })?;
+    Ok((rows, end))
+}
+
+#[pymethods]
+impl System {
+    /// Reads the text of a system's file; errors say `place` and the line.
+    #[staticmethod]
+    fn parse(place: &str, text: &str) -> PyResult<Self> {
+        SystemFile::read(place, text).and_then(Self::of).map_err(value)
+    }
+
+    /// The system of the program that has this name, if there is one.
+    #[staticmethod]
+    fn named(name: &str) -> PyResult<Option<Self>> {
+        let read = |text| SystemFile::read(name, text).and_then(Self::of).map_err(value);
+        named(name).map(read).transpose()
+    }
+
+    /// The system with other values of some parameters.
+    fn with_parameters(&self, values: BTreeMap<String, f64>) -> PyResult<Self> {
+        let mut file = self.file.clone();
+        for (name, number) in values {
+            if !number.is_finite() {
+                return Err(value(format!(
+                    "{name} = {number} is not accepted: a finite number is"
+                )));
+            }
+            file.set(&name, number, &format!("{name} = {number}")).map_err(value)?;
+        }
+        Self::of(file).map_err(value)
+    }
+
+    /// The system with the start of a text that holds the table `[start]`.
+    fn with_start(&self, text: &str) -> PyResult<Self> {
+        let mut file = self.file.clone();
+        file.replace_from("start", text, false).map_err(value)?;
+        Self::of(file).map_err(value)
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.shared.system.name
+    }
+
+    #[getter]
+    fn why(&self) -> &str {
+        &self.shared.system.why
+    }
+
+    #[getter]
+    fn source(&self) -> &str {
+        &self.shared.system.source
+    }
+
+    #[getter]
+    fn trouble(&self) -> Vec<String> {
+        self.shared.system.trouble.clone()
+    }
+
+    #[getter]
+    fn states(&self) -> Vec<String> {
+        self.shared.system.states.clone()
+    }
+
+    #[getter]
+    fn modes(&self) -> Vec<String> {
+        self.shared.system.modes.iter().map(|it| it.name.clone()).collect()
+    }
+
+    #[getter]
+    fn parameters(&self) -> BTreeMap<String, f64> {
+        self.shared.system.parameters.clone()
+    }
+
+    #[getter]
+    fn time_scale(&self) -> f64 {
+        self.shared.system.time_scale
+    }
+
+    /// The angular frequency of the forcing, if there is one.
+    #[getter]
+    fn omega(&self) -> Option<f64> {
+        self.shared.system.forcing.as_ref().map(|it| it.omega.to_f64())
+    }
+
+    /// The names of all events, each once.
+    #[getter]
+    fn event_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for mode in &self.shared.system.modes {
+            let until = mode.until.iter().map(|it| &it.name);
+            for name in until.chain(mode.watch.iter().map(|it| &it.name)) {
+                if !names.contains(name) {
+                    names.push(name.clone());
+                }
+            }
+        }
+        names
+    }
+
+    /// The time at which runs start, if the system has a start.
+    #[getter]
+    fn start_time(&self) -> Option<f64> {
+        self.shared.system.start.as_ref().map(|it| it.time.to_f64())
+    }
+
+    /// A run with proved digits.
+    #[pyo3(signature = (until, count, digits, max_bits, max_events, backward))]
+    #[expect(clippy::too_many_arguments, reason = "the face in Python gives them names")]
+    fn events(
+        &self,
+        py: Python<'_>,
+        until: Option<f64>,
+        count: Option<usize>,
+        digits: usize,
+        max_bits: Option<u32>,
+        max_events: Option<usize>,
+        backward: bool,
+    ) -> PyResult<Rows> {
+        let asked = self.asked((until, count, max_events), (digits, max_bits), backward)?;
+        one_length(until, count)?;
+        let shared = &self.shared;
+        let (rows, end) = py.detach(|| all(|keep| shared.proved(asked, keep)))?;
+        Ok(Rows::new(Arc::clone(shared), Numbers::Proved(rows), end, asked))
+    }
+
+    /// A run in f64.
+    #[pyo3(signature = (until, count, max_events, backward))]
+    fn simulate(
+        &self,
+        py: Python<'_>,
+        until: Option<f64>,
+        count: Option<usize>,
+        max_events: Option<usize>,
+        backward: bool,
+    ) -> PyResult<Rows> {
+        let asked = self.asked((until, count, max_events), (MOST_DIGITS, None), backward)?;
+        one_length(until, count)?;
+        let shared = &self.shared;
+        let (rows, end) = py.detach(|| all(|keep| shared.plain(asked, keep)))?;
+        Ok(Rows::new(Arc::clone(shared), Numbers::Plain(rows), end, asked))
+    }
+
+    /// The rows of a run with proved digits, one after the other, none of which is kept.
+    #[pyo3(signature = (until, count, digits, max_bits, backward))]
+    fn stream(
+        &self,
+        until: Option<f64>,
+        count: Option<usize>,
+        digits: usize,
+        max_bits: Option<u32>,
+        backward: bool,
+    ) -> PyResult<Stream> {
+        let asked = self.asked((until, count, None), (digits, max_bits), backward)?;
+        if until.is_some() && count.is_some() {
+            return Err(arguments("until and count exclude each other: accepted is one of them"));
+        }
+        Stream::start(Arc::clone(&self.shared), asked, digits)
+    }
+}
+
+fn one_length(until: Option<f64>, count: Option<usize>) -> PyResult<()> {
+    match (until, count) {
+        (Some(_), None) | (None, Some(_)) => Ok(()),
+        _ => Err(arguments("a run needs its length: accepted is one of until and count")),
+    }
+}
+
+/// The names of the systems inside the program.
+#[pyfunction]
+pub(crate) fn system_names() -> Vec<&'static str> {
+    SYSTEMS.iter().map(|(name, _)| *name).collect()
+}

@@ -1,0 +1,46 @@
+"""The pytest plugin."""
+
+import pytest
+
+pytest.importorskip("scipy")
+
+SOLVER = "--percuss=scipy.integrate:solve_ivp"
+ASKED = ("--percuss-method=RK45", "--percuss-cases=table1-first-row", "--percuss-rtol=1e-6")
+WRONG = ("--percuss-method=DOP853", "--percuss-cases=small-b", "--percuss-rtol=1e-6")
+
+
+def test_each_row_is_a_test(pytester):
+    pytester.makepyfile("def test_own():\n    pass\n")
+    done = pytester.runpytest_subprocess(SOLVER, *ASKED, "-v")
+    done.assert_outcomes(passed=2)
+    done.stdout.fnmatch_lines(["*table1-first-row?scipy-rk45-1e-06*"])
+
+
+def test_a_row_out_of_bounds_fails_with_its_reason(pytester):
+    done = pytester.runpytest_subprocess(SOLVER, *WRONG, "--percuss-setup=documentation")
+    done.assert_outcomes(failed=1)
+    done.stdout.fnmatch_lines(["*small-b: scipy-dop853-default at 1e-6: fail*"])
+
+
+def test_declared_shortcomings_have_to_fail(pytester):
+    lines = "small-b@1e-06 steps over two events\ntable1-first-row it has none\n"
+    known = f"--percuss-known={pytester.makefile('.txt', known=lines)}"
+    pytester.runpytest_subprocess(SOLVER, *WRONG, known).assert_outcomes(xfailed=1)
+    pytester.runpytest_subprocess(SOLVER, *ASKED, known).assert_outcomes(failed=1)
+
+
+def test_the_report_is_a_folder(pytester):
+    pytester.runpytest_subprocess(SOLVER, *ASKED, "--percuss-out=report").assert_outcomes(passed=1)
+    assert (pytester.path / "report/report.html").exists()
+
+
+def test_without_the_option_nothing_changes(pytester):
+    pytester.makepyfile("def test_own():\n    pass\n")
+    pytester.runpytest_subprocess().assert_outcomes(passed=1)
+
+
+@pytest.mark.parametrize("name", ["scipy", "no.such:solve", "scipy.integrate:no_such"])
+def test_a_name_of_no_solver_is_told(pytester, name):
+    done = pytester.runpytest_subprocess(f"--percuss={name}")
+    assert done.ret == pytest.ExitCode.USAGE_ERROR
+    done.stderr.fnmatch_lines([f"*--percuss={name}*"])
