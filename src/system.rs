@@ -18,8 +18,8 @@
 //! ```
 
 pub use crate::affine::{
-    Direction, Exponents, Expression, Forcing, Guard, LARGEST_DIMENSION, Mode, ModeBuilder,
+    Direction, Exponents, Expression, Forcing, Guard, LARGEST_DIMENSION, Mode, ModeBuilder, Name,
     NoOrbit, NoReturn, Orbit, Passage, Place, RationalError, Return, Returns, Row, Section,
-    SectionMap, StartPoint, Successor, SystemBuilder, SystemFile, TROUBLE, Until, UntilBuilder,
-    Watch,
+    SectionMap, StartPoint, Successor, SystemBuilder, SystemFile, TROUBLE, Tangent, Until,
+    UntilBuilder, Watch,
 };

@@ -133,7 +133,7 @@ const PACKAGES: [Package; 8] = [
 
 /// The rooms of `src/affine/`, each allowed to use those before it. What the folder exports comes
 /// from all of them.
-const AFFINE_ROOMS: [&str; 13] = [
+const AFFINE_ROOMS: [&str; 14] = [
     "model",
     "zeros",
     "arithmetic",
@@ -143,6 +143,7 @@ const AFFINE_ROOMS: [&str; 13] = [
     "first_crossing",
     "solver",
     "run",
+    "gradient",
     "events",
     "returns",
     "gallery",

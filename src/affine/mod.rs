@@ -6,12 +6,13 @@
 //! the tests use it as it is.
 
 // The rooms, each of which uses only those before it: model, zeros, arithmetic, modal, closed_form,
-// guards, first_crossing, solver, run, events, returns; gallery is beside them.
+// guards, first_crossing, solver, run, gradient, events, returns; gallery is beside them.
 mod arithmetic;
 mod closed_form;
 pub(crate) mod events;
 mod first_crossing;
 pub mod gallery;
+mod gradient;
 mod guards;
 mod modal;
 mod model;
@@ -24,6 +25,7 @@ pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 pub use arithmetic::clock::Time;
 pub use events::{BITS, LONGEST};
+pub use gradient::walk::{Gradient, NoGradient, Walk};
 pub use guards::track::SearchWork;
 pub use model::builder::{Expression, ModeBuilder, SystemBuilder, UntilBuilder};
 pub use model::error::SystemError;
@@ -33,6 +35,7 @@ pub use model::system::{
     Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, TROUBLE,
     Until, Watch, is_unit,
 };
+pub use model::tangent::{Name, Tangent};
 pub use returns::exponents::Exponents;
 pub use returns::map::SectionMap;
 pub use returns::orbit::{NoOrbit, Orbit};

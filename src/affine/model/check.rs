@@ -195,7 +195,7 @@ impl ModeCheck<'_> {
 /// Refuses coefficients that are too long, too large or too small.
 fn check_numbers(numbers: &[Rational]) -> Result<(), String> {
     numbers.iter().try_for_each(form::check_size)?;
-    form::check_range(numbers)
+    form::check_range(numbers.iter())
 }
 
 fn length(item: &str, found: usize, accepted: usize) -> Result<(), SystemError> {

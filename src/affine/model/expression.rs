@@ -1,6 +1,7 @@
 //! Affine expressions of a system: a reader for `+ - * / ^`, integers, names and
 //! parentheses, whose results are exact.
 
+use super::dual::Dual;
 use super::form::Form;
 use crate::affine::model::rational::Rational;
 
@@ -88,7 +89,7 @@ impl Reader<'_> {
 
     fn signed(&mut self) -> Result<Form, String> {
         if self.takes('-') {
-            return self.nested(|reader| Ok(reader.signed()?.times_number(&-Rational::ONE)));
+            return self.nested(|reader| Ok(reader.signed()?.times_number(&-&Dual::ONE)));
         }
         self.power()
     }
@@ -125,7 +126,9 @@ impl Reader<'_> {
         let digits = self.digits();
         let states = self.scope.states();
         match digits.parse::<u64>() {
-            Ok(integer) if integer <= 1 << 63 => Ok(Form::number(states, Rational::from(integer))),
+            Ok(integer) if integer <= 1 << 63 => {
+                Ok(Form::number(states, Dual::fixed(Rational::from(integer))))
+            }
             _ if digits.is_empty() => Err(self.nothing()),
             _ => Err(format!("{digits} is too large: integers up to 2^63 are accepted")),
         }

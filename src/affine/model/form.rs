@@ -1,6 +1,7 @@
 //! Affine forms with exact coefficients: rational combinations of the states, cos theta, sin theta
 //! and 1.
 
+use super::dual::Dual;
 use crate::affine::model::rational::Rational;
 
 /// The largest number of bits of a coefficient's numerator or denominator.
@@ -11,30 +12,32 @@ const LARGEST_POWER: usize = 1000;
 
 /// The coefficients of the states, then of cos theta, sin theta and 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Form(pub Vec<Rational>);
+pub(super) struct Form(pub Vec<Dual>);
 
 impl Form {
     /// The form that is zero.
     pub fn zero(states: usize) -> Self {
-        Self(vec![Rational::ZERO; states + 3])
+        Self(vec![Dual::ZERO; states + 3])
     }
 
     /// The constant form of a number.
-    pub fn number(states: usize, value: Rational) -> Self {
-        Self::unit(states, states + 2).times_number(&value)
+    pub fn number(states: usize, value: Dual) -> Self {
+        let mut form = Self::zero(states);
+        form.0[states + 2] = value;
+        form
     }
 
     /// A single one of the states, cos theta, sin theta or 1, by its index.
     pub fn unit(states: usize, index: usize) -> Self {
         let mut form = Self::zero(states);
-        form.0[index] = Rational::ONE;
+        form.0[index] = Dual::ONE;
         form
     }
 
     /// The number that the form is, if it has neither states nor cos theta or sin theta.
-    pub fn constant(&self) -> Option<&Rational> {
+    pub fn constant(&self) -> Option<&Dual> {
         let (last, others) = self.0.split_last()?;
-        others.iter().all(Rational::is_zero).then_some(last)
+        others.iter().all(Dual::is_zero).then_some(last)
     }
 
     /// Whether the form depends on a state.
@@ -54,7 +57,7 @@ impl Form {
     }
 
     /// `self * factor`.
-    pub fn times_number(&self, factor: &Rational) -> Self {
+    pub fn times_number(&self, factor: &Dual) -> Self {
         Self(self.0.iter().map(|it| it * factor).collect())
     }
 
@@ -72,8 +75,10 @@ impl Form {
     /// The quotient `self / divisor` by a number.
     pub fn over(&self, divisor: &Self) -> Result<Self, String> {
         match divisor.constant() {
-            Some(divisor) if divisor.is_zero() => Err("a division by zero".to_owned()),
-            Some(divisor) => Ok(self.times_number(&(Rational::ONE / divisor))),
+            Some(divisor) => match divisor.inverse() {
+                Some(inverse) => Ok(self.times_number(&inverse)),
+                None => Err("a division by zero".to_owned()),
+            },
             None => Err("a divisor with a state, cos or sin in it is not accepted: expressions \
                          are affine"
                 .to_owned()),
@@ -90,30 +95,32 @@ impl Form {
                     .to_owned())
             };
         };
-        let mut power = Rational::ONE;
+        let mut power = Dual::ONE;
         for _ in 0..exponent {
-            power *= base;
-            check_size(&power)?;
+            power = &power * base;
+            check_sizes(&power)?;
         }
         Ok(Self::number(self.0.len() - 3, power))
     }
 
     /// Refuses coefficients of too many bits.
     pub fn check_size(&self) -> Result<(), String> {
-        self.0.iter().try_for_each(check_size)
+        self.0.iter().try_for_each(check_sizes)
     }
 
     /// Refuses coefficients beyond the range of f64.
     pub fn check_range(&self) -> Result<(), String> {
-        check_range(&self.0)
+        check_range(self.0.iter().map(|it| &it.value))
     }
 }
 
 /// Refuses coefficients beyond the range of f64.
-pub(super) fn check_range(coefficients: &[Rational]) -> Result<(), String> {
+pub(super) fn check_range<'a>(
+    mut coefficients: impl Iterator<Item = &'a Rational>,
+) -> Result<(), String> {
     let far =
         |(above, below): &(usize, usize)| *above > 0 && above.abs_diff(*below) > LARGEST_POWER;
-    let Some((above, below)) = coefficients.iter().map(Rational::bits).find(far) else {
+    let Some((above, below)) = coefficients.by_ref().map(Rational::bits).find(far) else {
         return Ok(());
     };
     let (sign, power) = (if above < below { "-" } else { "" }, above.abs_diff(below));
@@ -121,6 +128,11 @@ pub(super) fn check_range(coefficients: &[Rational]) -> Result<(), String> {
         "a coefficient of about 2^{sign}{power} is not accepted: 0 is, and sizes from \
              2^-{LARGEST_POWER} to 2^{LARGEST_POWER}"
     ))
+}
+
+/// Refuses a number, or a derivative of one, of too many bits.
+fn check_sizes(number: &Dual) -> Result<(), String> {
+    check_size(&number.value).and_then(|()| check_size(&number.rate))
 }
 
 /// Refuses a number of too many bits.

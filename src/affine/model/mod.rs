@@ -6,11 +6,13 @@
 //! a guard ([`expression`]) becomes a form with rational coefficients ([`form`], of
 //! [`mod@rational`] numbers), and what is refused becomes an [`error`] with its place in the
 //! [`source`]. [`check`] refuses systems that were changed by hand and are none any more. Read
-//! `system` first, then `file` and `build`.
+//! `system` first, then `file` and `build`. Coefficients are read with their derivatives
+//! ([`dual`]), which [`tangent`] gives out.
 
 mod build;
 pub mod builder;
 mod check;
+mod dual;
 pub mod ending;
 pub mod error;
 mod expression;
@@ -22,3 +24,4 @@ mod scalar;
 mod source;
 mod start;
 pub mod system;
+pub mod tangent;

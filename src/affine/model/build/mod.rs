@@ -3,12 +3,13 @@
 mod mode;
 mod names;
 
+use crate::affine::model::dual::Dual;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::file::{GivenParameter, StartTable, SystemFile};
 use crate::affine::model::naming::unknown_mode;
-use crate::affine::model::rational::Rational;
 use crate::affine::model::scalar::Scalar;
 use crate::affine::model::system::{LARGEST_COUNT, LARGEST_DIMENSION, StartPoint, System, TROUBLE};
+use crate::affine::model::tangent::Name;
 use mode::ModeReader;
 use names::{Accepts, Names};
 use std::collections::BTreeMap;
@@ -20,7 +21,12 @@ impl SystemFile {
     /// # Errors
     /// Whatever does not make sense, with its place and what is accepted.
     pub fn system(&self) -> Result<System, SystemError> {
-        system(self)
+        system(self, None)
+    }
+
+    /// The system with the derivatives by a name in the place of its coefficients.
+    pub(in crate::affine::model) fn derivatives(&self, by: &Name) -> Result<System, SystemError> {
+        system(self, Some(by))
     }
 }
 
@@ -33,8 +39,8 @@ fn trouble(file: &SystemFile, kind: &Spanned<String>) -> Result<String, SystemEr
     Err(file.error(&kind.span(), &format!("trouble {what}")))
 }
 
-fn system(file: &SystemFile) -> Result<System, SystemError> {
-    let mut names = Names::of(file)?;
+fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
+    let mut names = Names::of(file, by)?;
     let forcing = names.forcing()?;
     names.check_lets()?;
     let tables = &file.tables;
@@ -118,8 +124,9 @@ fn start_point(
     names.accepts = Accepts::Forcing;
     let time = match table.entries.get("t") {
         Some(GivenParameter { value, place }) => names.constant_at("t", value, place)?,
-        _ => Rational::ZERO,
+        _ => Dual::ZERO,
     };
+    let time = names.wanted(time);
     let states = names.states.clone();
     let mut state = Vec::with_capacity(states.len());
     for name in &states {
@@ -133,7 +140,9 @@ fn start_point(
             return Err(SystemError::at(place, &format!("{name}: {what}")));
         }
         let [.., cos, sin, one] = form.0.as_slice() else { continue };
-        state.push([cos.clone(), sin.clone(), one.clone()]);
+        let mut entry = [cos, sin, one].map(|it| names.wanted(it.clone()));
+        entry[2] += names.start_rate(name);
+        state.push(entry);
     }
     let surplus = |key: &&String| !(["mode", "t"].contains(&key.as_str()) || states.contains(key));
     if let Some(key) = table.entries.keys().find(surplus) {

@@ -1,6 +1,7 @@
 //! From the tables of a mode to its equations, events and successors.
 
 use super::names::Names;
+use crate::affine::model::dual::Dual;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::expression::expression;
 use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
@@ -17,6 +18,7 @@ use toml::Spanned;
 pub(super) struct ModeReader<'a> {
     pub(super) file: &'a SystemFile,
     pub(super) places: &'a BTreeMap<String, usize>,
+    /// The frequency, or its derivative, of a forced system.
     pub(super) omega: Option<&'a Rational>,
 }
 
@@ -98,22 +100,24 @@ impl ModeReader<'_> {
                 })
                 .and_then(|index| Ok((index, names.affine(value)?))),
         };
-        let read = read.and_then(|(state, form)| Ok((state, self.row(form)?)));
+        let read = read.and_then(|(state, form)| Ok((state, self.row(names, form)?)));
         read.map_err(|what| self.file.error(&assignment.span(), &what))
     }
 
-    fn row(&self, form: Form) -> Result<Row, String> {
+    fn row(&self, names: &Names, form: Form) -> Result<Row, String> {
         form.check_range()?;
         let states = form.0.len() - 3;
         let forced = self.omega.is_some();
-        let kept = |(index, it)| (forced || index < states || index == states + 2).then_some(it);
+        let kept = |(index, it)| {
+            (forced || index < states || index == states + 2).then(|| names.wanted(it))
+        };
         Ok(form.0.into_iter().enumerate().filter_map(kept).collect())
     }
 
     /// The row that is positive where a condition holds.
     fn condition(&self, names: &mut Names, it: &Spanned<Condition>) -> Result<Row, SystemError> {
         let form = names.condition(it.get_ref());
-        let row = form.and_then(|form| self.row(form));
+        let row = form.and_then(|form| self.row(names, form));
         row.map_err(|what| self.file.error(&it.span(), &what))
     }
 
@@ -139,9 +143,11 @@ impl ModeReader<'_> {
     ) -> Result<Until, SystemError> {
         let guard = self.guard(names, &table.guard)?;
         let dimension = guard.len();
+        // What a reset leaves as it is does so whatever the parameters are.
+        let one = names.wanted(Dual::ONE);
         let unit = |index| {
             let mut row = vec![Rational::ZERO; dimension];
-            row[index] = Rational::ONE;
+            row[index] = one.clone();
             row
         };
         let mut reset: Vec<Row> = (0..dimension).map(unit).collect();

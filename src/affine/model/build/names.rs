@@ -1,5 +1,6 @@
 //! The values of the names in a file's expressions.
 
+use crate::affine::model::dual::Dual;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::expression::{Scope, condition, expression};
 use crate::affine::model::file::{GivenParameter, SystemFile};
@@ -8,6 +9,7 @@ use crate::affine::model::naming::check_symbol;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::scalar::{Condition, Scalar};
 use crate::affine::model::system::Forcing;
+use crate::affine::model::tangent::Name;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 
@@ -21,6 +23,8 @@ pub(super) struct Names<'a> {
     open: Vec<String>,
     /// The kinds of names that the expression being read may use.
     pub(super) accepts: Accepts,
+    /// The name by which coefficients are to be differentiated, if they are.
+    by: Option<&'a Name>,
 }
 
 /// The kinds of names that an expression may use.
@@ -35,7 +39,7 @@ pub(super) enum Accepts {
 }
 
 impl<'a> Names<'a> {
-    pub(super) fn of(file: &'a SystemFile) -> Result<Self, SystemError> {
+    pub(super) fn of(file: &'a SystemFile, by: Option<&'a Name>) -> Result<Self, SystemError> {
         let tables = &file.tables;
         if *tables.schema.get_ref() != 1 {
             return Err(file.error(&tables.schema.span(), "the schema that is accepted is 1"));
@@ -47,13 +51,15 @@ impl<'a> Names<'a> {
         }
         let (forced, values) = (tables.forcing.is_some(), BTreeMap::new());
         let open = Vec::new();
-        let mut names = Self { file, states, forced, values, open, accepts: Accepts::States };
+        let mut names = Self { file, states, forced, values, open, accepts: Accepts::States, by };
         names.check_names()?;
         for (name, GivenParameter { value, place }) in &file.parameters {
             let number = value.number().ok_or_else(|| {
                 let what = "a parameter is a finite number; an expression is given as a definition";
                 SystemError::at(place, &format!("{name}: {what}"))
             })?;
+            let rate = Name::is_parameter(by, name);
+            let number = Dual { value: number, rate };
             names.values.insert(name.clone(), Form::number(names.states.len(), number));
         }
         Ok(names)
@@ -94,14 +100,24 @@ impl<'a> Names<'a> {
         let omega = self.constant("omega", &table.omega)?;
         let phi = table.phi.as_ref().map(|it| self.constant("phi", it)).transpose()?;
         let phi = phi.unwrap_or_default();
-        if omega <= Rational::ZERO {
+        if omega.value <= Rational::ZERO {
             return Err(self.file.error(&table.omega.span(), "omega is accepted above 0"));
         }
         for (name, value) in [("omega", &omega), ("phi", &phi)] {
             let form = Form::number(self.states.len(), value.clone());
             self.values.insert(name.to_owned(), form);
         }
-        Ok(Some(Forcing { omega, phi }))
+        Ok(Some(Forcing { omega: self.wanted(omega), phi: self.wanted(phi) }))
+    }
+
+    /// The value of a coefficient, or its derivative where that is what is read.
+    pub(super) fn wanted(&self, coefficient: Dual) -> Rational {
+        if self.by.is_some() { coefficient.rate } else { coefficient.value }
+    }
+
+    /// The derivative of a state's entry at the start, beyond that of its expression.
+    pub(super) fn start_rate(&self, state: &str) -> Rational {
+        Name::is_start(self.by, state)
     }
 
     pub(super) fn scales(&mut self) -> Result<Vec<f64>, SystemError> {
@@ -124,7 +140,7 @@ impl<'a> Names<'a> {
     }
 
     fn positive(&mut self, key: &str, scalar: &Spanned<Scalar>) -> Result<f64, SystemError> {
-        let value = self.constant(key, scalar)?.to_f64();
+        let value = self.constant(key, scalar)?.value.to_f64();
         if value > 0.0 && value.is_finite() {
             return Ok(value);
         }
@@ -132,7 +148,7 @@ impl<'a> Names<'a> {
     }
 
     /// A number, or an expression of parameters.
-    fn constant(&mut self, key: &str, scalar: &Spanned<Scalar>) -> Result<Rational, SystemError> {
+    fn constant(&mut self, key: &str, scalar: &Spanned<Scalar>) -> Result<Dual, SystemError> {
         let place = self.file.source.place(&scalar.span());
         self.constant_at(key, scalar.get_ref(), &place)
     }
@@ -142,7 +158,7 @@ impl<'a> Names<'a> {
         key: &str,
         scalar: &Scalar,
         place: &str,
-    ) -> Result<Rational, SystemError> {
+    ) -> Result<Dual, SystemError> {
         let before = std::mem::replace(&mut self.accepts, Accepts::Constants);
         let form = self.affine(scalar);
         self.accepts = before;
@@ -158,7 +174,7 @@ impl<'a> Names<'a> {
             Scalar::Row(entries) => self.row(entries)?,
             other => other
                 .number()
-                .map(|number| Form::number(self.states.len(), number))
+                .map(|number| Form::number(self.states.len(), Dual::fixed(number)))
                 .ok_or_else(|| "a finite number is accepted".to_owned())?,
         };
         form.check_range()?;
@@ -206,8 +222,7 @@ impl<'a> Names<'a> {
             ));
         }
         let before = std::mem::replace(&mut self.accepts, Accepts::Constants);
-        let numbers: Result<Vec<Rational>, String> =
-            entries.iter().map(|it| self.factor(it)).collect();
+        let numbers: Result<Vec<Dual>, String> = entries.iter().map(|it| self.factor(it)).collect();
         self.accepts = before;
         let numbers = numbers?;
         let places = (0..states + 3).filter(|n| self.forced || *n < states || *n == states + 2);
@@ -219,7 +234,7 @@ impl<'a> Names<'a> {
     }
 
     /// An entry of a row.
-    fn factor(&mut self, entry: &Scalar) -> Result<Rational, String> {
+    fn factor(&mut self, entry: &Scalar) -> Result<Dual, String> {
         let what = "an entry of a row is a number or an expression of parameters";
         if matches!(entry, Scalar::Row(_)) {
             return Err(what.to_owned());

@@ -1,0 +1,198 @@
+//! Derivatives of events against differences of runs in 424 bits, which know nothing of them.
+
+use percuss::affine::{Bits424, Event, NoGradient, Solver, System, SystemFile, Walk, What};
+use percuss::number::Number;
+use percuss::system::Name;
+use percuss::{Bits212, Rational};
+
+/// Differences over steps of this share of a parameter, and of twice that: their extrapolation is
+/// off by the fourth power, 1e-41, and by what the fifth derivatives make of it.
+const STEP: i32 = -34;
+
+/// Twenty-five digits and what the differences leave: they agree much better where the motion does
+/// not amplify.
+const DIGITS: f64 = 1e-26;
+
+fn file(text: &str, set: &[(&str, f64)]) -> SystemFile {
+    let mut file = SystemFile::read("test.system.toml", text).unwrap();
+    set.iter().for_each(|(name, value)| file.set(name, *value, "test").unwrap());
+    file
+}
+
+/// The first events of a run, and its ending where it is among them.
+fn events<T: Number>(system: &System, count: usize) -> Vec<Event<T>> {
+    let solver = Solver::<T>::new(system).unwrap();
+    let start = system.start.as_ref().unwrap();
+    let until = T::exact(start.time.to_f64() + 40.0 * system.time_scale);
+    solver.run_enclosed(start, until).unwrap().take(count).collect()
+}
+
+/// Times and states of events.
+fn cells(events: &[Event<Bits424>]) -> Vec<Vec<Bits424>> {
+    let cells = |it: &Event<Bits424>| {
+        std::iter::once(it.time.value()).chain(it.state.iter().copied()).collect()
+    };
+    events.iter().map(cells).collect()
+}
+
+/// The system that differs from another by so many steps of a name, and the step.
+fn moved(text: &str, name: &Name, steps: f64) -> (System, f64) {
+    match name {
+        Name::Parameter(own) => {
+            let value = file(text, &[]).system().unwrap().parameters[own];
+            let size = if value == 0.0 { 1.0 } else { value.abs() };
+            let step = size * 2_f64.powi(STEP);
+            // A power of two of the size of the parameter's last bits.
+            let step = 2_f64.powi(step.log2().floor() as i32);
+            (file(text, &[(own, value + steps * step)]).system().unwrap(), step)
+        }
+        Name::Start(state) => {
+            let mut system = file(text, &[]).system().unwrap();
+            let step = 2_f64.powi(STEP);
+            let at = system.states.iter().position(|it| it == state).unwrap();
+            let start = system.start.as_mut().unwrap();
+            start.state[at][2] += Rational::try_from(steps * step).unwrap();
+            (system, step)
+        }
+    }
+}
+
+/// The differences of the cells of events by a name.
+fn differences(text: &str, name: &Name, count: usize) -> Vec<Vec<f64>> {
+    let at = |steps: f64| {
+        let (system, step) = moved(text, name, steps);
+        (cells(&events(&system, count)), step)
+    };
+    let ([(a, step), (b, _)], [(c, _), (d, _)]) = ([at(1.0), at(-1.0)], [at(2.0), at(-2.0)]);
+    let entry = |n: usize, k: usize| {
+        let near = a[n][k] - b[n][k];
+        let far = c[n][k] - d[n][k];
+        let eight = Bits424::exact(8.0);
+        let sum = (eight * near - far) / Bits424::exact(12.0 * step);
+        let high = sum.to_f64();
+        [high, (sum - Bits424::exact(high)).to_f64()]
+    };
+    let row = |n: usize| (0..a[n].len()).flat_map(|k| entry(n, k)).collect();
+    (0..a.len()).map(row).collect()
+}
+
+/// The derivatives of an event's time and states, each with its error.
+type Cells<T> = Result<Vec<(T, <T as Number>::Bound)>, NoGradient>;
+
+/// The derivatives of the first events by a name.
+fn gradients<T: Number>(text: &str, name: &Name, count: usize) -> Vec<Cells<T>> {
+    let file = file(text, &[]);
+    let (system, tangent) = (file.system().unwrap(), file.tangent(name).unwrap());
+    let solver = Solver::<T>::new(&system).unwrap();
+    let run = solver.run_enclosed(system.start.as_ref().unwrap(), T::exact(1e9)).unwrap();
+    let mut walk = Walk::new(&solver, &tangent, &run.start()).unwrap();
+    events::<T>(&system, count)
+        .iter()
+        .map(|it| walk.step(it))
+        .map(|it| it.map(|it| std::iter::once(it.time).chain(it.state).collect()))
+        .collect()
+}
+
+/// Compares the derivatives of some events by each name that is given.
+fn compare(text: &str, names: &[&str], count: usize) {
+    for name in names.iter().map(|it| Name::read(it)) {
+        let expected = differences(text, &name, count);
+        let found = gradients::<Bits212>(text, &name, count);
+        assert_eq!(found.len(), expected.len());
+        assert!(found.len() >= 3, "{name}: {} events", found.len());
+        for (n, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            let found = found.as_ref().unwrap_or_else(|error| panic!("{name}, {n}: {error}"));
+            // Beside the largest derivative of the row, and beside 1 where all of them are zero.
+            let size = found.iter().map(|it| it.0.to_f64().abs()).fold(0.0, f64::max);
+            let size = if size == 0.0 { 1.0 } else { size };
+            for ((value, error), expected) in found.iter().zip(expected.chunks(2)) {
+                let rest = *value - Bits212::exact(expected[0]) - Bits212::exact(expected[1]);
+                let error = Bits212::of_bound(*error).to_f64();
+                assert!(error <= 1e-30 * size, "{name}, {n}: {value:?} +- {error:e}");
+                let off = rest.to_f64().abs();
+                assert!(off <= DIGITS * size, "{name}, {n}: {value:?} {expected:?} {off:e}");
+            }
+        }
+    }
+}
+
+macro_rules! system {
+    ($name:literal) => {
+        include_str!(concat!("../../validation/systems/", $name, ".system.toml"))
+    };
+}
+
+#[test]
+fn a_bouncing_ball_by_gravity_restitution_and_speed() {
+    compare(system!("bouncing-ball"), &["g", "e", "start.v"], 6);
+}
+
+/// Thrown up from the table at speed v it is back after 2 v/g.
+#[test]
+fn the_first_impact_of_a_ball_has_its_derivatives_in_closed_form() {
+    let by = |name: &str| {
+        let found = gradients::<f64>(system!("bouncing-ball"), &Name::read(name), 1);
+        found[0].as_ref().unwrap().iter().map(|it| it.0).collect::<Vec<f64>>()
+    };
+    let near = |found: Vec<f64>, expected: [f64; 3]| {
+        let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-14, "{found:?} {expected:?}");
+    };
+    // g = 2, e = 1/2, v = 3/2: time 2 v/g, speed afterwards e v.
+    near(by("start.v"), [1.0, 0.0, 0.5]);
+    near(by("g"), [-0.75, 0.0, 0.0]);
+    near(by("e"), [0.0, 0.0, 1.5]);
+}
+
+/// The start is on the table: moved up the ball falls later, moved down it is nowhere.
+#[test]
+fn a_start_on_a_guard_has_no_derivative_by_its_height() {
+    let found = gradients::<Bits212>(system!("bouncing-ball"), &Name::read("start.x"), 3);
+    assert!(found.iter().all(|it| *it.as_ref().unwrap_err() == NoGradient::OneSided));
+}
+
+#[test]
+fn a_relay_by_all_its_parameters() {
+    let text = system!("relay-feedback");
+    let system = file(text, &[]).system().unwrap();
+    let names: Vec<&str> = system.parameters.keys().map(String::as_str).collect();
+    compare(text, &names, 5);
+}
+
+#[test]
+fn a_latched_buck_converter_by_its_parts() {
+    compare(system!("buck-converter-latched"), &["Vin", "R", "C", "T", "gain", "start.i"], 5);
+}
+
+#[test]
+fn the_percussive_oscillator_by_each_of_its_parameters() {
+    let text = system!("percussive-oscillator");
+    let system = file(text, &[]).system().unwrap();
+    let names: Vec<&str> = system.parameters.keys().map(String::as_str).collect();
+    assert!(names.len() >= 5);
+    compare(text, &names, 5);
+}
+
+#[test]
+fn a_driven_rigid_oscillator_by_its_forcing() {
+    let text = system!("rigid-impact-oscillator");
+    let system = file(text, &[]).system().unwrap();
+    let names: Vec<&str> = system.parameters.keys().map(String::as_str).collect();
+    compare(text, &names, 4);
+}
+
+#[test]
+fn the_horizon_does_not_move() {
+    let text = system!("bouncing-ball");
+    let system = file(text, &[]).system().unwrap();
+    let solver = Solver::<Bits212>::new(&system).unwrap();
+    let tangent = file(text, &[]).tangent(&Name::read("g")).unwrap();
+    let run = solver.run_enclosed(system.start.as_ref().unwrap(), Bits212::exact(0.5)).unwrap();
+    let mut walk = Walk::new(&solver, &tangent, &run.start()).unwrap();
+    let end = run.last().unwrap();
+    assert!(matches!(end.what, What::End(_)));
+    // x = v t - g t^2/2 and v = v - g t.
+    let end = walk.step(&end).unwrap();
+    let state: Vec<f64> = end.state.iter().map(|it| it.0.to_f64()).collect();
+    assert_eq!((end.time.0.to_f64(), state), (0.0, vec![-0.125, -0.5]));
+}
