@@ -12,8 +12,8 @@ import time
 
 import numpy as np
 
-# Displacements of so many roundings are none.
-ROUNDING = 64 * np.finfo(float).eps
+# Displacements of so many roundings are none: those of thousands of steps add up.
+ROUNDING = 1024 * np.finfo(float).eps
 # How much of a guard that was zero where its mode begins the first steps may hide, in tolerances:
 # of a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly.
 SIMPLE, MULTIPLE = 0.1, 10
