@@ -63,12 +63,7 @@ impl<'a, T: Number> Walk<'a, T> {
         let mut returned = self.last.time;
         while left > 0 {
             self.run.go_on_to(self.map.horizon(&returned, self.strobe));
-            let mut event = self.run.next().ok_or(NoReturn::Ended(Ending::Horizon))?;
-            let elapsed = event.time.since(&self.last.time).value();
-            if elapsed == T::zero() && event.is_horizon() {
-                // Modal co-ordinates would round it.
-                event.state.clone_from(&self.last.state);
-            }
+            let event = self.run.next().ok_or(NoReturn::Ended(Ending::Horizon))?;
             see(&self.last, &event);
             self.last = event;
             if self.returns()? {

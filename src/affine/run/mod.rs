@@ -307,10 +307,15 @@ impl<'a, T: Number> Run<'a, T> {
 
     /// Ends the run at its horizon, a time after the entry.
     fn at_horizon(&mut self, mode: usize, limit: T) {
-        let Some((mut time, state)) = self.present() else { return self.end(Ending::Undecided) };
+        let Some((mut time, mut state)) = self.present() else {
+            return self.end(Ending::Undecided);
+        };
         if limit > T::zero() {
             // The time since an entry long before is rounded; the horizon is not.
             time = self.horizon;
+        } else {
+            // Modal co-ordinates round the entry's state.
+            state = self.state;
         }
         let enclosure = self.errors_at_given_time(mode, limit, &time, &state);
         let errors = enclosure.map(|it| self.errors_near(&it, &time));

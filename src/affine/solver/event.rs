@@ -73,11 +73,6 @@ impl<T: Number> Clone for Event<T> {
 }
 
 impl<T: Number> Event<T> {
-    /// Whether the run ends here at its horizon.
-    pub(in crate::affine) fn is_horizon(&self) -> bool {
-        self.what == What::End(Ending::Horizon)
-    }
-
     /// Makes states exactly zero that are so by the model, given as bits.
     pub(in crate::affine) fn set_zeros(&mut self, states: u64) {
         for n in (0..self.state.len()).filter(|n| states >> n & 1 == 1) {
