@@ -3,7 +3,7 @@
 use super::{Arguments, stationary};
 use crate::cli::note;
 use crate::cli::shared::long_work;
-use crate::cli::shared::section::{tell_no_return, tell_undecidable};
+use crate::cli::shared::section::{RARELY, tell_no_return, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
 use anyhow::Result;
 use percuss::affine::{Exponents, NoReturn, SectionMap, Solver, System};
@@ -13,9 +13,6 @@ use std::collections::BTreeMap;
 
 /// The most returns of the transient in which the directions of small changes are found.
 const SETTLING: u64 = 200;
-
-/// The number of returns between two updates of the progress bar.
-const RARELY: u64 = 64;
 
 #[derive(Serialize)]
 struct Json<'a> {

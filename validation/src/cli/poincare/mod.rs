@@ -97,7 +97,7 @@ fn run_oscillator(arguments: &Arguments, format: Format, periods: u64) -> Result
     let strobes = section.strobes(&progress).inspect(|strobe| (last, count) = (*strobe, count + 1));
     destination.write(|out| match format {
         Format::Csv => write_csv(strobes, out),
-        Format::Npy => write_npy(strobes, periods, out),
+        Format::Npy => write_rows(strobes.map(|it| row(&it)), [periods, 4], undecidable, out),
         Format::Png => draw(strobes, &problem, &section, arguments.transient, out),
     })?;
     drop(progress);
@@ -175,17 +175,23 @@ fn write_csv(strobes: impl Iterator<Item = Entry>, out: &mut dyn Write) -> Resul
     Ok(())
 }
 
-fn write_npy(strobes: impl Iterator<Item = Entry>, count: u64, out: &mut dyn Write) -> Result<()> {
-    let options = npyz::WriteOptions::<f64>::new().default_dtype().shape(&[count, 4]);
+/// Writes rows as an array of this shape; `cut` says why there are no more than a number of them.
+fn write_rows(
+    rows: impl Iterator<Item: IntoIterator<Item = f64>>,
+    shape: [u64; 2],
+    cut: impl FnOnce(u64) -> String,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let options = npyz::WriteOptions::<f64>::new().default_dtype().shape(&shape);
     let mut writer = options.writer(out).begin_nd()?;
     let mut written = 0;
-    for strobe in strobes {
-        writer.extend(row(&strobe))?;
+    for row in rows {
+        writer.extend(row)?;
         written += 1;
     }
     // The shape stands at the beginning of the file.
-    if written < count {
-        bail!("{}; --format csv writes them", undecidable(written));
+    if written < shape[0] {
+        bail!("{}; --format csv writes them", cut(written));
     }
     Ok(writer.finish()?)
 }
@@ -198,20 +204,24 @@ fn draw(
     out: &mut dyn Write,
 ) -> Result<()> {
     let points = strobes.map(|strobe| [strobe.state.p, strobe.state.y]).collect();
-    let figure = Figure {
-        title: picture::caption(problem.model.parameters()),
-        caption: format!(
-            "{} points at \u{3c9}\u{3c4} mod 2\u{3c0} = {}, after {} forcing periods",
-            section.count, section.angle, transient
-        ),
-        columns: 1,
-        panel: (1200, 800),
-        plots: vec![Plot {
-            title: String::new(),
-            axes: ["p (displacement)".to_owned(), "y (velocity)".to_owned()],
-            window: None,
-            layers: vec![Layer::cloud(points, picture::INK)],
-        }],
-    };
+    let caption = format!(
+        "{} points at \u{3c9}\u{3c4} mod 2\u{3c0} = {}, after {} forcing periods",
+        section.count, section.angle, transient
+    );
+    let axes = ["p (displacement)".to_owned(), "y (velocity)".to_owned()];
+    draw_points(picture::caption(problem.model.parameters()), caption, axes, points, out)
+}
+
+/// Writes a picture of points of a section.
+fn draw_points(
+    title: String,
+    caption: String,
+    axes: [String; 2],
+    points: Vec<[f64; 2]>,
+    out: &mut dyn Write,
+) -> Result<()> {
+    let layers = vec![Layer::cloud(points, picture::INK)];
+    let plots = vec![Plot { title: String::new(), axes, window: None, layers }];
+    let figure = Figure { title, caption, columns: 1, panel: (1200, 800), plots };
     Ok(out.write_all(&picture::png(&figure)?)?)
 }

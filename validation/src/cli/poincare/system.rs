@@ -1,18 +1,15 @@
 //! `poincare SYSTEM`: the returns of one motion to a section.
 
-use super::{Arguments, Format, MAX_PICTURE};
+use super::{Arguments, Format, MAX_PICTURE, draw_points, write_rows};
 use crate::cli::shared::long_work::{self, Bar};
-use crate::cli::shared::section::{columns, tell_no_return, tell_undecidable};
+use crate::cli::shared::section::{RARELY, tell_no_return, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::number::shortest;
-use crate::picture::{self, Figure, Layer, Plot};
 use anyhow::{Result, bail};
-use npyz::WriterBuilder;
 use percuss::affine::{NoReturn, Return, Solver, System};
+use percuss_programs::files::printed_column;
+use std::borrow::Cow;
 use std::io::Write;
-
-/// The number of returns between two updates of the progress bar.
-const RARELY: u64 = 64;
 
 /// Writes the section; whether the motion was decided to its end.
 pub(super) fn run(
@@ -40,7 +37,11 @@ pub(super) fn run(
     let points = shown.skip(arguments.transient as usize);
     destination.write(|out| match format {
         Format::Csv => write_csv(&system, points, out),
-        Format::Npy => write_npy(&system, points, count, out),
+        Format::Npy => {
+            let cut = |written| format!("the section ends after {written} points of {count}");
+            let shape = [count, system.states.len() as u64];
+            write_rows(points.map(|it| it.state), shape, cut, out)
+        }
         Format::Png => draw(&system, points, arguments, out),
     })?;
     bar.iter().for_each(Bar::finish_and_clear);
@@ -53,34 +54,14 @@ fn write_csv(
     points: impl Iterator<Item = Return<f64>>,
     out: &mut dyn Write,
 ) -> Result<()> {
-    writeln!(out, "n,time,mode,{}", columns(&system.states).join(","))?;
+    let columns: Vec<Cow<'_, str>> = system.states.iter().map(|it| printed_column(it)).collect();
+    writeln!(out, "n,time,mode,{}", columns.join(","))?;
     for (n, point) in points.enumerate() {
         let state: Vec<_> = point.state.iter().map(|it| shortest(*it)).collect();
         let (time, mode) = (shortest(point.time), &system.modes[point.mode].name);
         writeln!(out, "{n},{time},{mode},{}", state.join(","))?;
     }
     Ok(())
-}
-
-fn write_npy(
-    system: &System,
-    points: impl Iterator<Item = Return<f64>>,
-    count: u64,
-    out: &mut dyn Write,
-) -> Result<()> {
-    let shape = [count, system.states.len() as u64];
-    let options = npyz::WriteOptions::<f64>::new().default_dtype().shape(&shape);
-    let mut writer = options.writer(out).begin_nd()?;
-    let mut written = 0;
-    for point in points {
-        writer.extend(point.state)?;
-        written += 1;
-    }
-    // The shape stands at the beginning of the file.
-    if written < count {
-        bail!("the section ends after {written} points of {count}; --format csv writes them");
-    }
-    Ok(writer.finish()?)
 }
 
 /// The plane of the first two states; of a system with one state, the returns one by one.
@@ -100,23 +81,9 @@ fn draw(
     };
     let points: Vec<[f64; 2]> = points.enumerate().map(place).collect();
     let section = arguments.section.as_ref().map_or("strobe", |it| it.text.as_str());
-    let figure = Figure {
-        title: system.name.clone(),
-        caption: format!(
-            "{} returns to {section}, after {} returns",
-            points.len(),
-            arguments.transient
-        ),
-        columns: 1,
-        panel: (1200, 800),
-        plots: vec![Plot {
-            title: String::new(),
-            axes,
-            window: None,
-            layers: vec![Layer::cloud(points, picture::INK)],
-        }],
-    };
-    Ok(out.write_all(&picture::png(&figure)?)?)
+    let caption =
+        format!("{} returns to {section}, after {} returns", points.len(), arguments.transient);
+    draw_points(system.name.clone(), caption, axes, points, out)
 }
 
 /// Refuses a picture of more points than show anything.

@@ -1,13 +1,17 @@
 //! The section of a SYSTEM's motions at which verbs of the dynamics look.
 
 use super::parse::{self, SectionChoice, Typed};
+use super::system_choice::AFTER_SYSTEM;
 use super::terminal::note;
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use percuss::Ending;
 use percuss::affine::{NoReturn, Section, SectionMap, Solver};
 
-/// How often, and how long, returns to a section are waited for.
+/// The number of returns between two updates of a progress bar.
+pub(in crate::cli) const RARELY: u64 = 64;
+
+/// Flags for the returns to a section: every N-th alone, and the longest wait for one.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "SYSTEM and its start")]
 pub(in crate::cli) struct ReturnFlags {
@@ -83,10 +87,7 @@ impl ReturnFlags {
 
 /// The line that refuses a flag of a system where none is chosen.
 pub(in crate::cli) fn without_system(flag: &str, value: &dyn std::fmt::Display) -> String {
-    format!(
-        "{flag} {value} is not accepted without SYSTEM: accepted is it after a *.system.toml, or a \
-         name that percuss systems prints"
-    )
+    format!("{flag} {value} is not accepted without SYSTEM: {AFTER_SYSTEM}")
 }
 
 /// Says that a motion has not returned as often as was asked; whether the model says so, and not
@@ -107,11 +108,4 @@ pub(in crate::cli) fn tell_undecidable(count: u64) {
     if count > 0 {
         note(&format!("{count} ties or touches are not decided by f64: the run takes one side"));
     }
-}
-
-/// The columns of states: one whose name is that of another column is `state.NAME`.
-pub(in crate::cli) fn columns(states: &[String]) -> Vec<String> {
-    let is_taken = |name: &str| ["n", "time", "mode", "event"].contains(&name);
-    let column = |it: &String| if is_taken(it) { format!("state.{it}") } else { it.clone() };
-    states.iter().map(column).collect()
 }

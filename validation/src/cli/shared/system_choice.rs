@@ -12,6 +12,10 @@ use percuss::System;
 use percuss::affine::SystemFile;
 use std::path::{Path, PathBuf};
 
+/// The place in which a flag of SYSTEM is accepted.
+pub(in crate::cli) const AFTER_SYSTEM: &str =
+    "accepted is it after a *.system.toml, or a name that percuss systems prints";
+
 /// SYSTEM, for verbs that mean the impact oscillator without it.
 #[derive(Args, Clone, Debug)]
 pub(in crate::cli) struct SystemChoice {
@@ -94,10 +98,7 @@ impl SystemFlags {
         let at = self.at.first().map(|[name, value]| format!("--at {name}={value}"));
         let mode = self.mode.as_ref().map(|it| format!("--mode {it}"));
         match set.or(start).or(at).or(mode) {
-            Some(flag) => bail!(
-                "{flag} has no effect without SYSTEM: accepted is it after a *.system.toml, or a \
-                 name that percuss systems prints"
-            ),
+            Some(flag) => bail!("{flag} has no effect without SYSTEM: {AFTER_SYSTEM}"),
             None => Ok(()),
         }
     }
