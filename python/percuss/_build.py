@@ -215,41 +215,6 @@ def _value(name: str, value: str | float) -> str:
     return _quoted(value) if isinstance(value, str) else toml_number(real(name, value))
 
 
-def text(
-    name: str,
-    *,
-    states: Sequence[str],
-    modes: Sequence[Mode],
-    start: Mapping[str, str | float] | None = None,
-    parameters: Mapping[str, float] | None = None,
-    forcing: tuple[float, float] | None = None,
-    definitions: Mapping[str, str] | None = None,
-    scales: Sequence[float] | None = None,
-    time_scale: float | None = None,
-) -> str:
-    """Write the text of a system's file; the parameters are those of :func:`build`."""
-    writer = _Writer(states, parameters or {})
-    body = [line for mode in modes for line in writer.mode(mode)]
-    lines = ["schema = 1", f"name = {_quoted(name)}", f"states = {_list(states)}"]
-    if scales is not None:
-        lines.append(f"scales = [{', '.join(toml_number(real('scales', it)) for it in scales)}]")
-    if time_scale is not None:
-        lines.append(f"time_scale = {toml_number(real('time_scale', time_scale))}")
-    if forcing is not None:
-        omega, phi = (toml_number(real("forcing", it)) for it in forcing)
-        lines.append(f"forcing = {{ omega = {omega}, phi = {phi} }}")
-    lines.append("[parameters]")
-    lines += [f"{_quoted(it)} = {toml_number(value)}" for it, value in writer.parameters.items()]
-    if definitions:
-        lines.append("[let]")
-        lines += [f"{_quoted(it)} = {_quoted(value)}" for it, value in definitions.items()]
-    lines += body
-    if start is not None:
-        lines.append("[start]")
-        lines += [f"{_quoted(it)} = {_value(it, value)}" for it, value in start.items()]
-    return "\n".join(lines) + "\n"
-
-
 def build(
     name: str,
     *,
@@ -316,16 +281,23 @@ def build(
     >>> ball.events(count=3).time
     array([0. , 1. , 2. , 2.5])
     """
-    return System(
-        text(
-            name,
-            states=states,
-            modes=modes,
-            start=start,
-            parameters=parameters,
-            forcing=forcing,
-            definitions=definitions,
-            scales=scales,
-            time_scale=time_scale,
-        )
-    )
+    writer = _Writer(states, parameters or {})
+    body = [line for mode in modes for line in writer.mode(mode)]
+    lines = ["schema = 1", f"name = {_quoted(name)}", f"states = {_list(states)}"]
+    if scales is not None:
+        lines.append(f"scales = [{', '.join(toml_number(real('scales', it)) for it in scales)}]")
+    if time_scale is not None:
+        lines.append(f"time_scale = {toml_number(real('time_scale', time_scale))}")
+    if forcing is not None:
+        omega, phi = (toml_number(real("forcing", it)) for it in forcing)
+        lines.append(f"forcing = {{ omega = {omega}, phi = {phi} }}")
+    lines.append("[parameters]")
+    lines += [f"{_quoted(it)} = {toml_number(value)}" for it, value in writer.parameters.items()]
+    if definitions:
+        lines.append("[let]")
+        lines += [f"{_quoted(it)} = {_quoted(value)}" for it, value in definitions.items()]
+    lines += body
+    if start is not None:
+        lines.append("[start]")
+        lines += [f"{_quoted(it)} = {_value(it, value)}" for it, value in start.items()]
+    return System("\n".join(lines) + "\n")
