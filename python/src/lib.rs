@@ -1,7 +1,7 @@
 //! The native part of the Python package `percuss`: systems and their runs, the oscillator and its
 //! dynamics, the judgement of answers, and the command.
 //!
-//! What users meet is the package in `python/percuss/`, which gives these classes their faces.
+//! Users meet the package in `python/percuss/`, which gives these classes their faces.
 //! Nothing is computed here that the libraries do not compute, so every number is the command's.
 
 mod asked;

@@ -38,7 +38,7 @@ impl Patience {
     }
 }
 
-/// What unwinds the threads of work that is to end.
+/// The payload that unwinds the threads of work that is to end.
 struct Interrupted;
 
 /// Work that is told of each of its parts, and ends there where Ctrl-C was pressed.

@@ -184,7 +184,7 @@ impl Cases {
         self.all.iter().map(|it| it.case.name.clone()).collect()
     }
 
-    /// What a case asks, as the JSON that `percuss export` writes.
+    /// The question of a case, as the JSON that `percuss export` writes.
     fn ask(&self, name: &str) -> PyResult<String> {
         let case = self.all.iter().find(|it| it.case.name == name);
         let case = case.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;

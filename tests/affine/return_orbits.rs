@@ -9,7 +9,7 @@ use percuss::{Instant, Model, Parameters, gallery};
 const RELAY: &str = include_str!("../../validation/systems/relay-feedback.system.toml");
 const OSCILLATOR: &str = include_str!("../../validation/systems/percussive-oscillator.system.toml");
 
-/// What runs of a few events and Newton's method leave, beside 1.
+/// The rounding, beside 1, that runs of a few events and Newton's method leave.
 const ROUNDINGS: f64 = 1e-12;
 
 /// A system, and what is asked of its return map from the place of the return after `skipped`.
@@ -167,7 +167,7 @@ fn the_oscillators_orbits_are_its_own() {
             assert!(apart.fold(0.0, f64::max) < ROUNDINGS, "{orbit:?} {known:?}");
         }
         for (found, own) in orbit.multipliers.iter().zip(known.multipliers) {
-            // Of products of six returns that grow and decay.
+            // Multipliers are products of six returns that grow and decay.
             let apart = (found[0] - own[0]).hypot(found[1] - own[1]);
             assert!(apart < 1e-9 * (1.0 + own[0].hypot(own[1])), "{orbit:?} {known:?}");
         }

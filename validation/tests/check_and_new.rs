@@ -22,7 +22,7 @@ fn equations_are_printed_as_written_and_with_their_numbers() {
     }
 }
 
-/// What is zero after an event is so by that event alone: a ball that bounced is on the floor, and
+/// The zeros after an event are those of that event alone: a ball that bounced is on the floor, and
 /// its speed is not zero by the model.
 #[test]
 fn zeros_are_named() {

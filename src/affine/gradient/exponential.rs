@@ -42,8 +42,8 @@ fn norm<T: Number>(matrix: &[Vec<Jet<T>>], part: fn(&Jet<T>) -> &Ball<T>) -> T::
 
 /// The exponential of a matrix whose norm a is at most 2^-SMALL.
 ///
-/// Of the terms after the one of order n the sum is at most 2 a^(n + 1)/(n + 1)!, and that of their
-/// derivatives at most 2 b a^n/n!, where b is the norm of the matrix's derivative.
+/// The terms after the one of order n add up to at most 2 a^(n + 1)/(n + 1)!, and their derivatives
+/// to at most 2 b a^n/n!, where b is the norm of the matrix's derivative.
 fn taylor_sum<T: Number>(small: &[Vec<Jet<T>>]) -> Matrix<T> {
     let [own, rate] = [norm(small, |it| &it.value), norm(small, |it| &it.rate)];
     let (mut order, mut term) = (0_u32, T::Bound::of(1.0));

@@ -142,7 +142,7 @@ impl SectionMap<'_, f64> {
     }
 }
 
-/// What an orbit has of the way between two points.
+/// The way of an orbit between two of its points.
 #[derive(Clone, Debug)]
 pub struct Way {
     events: Vec<Guard>,

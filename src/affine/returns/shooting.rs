@@ -25,7 +25,7 @@ const SMALLEST: f64 = 1e-12;
 pub trait ReturnMap {
     /// A point of the section, with the label of the piece on which it lies: its mode.
     type Point: Clone;
-    /// What an image has beside its derivative.
+    /// The part of an image that is no derivative.
     type Way: Clone;
 
     /// The image of a point.
@@ -56,7 +56,7 @@ pub struct Image<P, W> {
     pub derivative: Derivative,
     /// The number of segments on the way, each with its roundings.
     pub segments: usize,
-    /// What else is known of the way.
+    /// The way to the image.
     pub way: W,
 }
 

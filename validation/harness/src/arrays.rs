@@ -58,7 +58,7 @@ impl<W: Write> Npz<W> {
     /// Adds a list of texts.
     ///
     /// # Errors
-    /// What the archive objects to.
+    /// The archive cannot be written.
     pub fn add_texts(&mut self, name: &str, texts: &[impl AsRef<str>]) -> Result<()> {
         // NumPy has no texts of length 0.
         let length = texts.iter().map(|it| it.as_ref().chars().count()).fold(1, usize::max);

@@ -5,7 +5,7 @@ use crate::cli::shared::no_progress::times;
 use percuss::System;
 use percuss::affine::{Rational, Row, StartPoint, Until};
 
-/// What is zero by the model.
+/// The states and guards that are zero by the model.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct ZeroNames {
     pub(super) states: Vec<String>,
@@ -13,7 +13,7 @@ pub(super) struct ZeroNames {
     pub(super) guards: Vec<[String; 2]>,
 }
 
-/// What is zero at the start.
+/// The zeros at the start.
 pub(super) fn at_start(system: &System, start: &StartPoint) -> ZeroNames {
     let angle = |omega: &Rational, phi: &Rational| &(omega * &start.time) + phi;
     let is_at_zero_angle =
@@ -44,8 +44,8 @@ fn at(system: &System, start: &StartPoint, row: &Row) -> [Rational; 3] {
     sums
 }
 
-/// What is zero after an event because its guard was zero before the reset, in the modes that may
-/// follow. The events before may make more of it zero.
+/// The zeros after an event that follow from its guard's zero before the reset, in the modes that
+/// may come next. Earlier events may add more.
 pub(super) fn after(system: &System, until: &Until) -> ZeroNames {
     let mut modes: Vec<usize> = until.next.iter().map(|it| it.mode).collect();
     modes.sort_unstable();

@@ -1,4 +1,4 @@
-//! What is said on stderr of the ending of a system's run, and whether it was decided.
+//! The ending of a system's run as stderr tells it, and whether it was decided.
 
 use super::no_progress::{self, LastTurns};
 use percuss::Ending;

@@ -120,7 +120,7 @@ impl<'a> Underway<'a, '_> {
         Ok(None)
     }
 
-    /// What is said of a run that ended so, or as it was asked to.
+    /// The ending of a run that ended so, or as it was asked to.
     fn end(&self, last: Option<&Event<'a, f64>>) -> RunEnd {
         let undecidable = self.run.undecidable();
         let mut end = RunEnd { undecidable, ..RunEnd::default() };

@@ -1,4 +1,4 @@
-//! What a run hands out: its rows, and what is said of its ending.
+//! The receiver of a run: of its rows, and of what is said of its ending.
 
 use super::plan::PlannedRun;
 use anyhow::Result;
