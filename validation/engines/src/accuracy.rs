@@ -24,6 +24,31 @@ pub enum Stepping {
     },
 }
 
+/// The way in which an accuracy is chosen, without the order that it may need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SteppingKind {
+    /// A tolerance sets the accuracy.
+    Adaptive,
+    /// A tolerance sets the accuracy, and a method of a stated order holds the error step by step.
+    PerStep,
+    /// A step sets the accuracy of a method of a stated order.
+    Fixed,
+}
+
+impl SteppingKind {
+    /// The way with the order of the method, or nothing where it needs one and there is none.
+    #[must_use]
+    pub fn of_order(self, order: Option<u32>) -> Option<Stepping> {
+        let order = order.and_then(|order| i32::try_from(order).ok());
+        match self {
+            Self::Adaptive => Some(Stepping::Adaptive),
+            Self::PerStep => order.map(|order| Stepping::PerStep { order }),
+            Self::Fixed => order.map(|order| Stepping::Fixed { order }),
+        }
+    }
+}
+
 /// The tolerance or the step that is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Accuracy {
@@ -72,6 +97,17 @@ fn positive(value: Option<f64>, what: &str) -> Result<f64, Failure> {
 }
 
 impl Stepping {
+    /// The way without its order, or nothing where no accuracy is chosen.
+    #[must_use]
+    pub fn kind(self) -> Option<SteppingKind> {
+        match self {
+            Self::Exact => None,
+            Self::Adaptive => Some(SteppingKind::Adaptive),
+            Self::PerStep { .. } => Some(SteppingKind::PerStep),
+            Self::Fixed { .. } => Some(SteppingKind::Fixed),
+        }
+    }
+
     /// The unit in which an engine's errors are counted, fixed by theory: eps, the tolerance or
     /// what its steps make of it, or with fixed steps what one unit of time costs a method of this
     /// order in y' = -y, step^order/(order + 1)!.

@@ -2,10 +2,10 @@
 
 use crate::answer::checked;
 use crate::pool::Pool;
-use crate::wire::{Capabilities, EventsBy, RunAsk, SetUp, SteppedBy};
+use crate::wire::{Capabilities, EventsBy, RunAsk, SetUp};
 use percuss_engines::engine::{
     Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role, Stepping,
-    Task,
+    SteppingKind, Task,
 };
 use std::sync::Arc;
 
@@ -70,7 +70,8 @@ impl ProgramEngine {
                 EventsBy::Program => Location::Harness,
             },
             dense_output: set_up.dense_output,
-            stepping: stepping(set_up),
+            // An order that is needed was seen when the program was started.
+            stepping: set_up.stepping.of_order(set_up.order).unwrap_or(Stepping::Adaptive),
             role: Role::Rows,
             colours: Colours::OTHERS,
         };
@@ -95,16 +96,6 @@ impl ProgramEngine {
             colours: Colours::OTHERS,
         };
         Self { declaration, language: "unknown".to_owned(), runs: Runs::None(why) }
-    }
-}
-
-fn stepping(set_up: &SetUp) -> Stepping {
-    // Checked when the program was started: who needs an order has a small one.
-    let order = set_up.order.and_then(|order| i32::try_from(order).ok()).unwrap_or(1);
-    match set_up.stepping {
-        SteppedBy::Adaptive => Stepping::Adaptive,
-        SteppedBy::PerStep => Stepping::PerStep { order },
-        SteppedBy::Fixed => Stepping::Fixed { order },
     }
 }
 
@@ -142,8 +133,8 @@ impl Engine for ProgramEngine {
 /// Refuses what a set-up cannot run, before it is asked.
 fn can_run(set_up: &SetUp, task: &Task, accuracy: Accuracy) -> Result<(), Failure> {
     let wanted = match (set_up.stepping, accuracy) {
-        (SteppedBy::Fixed, Accuracy::Step(step)) => (step, "step"),
-        (SteppedBy::Fixed, _) => (f64::NAN, "step"),
+        (SteppingKind::Fixed, Accuracy::Step(step)) => (step, "step"),
+        (SteppingKind::Fixed, _) => (f64::NAN, "step"),
         (_, Accuracy::Tolerance(tolerance)) => (tolerance, "tolerance"),
         _ => (f64::NAN, "tolerance"),
     };

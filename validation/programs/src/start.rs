@@ -5,7 +5,7 @@ use crate::pool::Pool;
 use crate::process::Process;
 use crate::programs_file::{Program, is_name};
 use crate::text::plain;
-use crate::wire::{Capabilities, ReplyContent, SetUp, SteppedBy};
+use crate::wire::{Capabilities, ReplyContent, SetUp};
 use std::io::ErrorKind;
 use std::sync::Arc;
 
@@ -63,9 +63,8 @@ fn check(said: &Capabilities) -> Result<(), String> {
         }
         is_text(&set_up.method)
             .map_err(|why| format!("the method of its set-up {name:?} {why}"))?;
-        let needs_order = set_up.stepping != SteppedBy::Adaptive;
         if set_up.order.is_some_and(|order| !(1..=64).contains(&order))
-            || (needs_order && set_up.order.is_none())
+            || set_up.stepping.of_order(set_up.order).is_none()
         {
             return Err(format!("its set-up {name:?} has no order: accepted is 1 to 64"));
         }

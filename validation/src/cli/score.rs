@@ -6,12 +6,13 @@ use super::shared::long_work;
 use super::shared::names::{CASES, held_by};
 use super::shared::parse;
 use super::{note, say};
-use crate::engine::{Accuracy, Class, REFERENCE, Stepping};
+use crate::engine::{Accuracy, Class, REFERENCE, Stepping, SteppingKind};
 use crate::number::shortest;
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, PreparedCase, Scored, Status, Suite};
 use anyhow::{Context, Result, anyhow, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use percuss_programs::files::{Answerer, EVENTS, FileEngine, SAMPLES};
 use percuss_programs::{NAMES, is_name};
 use rayon::prelude::*;
@@ -46,11 +47,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, 64), allow_hyphen_values = true)]
     order: Option<u32>,
     /// How the tolerance holds the error (default: adaptive)
-    #[arg(long, value_name = "STEPPING", value_enum)]
-    stepping: Option<SteppingWord>,
+    #[arg(long, value_name = "STEPPING", value_parser = one_of(&STEPPINGS))]
+    stepping: Option<SteppingKind>,
     /// The class of the method
-    #[arg(long, value_name = "CLASS", value_enum)]
-    method: Option<Method>,
+    #[arg(long, value_name = "CLASS", value_parser = one_of(&METHODS))]
+    method: Option<Class>,
     /// The folder of CASE.events.csv and CASE.samples.csv
     #[arg(long, value_name = "DIR")]
     answers: PathBuf,
@@ -58,28 +59,44 @@ pub(super) struct Arguments {
     judged: JudgedFlags,
 }
 
-/// The way in which a tolerance holds the error.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SteppingWord {
-    /// The error of the solution that goes on is below the estimate that is held
-    Adaptive,
-    /// The error of the solution that goes on is what is held: BDF, DIRK
-    PerStep,
-    /// The step is given, and the tolerance is what errors are counted in
-    Fixed,
-}
+/// The values of --stepping.
+const STEPPINGS: [Choice<SteppingKind>; 3] = [
+    (
+        "adaptive",
+        "The error of the solution that goes on is below the estimate that is held",
+        SteppingKind::Adaptive,
+    ),
+    (
+        "per-step",
+        "The error of the solution that goes on is what is held: BDF, DIRK",
+        SteppingKind::PerStep,
+    ),
+    (
+        "fixed",
+        "The step is given, and the tolerance is what errors are counted in",
+        SteppingKind::Fixed,
+    ),
+];
+/// The values of --method.
+const METHODS: [Choice<Class>; 4] = [
+    ("explicit", "Runge-Kutta, extrapolation", Class::Explicit),
+    ("implicit", "Radau, Rosenbrock, DIRK, Gauss", Class::Implicit),
+    ("multistep", "Adams, BDF", Class::Multistep),
+    ("taylor", "Derivatives of the solution", Class::Taylor),
+];
+/// A value of a flag: its name, its help, and its meaning.
+type Choice<T> = (&'static str, &'static str, T);
 
-/// The class of a method.
-#[derive(Clone, Copy, ValueEnum)]
-enum Method {
-    /// Runge-Kutta, extrapolation
-    Explicit,
-    /// Radau, Rosenbrock, DIRK, Gauss
-    Implicit,
-    /// Adams, BDF
-    Multistep,
-    /// Derivatives of the solution
-    Taylor,
+/// Reads one of the values of a flag whose meanings are another package's.
+fn one_of<T>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let names = choices.iter().map(|(name, help, _)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(names).try_map(move |text| {
+        let choice = choices.iter().find(|(name, ..)| *name == text);
+        choice.map(|(.., meaning)| *meaning).ok_or("no such value")
+    })
 }
 
 fn name(text: &str) -> Result<String, String> {
@@ -162,11 +179,10 @@ impl Arguments {
         let mut flags =
             vec![("--answers", answers), ("--name", self.name.clone()), ("--tolerance", tolerance)];
         flags.extend(self.order.map(|order| ("--order", order.to_string())));
-        let word = |it: clap::builder::PossibleValue| it.get_name().to_owned();
-        let stepping = self.stepping.and_then(|it| it.to_possible_value());
-        flags.extend(stepping.map(|it| ("--stepping", word(it))));
-        let method = self.method.and_then(|it| it.to_possible_value());
-        flags.extend(method.map(|it| ("--method", word(it))));
+        let stepping = STEPPINGS.iter().find(|(.., it)| Some(*it) == self.stepping);
+        flags.extend(stepping.map(|(name, ..)| ("--stepping", (*name).to_owned())));
+        let method = METHODS.iter().find(|(.., it)| Some(*it) == self.method);
+        flags.extend(method.map(|(name, ..)| ("--method", (*name).to_owned())));
         flags
     }
 
@@ -178,7 +194,7 @@ impl Arguments {
             library: for_ever(self.library.as_deref().unwrap_or(&self.name)),
             version: for_ever(&self.version),
             language: for_ever(&self.language),
-            class: self.method.map(Into::into),
+            class: self.method,
             order: self.order,
             stepping,
         };
@@ -187,26 +203,8 @@ impl Arguments {
 
     /// The way in which the accuracy was chosen, which fixes the unit of error.
     fn stepping(&self) -> Result<Stepping> {
-        let order = || -> Result<i32> {
-            let order = self.order.context("--stepping: per-step and fixed need --order")?;
-            Ok(i32::try_from(order)?)
-        };
-        Ok(match self.stepping {
-            None | Some(SteppingWord::Adaptive) => Stepping::Adaptive,
-            Some(SteppingWord::PerStep) => Stepping::PerStep { order: order()? },
-            Some(SteppingWord::Fixed) => Stepping::Fixed { order: order()? },
-        })
-    }
-}
-
-impl From<Method> for Class {
-    fn from(method: Method) -> Self {
-        match method {
-            Method::Explicit => Self::Explicit,
-            Method::Implicit => Self::Implicit,
-            Method::Multistep => Self::Multistep,
-            Method::Taylor => Self::Taylor,
-        }
+        let kind = self.stepping.unwrap_or(SteppingKind::Adaptive);
+        kind.of_order(self.order).context("--stepping: per-step and fixed need --order")
     }
 }
 

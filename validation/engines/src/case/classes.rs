@@ -2,7 +2,7 @@
 
 use super::bound::{Bound, NamePattern, Quantity, Statistic};
 use super::located::{FileError, FileText};
-use crate::accuracy::{Accuracy, Stepping};
+use crate::accuracy::{Accuracy, Stepping, SteppingKind};
 use crate::class::Class;
 use serde::Deserialize;
 
@@ -32,15 +32,6 @@ struct ClassTable {
 enum Steppings {
     One(SteppingKind),
     Several(Vec<SteppingKind>),
-}
-
-/// The way in which an accuracy is chosen, without its order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum SteppingKind {
-    Adaptive,
-    PerStep,
-    Fixed,
 }
 
 /// The largest defects of the right engines of a class, in units of the local judgement.
@@ -99,12 +90,7 @@ impl ClassBounds {
         stepping: Stepping,
         accuracy: Accuracy,
     ) -> Option<&Self> {
-        let kind = match stepping {
-            Stepping::Exact => return None,
-            Stepping::Adaptive => SteppingKind::Adaptive,
-            Stepping::PerStep { .. } => SteppingKind::PerStep,
-            Stepping::Fixed { .. } => SteppingKind::Fixed,
-        };
+        let kind = stepping.kind()?;
         let method = class.unwrap_or(Class::Explicit);
         let order = order.unwrap_or_default();
         classes.iter().find(|it| {

@@ -17,7 +17,7 @@ mod percussive;
 mod task;
 mod trace;
 
-pub use crate::accuracy::{Accuracy, Stepping, shortest_time};
+pub use crate::accuracy::{Accuracy, Stepping, SteppingKind, shortest_time};
 pub use crate::case::place;
 pub use crate::equations::{Entered, Equations, Numbers};
 pub use crate::failure::Failure;

@@ -9,7 +9,7 @@ mod schema_tests;
 
 pub(crate) use ask::{Ask, Asked, ModeAsk, RunAsk, TimesAsk, samples};
 pub(crate) use numbers::{BoundedList, Count, StateReply};
-pub use reply::{Capabilities, EventsBy, SetUp, SteppedBy};
+pub use reply::{Capabilities, EventsBy, SetUp};
 pub(crate) use reply::{EventReply, ReplyContent, RunReply, decode};
 
 /// The version of the protocol, which every message names.

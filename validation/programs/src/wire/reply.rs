@@ -3,8 +3,7 @@
 use super::PROTOCOL;
 use super::numbers::{BoundedList, Count, StateReply};
 use crate::text::plain;
-use percuss_engines::engine::Class;
-use percuss_engines::engine::Ending;
+use percuss_engines::engine::{Class, Ending, SteppingKind};
 use serde::Deserialize;
 
 /// The most events and samples of an answer.
@@ -63,7 +62,7 @@ pub struct SetUp {
     /// Whether the library has dense output of its own.
     pub dense_output: bool,
     /// The way in which the engine's accuracy is chosen.
-    pub stepping: SteppedBy,
+    pub stepping: SteppingKind,
     /// Whether it runs back in time, where the end of a mode ends the run.
     #[serde(default = "yes")]
     pub backward: bool,
@@ -80,19 +79,6 @@ pub enum EventsBy {
     Library,
     /// The program locates them on what the library gives it.
     Program,
-}
-
-/// The way in which the accuracy of a set-up is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SteppedBy {
-    /// A tolerance sets the accuracy.
-    Adaptive,
-    /// A tolerance sets it, and a method of the order that the set-up names holds the error step
-    /// by step.
-    PerStep,
-    /// A step sets it, of a method of the order that the set-up names.
-    Fixed,
 }
 
 /// A run as a program answers it.
