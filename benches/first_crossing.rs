@@ -1,4 +1,4 @@
-//! The cost of an event: guessed and certified, and by plain one-sided stepping (the judge), beside
+//! The cost of an event: guessed and certified, and by the plain one-sided steps of the tests, beside
 //! the floor: the sine, cosine and exponential of one closed-form evaluation, each waiting for the
 //! last as in one trajectory, and independent. The evaluations per event are printed with each
 //! regime, so that one run tells the quotients.
@@ -12,7 +12,11 @@
     reason = "a bench's macros make public items; a panic is a failed bench"
 )]
 
+#[path = "../tests/support/one_sided.rs"]
+mod one_sided;
+
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use one_sided::{Effort, OneSidedEnd, one_sided_end};
 use percuss::{Model, Parameters, Segment, Start};
 use percuss_validation::bench::floor::transcendental;
 use std::hint::black_box;
@@ -62,10 +66,14 @@ fn switches(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("stepping", &name), |bencher| {
             bencher.iter(|| {
                 run.iter()
-                    .filter_map(|segment| {
-                        segment.one_sided_duration(2.0 * segment.duration(), 1000)
+                    .filter(|segment| {
+                        let horizon = 2.0 * segment.duration();
+                        let unit = 0.5 * f64::EPSILON;
+                        let effort = Effort { horizon, evaluations: 1000, unit };
+                        let end = one_sided_end::<f64>(&model, segment, &effort);
+                        matches!(end, OneSidedEnd::Crossing { .. })
                     })
-                    .sum::<f64>()
+                    .count()
             });
         });
     }

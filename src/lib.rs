@@ -173,8 +173,7 @@ pub use unknown_name::UnknownName;
 pub mod insides {
     pub use crate::flow::constants::Constants;
     pub use crate::model::entry::Motion;
-    pub use crate::numeric::{angle, remainders, series, two_word};
-    pub use crate::run::one_sided::{Effort, OneSidedEnd};
+    pub use crate::numeric::{angle, remainders, roots, series, two_word};
 
     pub mod crossing {
         pub use crate::crossing::*;

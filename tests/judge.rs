@@ -1,10 +1,11 @@
 //! The search against plain one-sided stepping, which shares nothing with it but the closed forms.
 
+use crate::support::one_sided::{Effort, OneSidedEnd, one_sided_end};
 use crate::support::random::Draw;
-use percuss::{Counters, Entry, Exit, Model, Parameters, Phase, Segment, Start};
+use percuss::{Counters, DoubleDouble, Entry, Exit, Model, Parameters, Phase, Segment, Start};
 
 /// Evaluations after which the judge gives a segment up.
-const PATIENCE: u64 = 20_000;
+const PATIENCE: usize = 20_000;
 
 /// omega and xi of the paper's cases and of the corners around them.
 const REGIMES: [(f64, f64); 16] = [
@@ -78,13 +79,24 @@ fn room(model: &Model, segment: &Segment, next: &Entry) -> f64 {
     32.0 * f64::EPSILON * (terms / slope.abs() + d)
 }
 
+/// The time that a segment lasts by one-sided steps in 106 bits: infinite where it does not end
+/// within the horizon, nothing where that is not decided.
+fn judged(model: &Model, segment: &Segment, horizon: f64) -> Option<f64> {
+    let effort = Effort { horizon, evaluations: PATIENCE, unit: DoubleDouble::UNIT };
+    match one_sided_end::<DoubleDouble>(model, segment, &effort) {
+        OneSidedEnd::Crossing { elapsed, .. } => Some(elapsed),
+        OneSidedEnd::Clear => Some(f64::INFINITY),
+        OneSidedEnd::Undecided => None,
+    }
+}
+
 fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Agreement) {
     let (found, next) = match segment.exit() {
         Exit::Switch(next) => (segment.duration(), next),
         // Not a switch: the judge must not find one either, as far as it can look.
         _ => {
             let horizon = segment.duration().min(20.0 * model.period());
-            match segment.one_sided_duration(horizon * (1.0 - 1e-9), PATIENCE) {
+            match judged(model, segment, horizon * (1.0 - 1e-9)) {
                 None => score.given_up += 1,
                 Some(time) if time.is_infinite() => {}
                 Some(_) if undecidable => score.undecidable += 1,
@@ -94,7 +106,7 @@ fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Agreem
         }
     };
     score.switches += 1;
-    let Some(judged) = segment.one_sided_duration(f64::INFINITY, PATIENCE) else {
+    let Some(judged) = judged(model, segment, f64::INFINITY) else {
         score.given_up += 1;
         return;
     };

@@ -3,6 +3,7 @@
 //! A phase is begun by both from the same entry, so that errors do not add up: their results differ
 //! by what both round in one phase, in units of eps (1 + |value|) x growth.
 
+use crate::support::one_sided::{Effort, OneSidedEnd, one_sided_end};
 use percuss::dynamics::ensemble::{Member, Tally, Watcher, follow_by};
 use percuss::lanes::Instructions;
 use percuss::{Endless, Entry, Exit, Growth, GrowthRecorder, Instant, Model, Parameters, Start};
@@ -354,7 +355,15 @@ fn switches_are_the_judges() {
                 for pair in diary.phases.windows(2) {
                     let segment = model.trajectory(pair[0]).next().expect("a phase");
                     let found = pair[1].instant.since(&pair[0].instant, omega).value();
-                    let judged = segment.one_sided_duration(2.0 * found, 100_000).expect("it ends");
+                    let effort = Effort {
+                        horizon: 2.0 * found,
+                        evaluations: 100_000,
+                        unit: 0.5 * f64::EPSILON,
+                    };
+                    let end = one_sided_end::<f64>(model, &segment, &effort);
+                    let OneSidedEnd::Crossing { elapsed: judged, .. } = end else {
+                        panic!("{end:?}, {found}, {pair:?}");
+                    };
                     assert!(
                         (judged - found).abs() <= 1e-7 * (1.0 + found),
                         "{judged} {found} {pair:?}"

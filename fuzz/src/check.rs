@@ -1,9 +1,9 @@
 //! The properties that every run must have, whatever the input.
 
+use crate::one_sided::{Effort, OneSidedEnd, one_sided_end};
 use crate::{Case, Family};
 use percuss::affine::DoubleDouble;
 use percuss::insides::crossing::limit::{GRANTED, LAST_ROOT, MOST, PER_RADIAN};
-use percuss::insides::{Effort, OneSidedEnd};
 use percuss::{Exit, Model, Parameters, Phase, Segment, State};
 
 /// Phases followed in one run.
@@ -162,7 +162,7 @@ fn judge(
         _ => left,
     };
     let effort = Effort { horizon, evaluations: JUDGE_EVALUATIONS, unit: DoubleDouble::UNIT };
-    let found = segment.one_sided_end_in::<DoubleDouble>(model, &effort);
+    let found = one_sided_end::<DoubleDouble>(model, segment, &effort);
     tally.judged += 1;
     let alike = match (segment.exit(), found) {
         (_, OneSidedEnd::Undecided) => return Ok(()),

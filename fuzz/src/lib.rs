@@ -3,6 +3,9 @@
 
 mod case;
 mod check;
+/// The reference that decides phases in 106 bits, as the tests of the solver have it.
+#[path = "../../tests/support/one_sided.rs"]
+mod one_sided;
 /// Random piecewise-affine systems, as the tests of the solver have them.
 #[cfg(feature = "systems")]
 #[path = "../../tests/affine/random.rs"]

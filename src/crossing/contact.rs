@@ -132,14 +132,6 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         4.0 * force + self.entry.y.abs() + (1.0 + constants.omega) * split.amplitude
     }
 
-    /// A bound of |f''| from `at` on: the free part's by its energy, the forced part's amplitude.
-    pub(crate) fn second_derivative_bound(&self, at: &Point<f64>) -> f64 {
-        let split = self.split(at);
-        let [.., x2, x3] = split.free;
-        x2.hypot(x3)
-            + split.amplitude * self.constants.borrow().omega * self.constants.borrow().omega
-    }
-
     /// The threshold that is nearer to the static force.
     pub(crate) fn nearest_threshold(&self) -> f64 {
         if self.constants.borrow().b < 0.5 { 0.0 } else { 1.0 }

@@ -25,9 +25,6 @@
 //!
 //! The work of a search has a [`limit`] that grows with the time that is proved to be clear; a
 //! search that passes it leaves the phase undecided.
-//!
-//! [`stepping`] is the same question answered in the plainest way, by one-sided steps with a bound
-//! on the curvature. It is several times dearer and is the reference in the tests.
 
 pub mod allowances;
 #[cfg(test)]
@@ -47,7 +44,6 @@ pub mod search;
 #[cfg(test)]
 mod series_tests;
 pub mod slow_envelope;
-pub mod stepping;
 pub mod tangents;
 
 use crate::flow::steps::Steps;

@@ -58,7 +58,9 @@ impl Model {
     }
 
     /// phi within one turn, in two words.
-    pub(crate) const fn phi(&self) -> TwoWord {
+    #[doc(hidden)]
+    #[must_use]
+    pub const fn phi(&self) -> TwoWord {
         self.phi
     }
 

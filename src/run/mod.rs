@@ -2,7 +2,6 @@
 
 pub mod exit;
 pub mod growth;
-pub mod one_sided;
 pub mod sample;
 pub mod stages;
 pub mod switch;

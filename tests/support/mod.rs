@@ -3,6 +3,7 @@
 pub mod draw;
 pub mod draws;
 pub mod graze;
+pub mod one_sided;
 pub mod original;
 pub mod plant;
 pub mod printed;
