@@ -143,6 +143,22 @@ fn samples_at_events_are_given_once() {
     }
 }
 
+/// What happens after the last sample belongs to a run with samples, and so does its ending.
+#[test]
+fn events_after_the_last_sample_are_there() {
+    let ball = system(gallery::BOUNCING_BALL);
+    let solver = ball.solver::<f64>().unwrap();
+    let kinds = |until| -> Vec<Kind> {
+        solver.run().until_with_samples(until, 1).unwrap().map(|it| it.kind()).collect()
+    };
+    let horizon = Kind::End(Ending::Horizon);
+    // The first impact is at the square root of two.
+    assert_eq!(kinds(1.25), [Kind::Sample, Kind::Sample, horizon]);
+    assert_eq!(kinds(1.5), [Kind::Sample, Kind::Sample, Kind::Until(0, 0), horizon]);
+    assert_eq!(kinds(1.0), [Kind::Sample, Kind::Sample, horizon]);
+    assert_eq!(kinds(0.0), [Kind::Sample, horizon]);
+}
+
 /// Guards that cross 1e-40 apart: 106 bits leave their order open, 212 do not.
 #[test]
 fn more_bits_go_on_where_fewer_do_not_decide() {

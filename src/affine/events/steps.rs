@@ -66,12 +66,13 @@ impl<'a, T: Number> Steps<'a, T> {
         }
         let event = self.run.next()?;
         let is_horizon = event.what == What::End(Ending::Horizon);
-        if let Some(sampling) = self.sampling.as_mut().filter(|_| is_horizon) {
+        if let Some(sampling) = self.sampling.as_mut().filter(|it| is_horizon && !it.is_over) {
             // The start itself has no rounding of modal co-ordinates.
             let start = self.run.start();
             let is_start = !self.has_begun && event.time.value() == start.time.value();
             let event = if is_start { start } else { event };
-            self.is_over = !sampling.next().is_some_and(|next| self.run.go_on(next));
+            let next = sampling.next();
+            self.is_over = !self.run.go_on(next);
             return Some(Step { event, is_sample: true });
         }
         self.has_begun = true;
@@ -111,6 +112,8 @@ struct Sampling<T> {
     is_backward: bool,
     /// The number of the next sample.
     number: u64,
+    /// Whether the last sample has been taken: events may follow it, and the ending does.
+    is_over: bool,
 }
 
 impl<T: Number> Sampling<T> {
@@ -119,14 +122,15 @@ impl<T: Number> Sampling<T> {
         let parts = T::exact(f64::from(request.samples?));
         let start = number(&request.start.time);
         let unit = if is_backward { -unit::<T>(system) } else { unit(system) };
-        Some(Self { start, unit, parts, end, is_backward, number: 1 })
+        Some(Self { start, unit, parts, end, is_backward, number: 1, is_over: false })
     }
 
-    /// The time of the next sample, unless it is beyond the end.
-    fn next(&mut self) -> Option<T> {
+    /// The time of the next sample, or after the last one the end.
+    fn next(&mut self) -> T {
         let time = self.start + T::exact(self.number as f64) * self.unit / self.parts;
         self.number += 1;
         let is_within = if self.is_backward { time >= self.end } else { time <= self.end };
-        is_within.then_some(time)
+        self.is_over = !is_within;
+        if is_within { time } else { self.end }
     }
 }
