@@ -5,13 +5,10 @@ use percuss_validation::case::defaults;
 use percuss_validation::integrators::select;
 use percuss_validation::report::{EventMark, EventPicture, MismatchKind, View, event_pictures};
 use percuss_validation::suite::{self, Suite};
-use percuss_validation::truth::Library;
 use regex::Regex;
 
 fn pictures(case: &str, engine: &str) -> Vec<EventPicture> {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = vec![exact::case(case)];
-    let cases = suite::prepare(cases, &library, None).expect("prepared");
+    let cases = exact::prepared(|name| name == case, None);
     let engine = Regex::new(&format!("^{engine}$")).expect("a pattern");
     let engines = select(&[engine]).expect("an engine");
     let defaults = defaults().expect("bounds");

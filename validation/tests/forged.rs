@@ -1,7 +1,8 @@
 //! Answers that were made to pass: each was right by the letter of an earlier rule, and is told for
 //! what it is.
 
-use crate::records::{answered_to, engine, judged, prepared};
+use crate::exact;
+use crate::records::{answered_to, engine, judged};
 use percuss::Ending;
 use percuss_validation::engine::{Accuracy, Event, Numbers, Outcome};
 use percuss_validation::score::local::{LocalJudgement, WrongKind};
@@ -10,7 +11,7 @@ use percuss_validation::system::Values;
 
 /// What is said of a right answer to a case that was changed, at two tolerances.
 fn said(case: &str, forge: impl Fn(&PreparedCase, &mut Outcome)) -> [LocalJudgement; 2] {
-    let prepared = prepared(&[case]).remove(0);
+    let prepared = exact::prepared(|name| name == case, None).remove(0);
     [1e-6, 1e-9].map(|tolerance| {
         let engine = engine("differential-equations-rkv767e");
         let accuracy = Accuracy::Tolerance(tolerance);

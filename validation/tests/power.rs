@@ -24,10 +24,7 @@ const CASES: [&str; 6] = [
 ];
 
 fn prepared() -> Vec<PreparedCase> {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = embedded().expect("the cases are read").into_iter();
-    let chosen = cases.filter(|case| CASES.contains(&case.name.as_str())).collect();
-    prepare(chosen, &library, Some(Suite::Quick)).expect("the cases are made ready")
+    exact::prepared(|name| CASES.contains(&name), Some(Suite::Quick))
 }
 
 /// A touch that the control's steps find and an integrator's longest pass by, wherever chaos leads:
@@ -128,10 +125,7 @@ const INTEGRATED: [&str; 6] = [
 
 #[test]
 fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = embedded().expect("the cases are read").into_iter();
-    let chosen = cases.filter(|case| INTEGRATED.contains(&case.name.as_str())).collect();
-    let cases = prepare(chosen, &library, Some(Suite::Quick)).expect("the cases are made ready");
+    let cases = exact::prepared(|name| INTEGRATED.contains(&name), Some(Suite::Quick));
     for standard in Standard::of_faulty() {
         let found = findings(&anywhere(faulty()), &cases, standard);
         for finding in &found {
@@ -243,9 +237,7 @@ fn too_few(tallies: &[Tally]) -> Vec<String> {
 /// On set-ups and cases that set no limit wrong answers are caught, and no right one is condemned.
 #[test]
 fn wrong_answers_are_caught_where_no_limit_was_set() {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = embedded().expect("the cases are read");
-    let cases = prepare(cases, &library, None).expect("the cases are made ready");
+    let cases = exact::prepared(|_| true, None);
     let classes = defaults().expect("the limits are read").classes;
     let variants = [&CAUGHT[..], &CAUGHT_OF_ONE_STEP].concat();
     let mut made = trials(&cases, 1e-6, &classes, &variants);

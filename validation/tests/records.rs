@@ -8,8 +8,7 @@ use percuss_validation::engine::{Accuracy, Engine, Outcome, answer};
 use percuss_validation::integrators::all;
 use percuss_validation::power::Variant;
 use percuss_validation::score::local::{Allowance, LocalJudgement, WrongKind};
-use percuss_validation::suite::{PreparedCase, Suite, class_of, prepare};
-use percuss_validation::truth::Library;
+use percuss_validation::suite::{PreparedCase, Suite, class_of};
 
 /// Cases of every kind of trouble: impacts, drift, friction, a clock, watched levels, a multiple
 /// zero, accumulation, simultaneous events, a run back in time.
@@ -31,13 +30,7 @@ const CASES: [&str; 12] = [
 const ACCURACY: Accuracy = Accuracy::Tolerance(1e-6);
 
 fn cases() -> Vec<PreparedCase> {
-    prepared(&CASES)
-}
-
-pub(super) fn prepared(names: &[&str]) -> Vec<PreparedCase> {
-    let chosen = names.iter().map(|name| exact::case(name)).collect();
-    let library = Library::embedded().expect("the manifest is read");
-    prepare(chosen, &library, None).expect("the cases are made ready")
+    exact::prepared(|name| CASES.contains(&name), None)
 }
 
 pub(super) fn engine(name: &str) -> &'static dyn Engine {

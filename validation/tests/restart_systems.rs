@@ -9,8 +9,7 @@ use percuss_validation::engine::{
 };
 use percuss_validation::integrators::all;
 use percuss_validation::score::{Restart, RestartRun, RestartTest};
-use percuss_validation::suite::{PreparedCase, Suite, prepare};
-use percuss_validation::truth::Library;
+use percuss_validation::suite::{PreparedCase, Suite};
 
 /// The bound of the oscillator's restarts, in eps (1 + |value|) x growth; 1.4 is the largest median
 /// of any case.
@@ -118,10 +117,7 @@ fn named(name: &str) -> &'static dyn Engine {
 /// from its impact: no engine can tell at once whether it impacts, so that none is asked.
 #[test]
 fn starts_that_rounding_puts_beside_a_guard_are_not_asked_for() {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = exact::of_systems().into_iter();
-    let chosen = cases.filter(|case| case.name == "percussive-chaos").collect();
-    let prepared = prepare(chosen, &library, Some(Suite::Full)).expect("made ready");
+    let prepared = exact::prepared(|name| name == "percussive-chaos", Some(Suite::Full));
     let test = test(&prepared[0]);
     let failing = |run: &&RestartRun| exactly(&run.task).is_err();
     assert_eq!(test.runs.iter().filter(failing).count(), 1);

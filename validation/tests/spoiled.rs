@@ -1,15 +1,14 @@
 //! Answers that are spoiled in one way each: none of them passes.
 
 use percuss::Phase;
-use percuss_validation::case::{defaults, embedded};
+use percuss_validation::case::defaults;
 use percuss_validation::engine::{
     Accuracy, Declaration, Engine, Event, Failure, Limits, Numbers, Outcome, Task, place,
 };
 use percuss_validation::integrators::exact;
 use percuss_validation::score::Verdict;
-use percuss_validation::suite::{Suite, prepare, run};
+use percuss_validation::suite::{Suite, run};
 use percuss_validation::system::Values;
-use percuss_validation::truth::Library;
 
 /// The exact solver's answer with one change.
 struct Spoiled {
@@ -73,10 +72,8 @@ static ERRS: [Spoiled; 4] = [
 
 #[test]
 fn no_spoiled_answer_passes() {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = embedded().expect("the cases are read").into_iter();
-    let chosen = cases.filter(|case| case.name == "impact-into-progression").collect();
-    let cases = prepare(chosen, &library, Some(Suite::Quick)).expect("the case is made ready");
+    let cases =
+        crate::exact::prepared(|name| name == "impact-into-progression", Some(Suite::Quick));
     let defaults = defaults().expect("the bounds are read");
     let verdict = |engine: &'static Spoiled| {
         let rows = run(&cases, &[engine], &Suite::Quick.into(), &defaults, &|| ());

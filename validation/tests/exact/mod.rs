@@ -59,9 +59,18 @@ pub fn probed_systems(accepts: impl Fn(&str) -> bool) -> Vec<PreparedCase> {
 }
 
 fn systems(accepts: impl Fn(&str) -> bool, probes: Option<Suite>) -> Vec<PreparedCase> {
+    of_cases(of_systems().into_iter().filter(|case| accepts(&case.name)).collect(), probes)
+}
+
+/// The embedded cases whose names are accepted, with the probes of a suite if one is given.
+pub fn prepared(accepts: impl Fn(&str) -> bool, probes: Option<Suite>) -> Vec<PreparedCase> {
+    let cases = embedded().expect("the cases are read").into_iter();
+    of_cases(cases.filter(|case| accepts(&case.name)).collect(), probes)
+}
+
+fn of_cases(cases: Vec<Case>, probes: Option<Suite>) -> Vec<PreparedCase> {
     let library = Library::embedded().expect("the tables are read");
-    let chosen = of_systems().into_iter().filter(|case| accepts(&case.name)).collect();
-    prepare(chosen, &library, probes).expect("the cases are made ready")
+    prepare(cases, &library, probes).expect("the cases are made ready")
 }
 
 /// A case's model at its start.

@@ -2,12 +2,11 @@
 
 use crate::support::{refused, run, text};
 use percuss::Ending;
-use percuss_validation::case::{defaults, embedded};
+use percuss_validation::case::defaults;
 use percuss_validation::engine::{Accuracy, Outcome, Task};
 use percuss_validation::integrators::all;
 use percuss_validation::number::shortest;
-use percuss_validation::suite::{Status, Suite, one, prepare};
-use percuss_validation::truth::Library;
+use percuss_validation::suite::{Status, Suite, one};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -82,10 +81,7 @@ impl Files {
 fn answers(engine: &str, accuracy: Accuracy, pattern: &str, folder: &Path) -> Vec<String> {
     let engine = all().iter().find(|it| it.declaration().name == engine).expect("an engine");
     let pattern = regex::Regex::new(pattern).expect("a pattern");
-    let mut cases = embedded().expect("read");
-    cases.retain(|it| pattern.is_match(&it.name));
-    let library = Library::embedded().expect("read");
-    let cases = prepare(cases, &library, None).expect("made ready");
+    let cases = crate::exact::prepared(|name| pattern.is_match(name), None);
     let defaults = defaults().expect("read");
     let mut answered = Vec::new();
     for case in &cases {
