@@ -100,7 +100,8 @@ def heading(case: SystemCase, run: Run, what: str) -> list:
     system = case.system
     pairs = [("case", case.name), ("system", system.name), ("rows", what)]
     pairs += [(f"parameters.{key}", value) for key, value in system.parameters.items()]
-    pairs += [(f"start.{key}", value) for key, value in case.written_start.items()]
+    start = case.written_start | {"mode": run.rows[0].mode}
+    pairs += [(f"start.{key}", value) for key, value in start.items()]
     pairs += [("horizon.until", case.written_until), ("horizon.samples", case.samples)]
     pairs += [("horizon.backward", str(case.backward).lower())]
     if run.remaining is not None:

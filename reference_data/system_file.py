@@ -248,11 +248,11 @@ class Builder:
         for position, table in enumerate(tables):
             only(table, "when mode", "next")
             if ("when" in table) == (position == len(tables) - 1):
-                raise Refused("in `next` every entry has a `when`, but not the last")
+                raise Refused("every entry of a list of modes has a `when`, but not the last")
             when = self.condition(table["when"]) if "when" in table else None
             found.append((when, table["mode"]))
         if not 1 <= len(found) <= LARGEST_COUNT:
-            raise Refused(f"`next` has 1 to {LARGEST_COUNT} entries")
+            raise Refused(f"a list of modes has 1 to {LARGEST_COUNT} entries")
         return found
 
     def watch(self, table: dict, mode: str) -> Event:
@@ -289,15 +289,18 @@ class Builder:
         raise Refused(why)
 
     def start_values(self, modes: dict) -> dict:
-        """{mode, t, state}: the mode's name, the clock, a row of coefficients for each state."""
+        """{modes, t, state}: conditions and modes, the clock, a row of coefficients a state."""
         only(self.start, " ".join(["mode", "t", *self.states]), "start")
-        if self.start.get("mode") not in modes:
-            raise Refused(f"start: {self.start.get('mode')!r} is not a mode")
+        given = self.start.get("mode")
+        choices = self.successors(given if isinstance(given, list) else [{"mode": given}])
+        for _, mode in choices:
+            if mode not in modes:
+                raise Refused(f"start: {mode!r} is not a mode")
         time = self.start_row(self.start.get("t", 0))
         if not constant(time):
             raise Refused("start: t is an expression of parameters")
         state = [self.start_row(self.start[name]) for name in self.states]
-        return {"mode": self.start["mode"], "t": time[-1], "state": state}
+        return {"modes": choices, "t": time[-1], "state": state}
 
     def start_row(self, value) -> list:
         if not isinstance(value, str):

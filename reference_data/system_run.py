@@ -90,7 +90,19 @@ class Run:
         basis = [cosine, sine, 1] if coefficients.ncols() == 3 else [1]
         z = arb_mat(coefficients) * arb_mat([[b] for b in basis])
         exact = coefficients if coefficients.ncols() == 1 else None
-        return HybridState(system.start["mode"], z, exact, Space(left_kernel(coefficients)))
+        at = HybridState(None, z, exact, Space(left_kernel(coefficients)))
+        for row, mode in system.start["modes"]:
+            candidate = replace(at, mode=mode)
+            if row is None or self.holds_at_start(row, candidate):
+                return candidate
+        raise AssertionError("the last mode has no condition")
+
+    def holds_at_start(self, row: fmpq_mat, state: HybridState) -> bool:
+        """Whether a condition holds at the start, by the motion forward in time."""
+        order, sign = self.first_sign(row, state)
+        if order and self.case.backward:
+            raise Refused("the mode of a start of a run back in time hangs on a derivative")
+        return sign > 0
 
     def run(self) -> None:
         """Fills `rows`; the last one says how the run ended."""

@@ -22,6 +22,7 @@ mod return_orbits;
 mod returns;
 mod sizes;
 mod spectra;
+mod start_modes;
 mod still;
 mod tables;
 mod together;

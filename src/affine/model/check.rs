@@ -49,7 +49,16 @@ impl System {
             own.name(&mode.name, seen.insert(&mode.name), check_kebab)?;
             own.mode(mode)?;
         }
+        self.check_start_modes()?;
         self.start.as_ref().map_or(Ok(()), |it| self.check_start(it))
+    }
+
+    fn check_start_modes(&self) -> Result<(), SystemError> {
+        let choices = &self.start_modes;
+        if choices.is_empty() {
+            return Ok(());
+        }
+        ModeCheck { system: self, item: "start".to_owned() }.choices("modes", "mode", choices)
     }
 
     fn check_names(&self) -> Result<(), SystemError> {
@@ -161,12 +170,17 @@ impl ModeCheck<'_> {
                 return Err(SystemError::Reset { item: self.item.clone(), entry });
             }
         }
-        let next = &until.next;
-        count(&format!("{}, successors", self.item), next.len(), 1, LARGEST_COUNT)?;
-        if (1..).zip(next).any(|(n, it)| it.when.is_some() == (n == next.len())) {
+        self.choices("successors", "successor", &until.next)
+    }
+
+    /// A list of modes, of which the first follows whose condition holds.
+    fn choices(&self, all: &str, one: &str, choices: &[Successor]) -> Result<(), SystemError> {
+        count(&format!("{}, {all}", self.item), choices.len(), 1, LARGEST_COUNT)?;
+        if (1..).zip(choices).any(|(n, it)| it.when.is_some() == (n == choices.len())) {
             return Err(SystemError::Successors { item: self.item.clone() });
         }
-        (1..).zip(next).try_for_each(|(n, it)| self.within(&format!("successor {n}")).successor(it))
+        let check = |(n, it)| self.within(&format!("{one} {n}")).successor(it);
+        (1..).zip(choices).try_for_each(check)
     }
 
     fn successor(&self, successor: &Successor) -> Result<(), SystemError> {

@@ -5,9 +5,11 @@ use super::error::SystemError;
 use super::naming::check_kebab;
 use super::scalar::{Assignment, Condition, Scalar};
 use super::source::{Source, SourceText};
-use serde::Deserialize;
-use serde::de::IgnoredAny;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{self, IgnoredAny, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -33,9 +35,51 @@ pub(super) struct GivenParameter {
 pub(super) struct StartTable {
     pub place: String,
     pub entries: BTreeMap<String, GivenParameter>,
+    /// The modes by conditions, where there is no entry `mode`.
+    pub modes: Vec<StartChoice>,
+}
+
+/// A mode in which a start may lie, and its condition, each with its place.
+#[derive(Clone, Debug)]
+pub(super) struct StartChoice {
+    pub when: Option<(Condition, String)>,
+    pub mode: (String, String),
 }
 
 type Entries = BTreeMap<String, Spanned<Scalar>>;
+type StartEntries = BTreeMap<String, Spanned<StartEntry>>;
+
+/// An entry of a `[start]`: a number, an expression or a name, or a list of modes.
+#[derive(Clone, Debug)]
+pub(super) enum StartEntry {
+    Value(Scalar),
+    Modes(Vec<NextTable>),
+}
+
+impl<'de> Deserialize<'de> for StartEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Read;
+        impl<'de> Visitor<'de> for Read {
+            type Value = StartEntry;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number or an expression, or for the mode a list of { when, mode }")
+            }
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<StartEntry, E> {
+                Ok(StartEntry::Value(Scalar::Integer(value)))
+            }
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<StartEntry, E> {
+                Ok(StartEntry::Value(Scalar::Decimal(value)))
+            }
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<StartEntry, E> {
+                Ok(StartEntry::Value(Scalar::Text(value.to_owned())))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<StartEntry, A::Error> {
+                Deserialize::deserialize(SeqAccessDeserializer::new(list)).map(StartEntry::Modes)
+            }
+        }
+        deserializer.deserialize_any(Read)
+    }
+}
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the tables of a system")]
@@ -58,7 +102,7 @@ pub(super) struct Tables {
     pub lets: BTreeMap<String, Spanned<String>>,
     #[serde(default)]
     pub mode: Vec<ModeTable>,
-    pub start: Option<Spanned<Entries>>,
+    pub start: Option<Spanned<StartEntries>>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -109,7 +153,7 @@ pub(super) struct WatchTable {
 struct Replacing {
     #[serde(default)]
     parameters: Entries,
-    start: Option<Spanned<Entries>>,
+    start: Option<Spanned<StartEntries>>,
 }
 
 impl SystemFile {
@@ -125,7 +169,7 @@ impl SystemFile {
     pub(super) fn of(text: SourceText) -> Result<Self, SystemError> {
         let mut tables: Tables = text.parse()?;
         let parameters = placed(&text, std::mem::take(&mut tables.parameters));
-        let start = tables.start.take().map(|it| start(&text, it));
+        let start = tables.start.take().map(|it| start(&text, it)).transpose()?;
         Ok(Self { source: Source::Text(text), tables, parameters, start })
     }
 
@@ -179,9 +223,14 @@ impl SystemFile {
 
     /// Replaces an entry of the start.
     fn enter_start(&mut self, key: &str, value: Scalar, place: &str) {
-        let none = || StartTable { place: place.to_owned(), entries: BTreeMap::new() };
+        let none =
+            || StartTable { place: place.to_owned(), entries: BTreeMap::new(), modes: Vec::new() };
         let given = GivenParameter { value, place: place.to_owned() };
-        self.start.get_or_insert_with(none).entries.insert(key.to_owned(), given);
+        let start = self.start.get_or_insert_with(none);
+        if key == "mode" {
+            start.modes.clear();
+        }
+        start.entries.insert(key.to_owned(), given);
     }
 
     /// Replaces parameters and start by those of another file's `[parameters]` and `[start]`. Its
@@ -207,7 +256,7 @@ impl SystemFile {
             self.replace(&name, parameter)?;
         }
         if let Some(table) = replacing.start {
-            self.start = Some(start(&source, table));
+            self.start = Some(start(&source, table)?);
         }
         Ok(())
     }
@@ -245,7 +294,37 @@ fn placed(source: &SourceText, entries: Entries) -> BTreeMap<String, GivenParame
     entries.into_iter().map(place).collect()
 }
 
-fn start(source: &SourceText, table: Spanned<Entries>) -> StartTable {
+fn start(source: &SourceText, table: Spanned<StartEntries>) -> Result<StartTable, SystemError> {
     let place = source.place(&table.span());
-    StartTable { place, entries: placed(source, table.into_inner()) }
+    let (mut entries, mut modes) = (BTreeMap::new(), Vec::new());
+    for (name, entry) in table.into_inner() {
+        let place = source.place(&entry.span());
+        match entry.into_inner() {
+            StartEntry::Value(value) => {
+                entries.insert(name, GivenParameter { value, place });
+            }
+            StartEntry::Modes(list) if name == "mode" => {
+                modes = list.into_iter().map(|it| start_choice(source, it)).collect();
+                if modes.is_empty() {
+                    let what = "the start has no mode: a list of { when, mode } has one at least";
+                    return Err(SystemError::at(&place, what));
+                }
+            }
+            StartEntry::Modes(_) => {
+                let what = format!("{name} is a list: accepted is a number or an expression");
+                return Err(SystemError::at(&place, &what));
+            }
+        }
+    }
+    Ok(StartTable { place, entries, modes })
+}
+
+fn start_choice(source: &SourceText, table: NextTable) -> StartChoice {
+    let NextTable { when, mode } = table;
+    let [when_place, mode_place] = [when.as_ref().map(Spanned::span), Some(mode.span())]
+        .map(|span| span.map(|span| source.place(&span)).unwrap_or_default());
+    StartChoice {
+        when: when.map(|it| (it.into_inner(), when_place)),
+        mode: (mode.into_inner(), mode_place),
+    }
 }

@@ -23,5 +23,6 @@ pub mod rational;
 mod scalar;
 mod source;
 mod start;
+mod start_mode;
 pub mod system;
 pub mod tangent;

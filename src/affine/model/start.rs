@@ -45,6 +45,20 @@ impl System {
         time: f64,
         states: &[f64],
     ) -> Result<StartPoint, SystemError> {
+        let Some(index) = self.mode(mode) else {
+            let what = unknown_mode(mode, self.modes.iter().map(|it| it.name.as_str()));
+            return Err(SystemError::Name { item: "start".to_owned(), what });
+        };
+        self.start_in(index, time, states)
+    }
+
+    /// The start in a mode of an index at a time, with the value of each state.
+    pub(super) fn start_in(
+        &self,
+        mode: usize,
+        time: f64,
+        states: &[f64],
+    ) -> Result<StartPoint, SystemError> {
         let exact = |item: &str, number: f64| {
             Rational::try_from(number).map_err(|_| SystemError::Number {
                 item: format!("start, {item}"),
@@ -52,17 +66,13 @@ impl System {
             })
         };
         self.check_states("start, states", states.len())?;
-        let Some(index) = self.mode(mode) else {
-            let what = unknown_mode(mode, self.modes.iter().map(|it| it.name.as_str()));
-            return Err(SystemError::Name { item: "start".to_owned(), what });
-        };
         let state = self
             .states
             .iter()
             .zip(states)
             .map(|(name, value)| Ok([Rational::ZERO, Rational::ZERO, exact(name, *value)?]));
         let state = state.collect::<Result<_, SystemError>>()?;
-        Ok(StartPoint { mode: index, time: exact("time", time)?, state })
+        Ok(StartPoint { mode, time: exact("time", time)?, state })
     }
 
     /// Refuses a number of states that is not the system's.

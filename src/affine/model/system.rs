@@ -82,6 +82,9 @@ pub struct System {
     pub modes: Vec<Mode>,
     /// The point at which a run begins, if the file says so.
     pub start: Option<StartPoint>,
+    /// The modes in which a start may lie, where the file lists them: the first whose condition
+    /// holds at the start is its mode.
+    pub start_modes: Vec<Successor>,
 }
 
 /// A forcing of the phase theta = omega t + phi.

@@ -56,6 +56,7 @@ fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
         forcing,
         modes: Vec::new(),
         start: None,
+        start_modes: Vec::new(),
     };
     let dimension = system.dimension();
     if dimension > LARGEST_DIMENSION {
@@ -68,13 +69,19 @@ fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
     }
     let places = mode_places(file)?;
     let omega = system.forcing.as_ref().map(|it| it.omega.clone());
+    let reader = ModeReader { file, places: &places, omega: omega.as_ref() };
     for table in &tables.mode {
-        let reader = ModeReader { file, places: &places, omega: omega.as_ref() };
         let here = system.modes.len();
         system.modes.push(reader.mode(&mut names, table, here)?);
     }
     if let Some(start) = &file.start {
-        system.start = Some(start_point(&mut names, start, &places)?);
+        system.start_modes = reader.start_modes(&mut names, start)?;
+        let mut point = start_point(&mut names, start, &places)?;
+        // A derivative's start is in no mode of its own.
+        if by.is_none() && !system.start_modes.is_empty() {
+            point.mode = system.mode_by_conditions(&point)?;
+        }
+        system.start = Some(point);
     }
     Ok(system)
 }
@@ -116,6 +123,7 @@ fn start_point(
             let what = format!("mode is no number: accepted is one of {}", known.join(", "));
             return Err(SystemError::at(place, &what));
         }
+        None if !table.modes.is_empty() => 0,
         None => {
             let what = format!("the start has no mode: accepted is one of {}", known.join(", "));
             return Err(refuse(&what));

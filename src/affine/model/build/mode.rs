@@ -4,7 +4,9 @@ use super::names::Names;
 use crate::affine::model::dual::Dual;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::expression::expression;
-use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
+use crate::affine::model::file::{
+    ModeTable, StartChoice, StartTable, SystemFile, UntilTable, WatchTable,
+};
 use crate::affine::model::form::Form;
 use crate::affine::model::naming::{check_event, unknown_mode};
 use crate::affine::model::rational::Rational;
@@ -194,6 +196,39 @@ impl ModeReader<'_> {
             successors.push(Successor { when, mode: *mode });
         }
         Ok(successors)
+    }
+
+    /// The modes that a start lists, each with its condition.
+    pub(super) fn start_modes(
+        &self,
+        names: &mut Names,
+        table: &StartTable,
+    ) -> Result<Vec<Successor>, SystemError> {
+        let count = table.modes.len();
+        if count > LARGEST_COUNT {
+            let what = format!("{count} modes of a start are too many: 1 to {LARGEST_COUNT} are");
+            return Err(SystemError::at(&table.place, &format!("{what} accepted")));
+        }
+        let mut choices = Vec::with_capacity(count);
+        for (n, StartChoice { when, mode: (mode, place) }) in table.modes.iter().enumerate() {
+            if when.is_some() == (n + 1 == count) {
+                let what = "every mode of a start but the last has a condition, and the last has \
+                            none";
+                return Err(SystemError::at(place, what));
+            }
+            let Some(index) = self.places.get(mode) else {
+                let what = unknown_mode(mode, self.places.keys().map(String::as_str));
+                return Err(SystemError::at(place, &what));
+            };
+            let row = |(condition, place): &(Condition, String)| {
+                let form = names.condition(condition);
+                let row = form.and_then(|form| self.row(names, form));
+                row.map_err(|what| SystemError::at(place, &what))
+            };
+            let when = when.as_ref().map(row).transpose()?;
+            choices.push(Successor { when, mode: *index });
+        }
+        Ok(choices)
     }
 
     fn watch(&self, names: &mut Names, table: &WatchTable) -> Result<Watch, SystemError> {

@@ -5,7 +5,7 @@ mod tables;
 
 use super::error::SystemError;
 use super::rational::Rational;
-use super::scalar::Scalar;
+use super::scalar::{Condition, Scalar};
 use super::system::System;
 pub use mode::{ModeBuilder, UntilBuilder};
 
@@ -98,6 +98,7 @@ pub struct SystemBuilder {
     modes: Vec<ModeBuilder>,
     start: Option<(String, Vec<(String, Expression)>)>,
     start_time: Option<Expression>,
+    start_when: Vec<(Condition, String)>,
 }
 
 impl System {
@@ -162,6 +163,7 @@ impl System {
             modes: Vec::new(),
             start: None,
             start_time: None,
+            start_when: Vec::new(),
         }
     }
 }
@@ -277,6 +279,27 @@ impl SystemBuilder {
     ) -> Self {
         let states = states.into_iter().map(|(name, value)| (name.into(), value.into()));
         self.start = Some((mode.into(), states.collect()));
+        self
+    }
+
+    /// Adds a mode in which the start lies where this condition holds there and none added before
+    /// does. Where none holds, the start lies in the mode of [`start`](Self::start).
+    ///
+    /// ```
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
+    /// let system = System::builder("thermostat")
+    ///     .states(["x"])
+    ///     .mode(ModeBuilder::new("heat").equation("x' = 25 - x"))
+    ///     .mode(ModeBuilder::new("cool").equation("x' = 15 - x"))
+    ///     .start_when("x > 20", "cool")
+    ///     .start("heat", [("x", 21)])
+    ///     .build()?;
+    /// assert_eq!(system.start()?.mode, 1);
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    pub fn start_when(mut self, condition: impl Into<Expression>, mode: impl Into<String>) -> Self {
+        self.start_when.push((Condition(condition.into().0), mode.into()));
         self
     }
 

@@ -4,8 +4,8 @@ use super::mode::{ModeBuilder, UntilBuilder};
 use super::{Expression, SystemBuilder};
 use crate::affine::model::error::SystemError;
 use crate::affine::model::file::{
-    ForcingTable, GivenParameter, ModeTable, NextTable, StartTable, SystemFile, Tables, UntilTable,
-    WatchTable,
+    ForcingTable, GivenParameter, ModeTable, NextTable, StartChoice, StartTable, SystemFile,
+    Tables, UntilTable, WatchTable,
 };
 use crate::affine::model::scalar::{Assignment, Condition, Scalar};
 use crate::affine::model::source::Source;
@@ -16,7 +16,7 @@ use toml::Spanned;
 /// The file that a builder stands for.
 pub(super) fn file(builder: SystemBuilder) -> Result<SystemFile, SystemError> {
     let mut items = Items::default();
-    let start = start(builder.start, builder.start_time)?;
+    let start = start(builder.start, builder.start_time, builder.start_when)?;
     let parameters = placed("parameters", builder.parameters)?;
     let mut lets = BTreeMap::new();
     for (name, text) in builder.definitions {
@@ -57,9 +57,14 @@ pub(super) fn file(builder: SystemBuilder) -> Result<SystemFile, SystemError> {
 fn start(
     states: Option<(String, Vec<(String, Expression)>)>,
     time: Option<Expression>,
+    when: Vec<(Condition, String)>,
 ) -> Result<Option<StartTable>, SystemError> {
     let place = "start".to_owned();
     let Some((mode, states)) = states else {
+        if !when.is_empty() {
+            let what = "a mode of the start by a condition is not accepted without a start";
+            return Err(SystemError::at(&place, what));
+        }
         let what = "a time of the start is not accepted without a start";
         return time.map_or(Ok(None), |_| Err(SystemError::at(&place, what)));
     };
@@ -72,10 +77,20 @@ fn start(
         };
         return Err(SystemError::at(&place, what));
     }
-    let mode = ("mode".to_owned(), Expression(Scalar::Text(mode)));
     let time = time.map(|it| ("t".to_owned(), it));
-    let entries = placed(&place, [mode].into_iter().chain(time).chain(states))?;
-    Ok(Some(StartTable { place, entries }))
+    let mut entries = placed(&place, time.into_iter().chain(states))?;
+    if when.is_empty() {
+        let value = Scalar::Text(mode);
+        entries.insert("mode".to_owned(), GivenParameter { value, place: place.clone() });
+        return Ok(Some(StartTable { place, entries, modes: Vec::new() }));
+    }
+    let choice = |(n, (when, mode)): (usize, (Option<Condition>, String))| {
+        let place = format!("start, mode {n}");
+        StartChoice { when: when.map(|it| (it, place.clone())), mode: (mode, place) }
+    };
+    let last = std::iter::once((None, mode));
+    let choices = when.into_iter().map(|(when, mode)| (Some(when), mode)).chain(last);
+    Ok(Some(StartTable { place, entries, modes: (1..).zip(choices).map(choice).collect() }))
 }
 
 /// Values by their names, all from one place.

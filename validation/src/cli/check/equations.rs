@@ -4,7 +4,7 @@ use super::written::{Written, WrittenUntil};
 use super::zeros::{self, ZeroNames};
 use crate::number::shortest;
 use percuss::System;
-use percuss::affine::{Rational, Row, Until, is_unit};
+use percuss::affine::{Rational, Row, Successor, Until, is_unit};
 use std::fmt::Write;
 
 /// A fraction that is longer than this is printed as the nearest f64.
@@ -80,21 +80,20 @@ impl Equations<'_> {
             }
         }
         for (n, successor) in until.next.iter().enumerate() {
-            let mode = &self.system.modes[successor.mode].name;
-            let name = format!("to {mode}");
-            match &successor.when {
-                None => {
-                    let _ = writeln!(text, "    {name}");
-                }
-                Some(row) => {
-                    let when = written.and_then(|it| it.when(n));
-                    let name = format!("{name} where ");
-                    text.push_str(&condition("    ", &name, when, &self.form(row)));
-                }
-            }
+            let when = written.and_then(|it| it.when(n));
+            text.push_str(&self.choice("to", successor, when));
         }
         text.push_str(&zero_line("    ", "zero after it", &zeros::after(self.system, until)));
         text
+    }
+
+    /// A mode that follows, with its condition if it has one.
+    fn choice(&self, to: &str, choice: &Successor, when: Option<&str>) -> String {
+        let mode = &self.system.modes[choice.mode].name;
+        match &choice.when {
+            None => format!("    {to} {mode}\n"),
+            Some(row) => condition("    ", &format!("{to} {mode} where "), when, &self.form(row)),
+        }
     }
 
     /// The start, where the system has one.
@@ -107,6 +106,12 @@ impl Equations<'_> {
         let names = ["cos", "sin", ""].map(str::to_owned);
         for (state, terms) in self.system.states.iter().zip(&start.state) {
             let _ = writeln!(text, "  {state} = {}", form(terms, &names));
+        }
+        if !self.system.start_modes.is_empty() {
+            text.push_str("  its mode is the first whose condition holds there:\n");
+        }
+        for choice in &self.system.start_modes {
+            text.push_str(&self.choice("in", choice, None));
         }
         text.push_str(&zero_line("  ", "zero there", &zeros::at_start(self.system, start)));
         text
