@@ -11,7 +11,8 @@ use serde_json::{Value, json};
 fn row(engine: &str, case: &str, trouble: &[&str], found: Option<[u64; 2]>) -> Value {
     json!({
         "case": case, "trouble": trouble, "engine": engine, "tolerance": 1e-6, "events_total": 10,
-        "events_matched": found.map(|it| it[0]), "events_spurious": found.map(|it| it[1]),
+        "events_judged": found.map(|it| 10 + it[1]), "events_right": found.map(|it| it[0]),
+        "events_undecidable": found.map(|_| 0), "events_spurious": found.map(|it| it[1]),
         "rhs_evaluations": 500, "wall_ns": 90_000, "own_ns": 40_000,
         "verdict": if found.is_some() { "pass" } else { "error" },
         "defect": {"sample": {"max": if found.is_some() { Some(0.5) } else { None }}},
@@ -44,8 +45,8 @@ fn a_default_stands_beside_its_expert() {
     let text = page::markdown(&board);
     for line in [
         "2 cases at 1e-6; percuss 0.1.0 at no commit, on a processor.\n",
-        "| lib-bdf 1.0 | Lib | C 17 | 100 | 50! | 95 | 25 | 0 | 2 | 50 | \u{2013} | 4.0 | 5.0 |\n",
-        "| lib-bdf 1.0 | 100 / 50 | 100 / 50 | 90 / 0 |\n",
+        "| lib-bdf 1.0 | Lib | C 17 | 100 | 50! | 95 | 31 | 0 | 2 | 50 | \u{2013} | 4.0 | 5.0 |\n",
+        "| lib-bdf 1.0 | 100 / 58 | 100 / 58 | 90 / 0 |\n",
     ] {
         assert!(text.contains(line), "{line} is not in {text}");
     }
@@ -87,8 +88,8 @@ fn portions_of_other_cases_are_one_run() {
     let both = board(&[report("1.0"), portion]).expect("a board");
     let text = page::markdown(&both);
     assert!(text.contains("3 cases at 1e-6;"), "{text}");
-    // 22 of 30, and by default 5 of 20.
-    assert!(text.contains("| lib-bdf 1.0 | Lib | C 17 | 100 | 50! | 73 | 25 | 0 | 2 |"), "{text}");
+    // 22 of 30, and by default 7 of 22.
+    assert!(text.contains("| lib-bdf 1.0 | Lib | C 17 | 100 | 50! | 73 | 31 | 0 | 2 |"), "{text}");
 }
 
 #[test]

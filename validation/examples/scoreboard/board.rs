@@ -34,7 +34,7 @@ pub(crate) struct BoardLine {
     pub(crate) default: Option<SetupResult>,
 }
 
-/// What a set-up found, and at what cost.
+/// The judgement of a set-up, and its cost.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct SetupResult {
     /// Whether no row fails or errs unexpectedly.
@@ -45,7 +45,7 @@ pub(crate) struct SetupResult {
     pub(crate) all: EventCounts,
     /// For each kind of trouble.
     pub(crate) kinds: Vec<EventCounts>,
-    /// Right-hand sides per event: the median over the rows that found every event.
+    /// Right-hand sides per event: the median over the rows that are wholly right.
     pub(crate) rhs: Option<f64>,
     /// Microseconds per event in the integrator itself, over the same rows.
     pub(crate) own: Option<f64>,
@@ -53,26 +53,30 @@ pub(crate) struct SetupResult {
     pub(crate) overhead: Option<f64>,
 }
 
-/// Events of the truth, those that are found, and those that are not in it.
+/// Events that were judged, those of them that are right, and those that are spurious.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct EventCounts {
-    pub(crate) found: u64,
+    pub(crate) right: u64,
     pub(crate) spurious: u64,
-    pub(crate) total: u64,
+    pub(crate) judged: u64,
 }
 
 impl EventCounts {
     fn add(&mut self, row: &RowJson) {
-        let judged = row.verdict != "not-scored";
-        self.found += row.events_matched.filter(|_| judged).unwrap_or_default();
+        if ["not-run", "unavailable"].contains(&row.verdict.as_str()) {
+            return;
+        }
+        // A run without a result has none of the truth's events.
+        self.judged += row.events_judged.unwrap_or(row.events_total);
+        self.right += row.events_right.unwrap_or_default();
+        self.right += row.events_undecidable.unwrap_or_default();
         self.spurious += row.events_spurious.unwrap_or_default();
-        self.total += row.events_total;
     }
 
-    /// Events found less spurious ones in per cent of all, rounded down, 0 at the least; nothing
-    /// where there are none.
+    /// Events that are right in per cent of those that were judged, rounded down; nothing where
+    /// there are none.
     pub(crate) fn percent(&self) -> Option<u64> {
-        (self.total > 0).then(|| 100 * self.found.saturating_sub(self.spurious) / self.total)
+        (self.judged > 0).then(|| 100 * self.right / self.judged)
     }
 }
 
@@ -175,8 +179,7 @@ impl SetupResult {
             row.trouble.contains(kind) || (row.trouble.is_empty() && kind == OSCILLATOR)
         };
         let of_kind = |kind: &String| tally(&mut rows.iter().filter(|row| is_of(row, kind)));
-        let whole =
-            |row: &&&RowJson| row.events_total > 0 && row.events_matched == Some(row.events_total);
+        let whole = |row: &&&RowJson| row.events_total > 0 && row.is_right();
         let each = |figure: fn(&RowJson) -> Option<f64>| {
             let of = |row: &&RowJson| Some(figure(row)? / row.events_total as f64);
             let median = Spread::of(rows.iter().filter(whole).filter_map(of).collect()).median;

@@ -16,7 +16,7 @@ pub(crate) fn markdown(board: &Board) -> String {
         "language",
         "right %",
         "by default %",
-        "found %",
+        "events right %",
         "by default %",
         "spurious",
         "by default",
@@ -26,7 +26,7 @@ pub(crate) fn markdown(board: &Board) -> String {
         "µs of the process",
     ];
     text += &table(&columns.map(str::to_owned), 3, board.lines.iter().map(|it| cells(it).to_vec()));
-    text += "\nEvents found less spurious ones, in per cent of all, by kind of trouble; the default set-up's \
+    text += "\nEvents that are right, in per cent of those that were judged, by kind of trouble; the default set-up's \
              after the stroke.\n\n";
     let mut columns = vec!["engine".to_owned()];
     columns.extend(board.kinds.iter().cloned());
@@ -69,7 +69,7 @@ fn cells(line: &BoardLine) -> [String; 13] {
         |figure: fn(&SetupResult) -> String| [of(&line.expert, figure), of(&line.default, figure)];
     let best = line.expert.as_ref().or(line.default.as_ref());
     let [right, right_default] = pair(right_percent);
-    let [found, found_default] = pair(|it| percent(&it.all));
+    let [events, events_default] = pair(|it| percent(&it.all));
     let [spurious, spurious_default] = pair(|it| it.all.spurious.to_string());
     let [rhs, rhs_default] = pair(|it| figure(it.rhs));
     [
@@ -78,8 +78,8 @@ fn cells(line: &BoardLine) -> [String; 13] {
         line.language.clone(),
         right,
         right_default,
-        found,
-        found_default,
+        events,
+        events_default,
         spurious,
         spurious_default,
         rhs,

@@ -30,7 +30,12 @@ pub(crate) struct RowJson {
     pub(crate) engine: String,
     pub(crate) tolerance: Option<f64>,
     pub(crate) events_total: u64,
-    pub(crate) events_matched: Option<u64>,
+    #[serde(default)]
+    pub(crate) events_judged: Option<u64>,
+    #[serde(default)]
+    pub(crate) events_right: Option<u64>,
+    #[serde(default)]
+    pub(crate) events_undecidable: Option<u64>,
     pub(crate) events_spurious: Option<u64>,
     pub(crate) rhs_evaluations: Option<u64>,
     pub(crate) wall_ns: Option<u64>,
