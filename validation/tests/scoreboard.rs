@@ -55,6 +55,17 @@ fn a_default_stands_beside_its_expert() {
     assert!(!html.contains("http://") && !html.contains("https://"), "it loads nothing");
 }
 
+/// What is not installed has nothing to compare.
+#[test]
+fn an_engine_that_is_not_installed_has_no_line() {
+    let mut without = report("1.0");
+    for at in [0, 2] {
+        without["results"][at]["verdict"] = json!("unavailable");
+    }
+    let text = page::markdown(&board(&[without]).expect("a board"));
+    assert!(text.contains("| lib-bdf 1.0 | Lib | C 17 | 100 | \u{2013} |"), "{text}");
+}
+
 /// The order is that of the ranking: no unexpected failure, then what is wholly right.
 #[test]
 fn a_line_with_an_unexpected_failure_stands_below() {

@@ -93,7 +93,8 @@ impl Board {
         tolerances.sort_by(|a, b| b.total_cmp(a));
         tolerances.dedup();
         let mut lines: Vec<BoardLine> = Vec::new();
-        for (engine, rows) in setups(reports)? {
+        let is_installed = |rows: &[&RowJson]| rows.iter().any(|it| it.verdict != "unavailable");
+        for (engine, rows) in setups(reports)?.into_iter().filter(|(_, rows)| is_installed(rows)) {
             put(&mut lines, engine, SetupResult::of(&rows, &kinds));
         }
         let by_rank = |a: &BoardLine, b: &BoardLine| {
