@@ -79,7 +79,7 @@ fn a_sign_that_106_bits_do_not_show_is_shown_in_more() {
     }
 }
 
-/// Starts that a caller gives lie in the mode that the list chooses, and a run from there begins so.
+/// Starts that a caller gives lie in the mode that the list chooses, and a run begins in it.
 #[test]
 fn starts_of_a_grid_lie_in_their_modes() {
     let system = System::from_toml(&rig("0", LIST, ["0", "0"])).expect("a system");
