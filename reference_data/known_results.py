@@ -2,8 +2,9 @@
 
     python known_results.py [--out DIR] [--oscillator NAME]...
 
-Instants that are rational, published or given by a formula of their own, and the oscillator's own
-tables, made again from `percussive-oscillator.system.toml` by the general prover.
+Instants that are rational, published or given by a formula of their own, derivatives alike
+(`known_gradients.py`), and the oscillator's own tables, made again from
+`percussive-oscillator.system.toml` by the general prover.
 """
 
 import argparse
@@ -17,6 +18,7 @@ from flint import fmpq
 from mpmath import mp, mpf
 
 import generate_systems
+import known_gradients
 import system_file
 from affine_expression import number
 from case import Case
@@ -151,6 +153,7 @@ def unmet(out: Path, names: list) -> list:
     """What is known and not met by the tables in `out`."""
     mp.dps = WORKING_DIGITS
     found = [*ball(out), *spheres(out), *c5(out), *relays(out), *flights(out)]
+    found += known_gradients.unmet(out)
     return found + [f"oscillator: {name}" for name in oscillator(names)]
 
 

@@ -137,7 +137,7 @@ class Builder:
         self.lets = table.get("let", {})
         self.size = len(self.states) + (3 if self.forced else 1)
         self.check_names()
-        self.known = {key: self.constant(number(value)) for key, value in self.parameters.items()}
+        self.known = {name: self.constant(self.parameter(name)) for name in self.parameters}
         forcing = table.get("forcing", {})
         only(forcing, "omega phi", "forcing")
         self.omega = self.amount(forcing["omega"]) if self.forced else fmpq(0)
@@ -158,6 +158,12 @@ class Builder:
             raise Refused(f"{wrong[0]!r} is reserved, used twice, or not letters, digits and _")
         if not 1 <= len(self.states) or self.size > LARGEST_SIZE:
             raise Refused(f"the state with cos, sin and 1 appended has 2 to {LARGEST_SIZE} entries")
+
+    def parameter(self, name: str) -> fmpq:
+        return number(self.parameters[name])
+
+    def matrix_of(self, rows: list) -> fmpq_mat:
+        return fmpq_mat(rows)
 
     def constant(self, value: fmpq) -> list:
         return [fmpq(0)] * (self.size - 1) + [value]
@@ -191,7 +197,7 @@ class Builder:
 
     def condition(self, text: str) -> fmpq_mat:
         row = in_range(Reader(text, self.value_of, self.size).condition())
-        return fmpq_mat(1, self.size, row)
+        return self.matrix_of([row])
 
     def guard(self, text: str) -> fmpq_mat:
         row = self.condition(text)
@@ -231,11 +237,11 @@ class Builder:
         if self.forced:
             matrix.append([-self.omega * c for c in self.unit(-2)])
             matrix.append([self.omega * c for c in self.unit(-3)])
-        return fmpq_mat([*matrix, [fmpq(0)] * self.size])
+        return self.matrix_of([*matrix, [fmpq(0)] * self.size])
 
     def reset(self, texts: list) -> fmpq_mat:
         rows = self.assignments(texts, "", "reset")
-        return fmpq_mat([rows.get(i, self.unit(i)) for i in range(self.size)])
+        return self.matrix_of([rows.get(i, self.unit(i)) for i in range(self.size)])
 
     def until(self, table: dict, mode: str) -> Event:
         only(table, "name guard reset next", f"until of {mode}")

@@ -3,10 +3,11 @@
     python verify.py [NAME]... [--cases DIR]
 
 Checks every hash, that each case has its files and each file its case, that the cases NAMEd
-(two small ones by default, and two of the systems) come out the same byte for byte, that the pieces
-integrated from the differential equations agree with the event tables, that Table 1 does, that each
-kind of trouble has two cases of the systems, and that what is known of the systems without their
-tables is met. Exit 1 if any fails.
+(two small ones by default, two of the systems, and two of derivatives) come out the same byte for
+byte, that the pieces integrated from the differential equations agree with the event tables, that
+differences of runs agree with the derivatives of the same cases, that Table 1 does, that each kind
+of trouble has two cases of the systems, and that what is known of the systems without their tables
+is met. Exit 1 if any fails.
 """
 
 import argparse
@@ -20,10 +21,13 @@ from pathlib import Path
 
 from mpmath import mp
 
+import check_gradients
 import generate_events
+import generate_gradients
 import generate_pieces
 import generate_system_pieces
 import generate_systems
+import gradient_case
 import known_results
 import manifest
 from case import Case
@@ -34,6 +38,7 @@ from system_file import TROUBLE
 
 SMALL = ["table1-first-row", "graze-overlap-1e-12"]
 SMALL_SYSTEMS = ["plastic-lands-late", "spheres-meet-inelastic"]
+SMALL_GRADIENTS = ["diffeqgpu-533", "relay-cycle"]
 CASES_EACH = 2  # of every kind of trouble
 LAST_PRINTED_DIGIT = Decimal("1e-5")
 
@@ -53,6 +58,8 @@ def unpaired(cases: Path) -> list:
     wanted |= {f"pieces/{name}.csv" for name in PIECES}
     folder = generate_system_pieces.FOLDER
     wanted |= {f"{folder}/{name}.csv" for name in generate_system_pieces.PIECES}
+    folder = generate_gradients.FOLDER
+    wanted |= {f"{folder}/{case.name}.csv" for case in gradient_case.read([])}
     present = {p.relative_to(HERE).as_posix() for p in HERE.glob("*/*.csv")}
     return sorted(wanted ^ present)
 
@@ -60,6 +67,12 @@ def unpaired(cases: Path) -> list:
 def system_cases(names: list) -> list:
     """Paths of the systems' cases wanted, all of them where no name is given."""
     return select(generate_systems.CASES, names)
+
+
+def gradient_cases(names: list) -> list:
+    """Cases of derivatives wanted, two small ones where no name is one of theirs."""
+    known = {case.name for case in gradient_case.read([])}
+    return gradient_case.read([name for name in names if name in known] or SMALL_GRADIENTS)
 
 
 def rare_trouble() -> list:
@@ -75,7 +88,8 @@ def irreproducible(cases: Path, names: list) -> list:
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
         known = {path.stem for path in system_cases([])}
-        for path in select(cases, [name for name in names if name not in known] or SMALL):
+        others = known | {case.name for case in gradient_case.read([])}
+        for path in select(cases, [name for name in names if name not in others] or SMALL):
             generate_events.generate(Case.read(path), out)
             if path.stem in PIECES:
                 generate_pieces.generate(Case.read(path), out)
@@ -84,6 +98,8 @@ def irreproducible(cases: Path, names: list) -> list:
             generate_systems.generate(SystemCase.read(path, systems), out)
             if path.stem in generate_system_pieces.PIECES:
                 generate_system_pieces.generate(path, systems, out)
+        for case in gradient_cases(names):
+            generate_gradients.generate(case, out)
         for made in sorted(out.glob("*/*.csv")):
             name = made.relative_to(out).as_posix()
             if made.read_bytes() != (HERE / name).read_bytes():
@@ -119,6 +135,9 @@ def main() -> None:
         "not reproduced": irreproducible(arguments.cases, arguments.names),
         "unlike Table 1": unlike_table1(),
         "unlike the differential equations": [] if agreement() else ["see above"],
+        "unlike differences of runs": [
+            line for case in gradient_cases(arguments.names) for line in check_gradients.check(case)
+        ],
         "trouble with too few cases": rare_trouble(),
         "known and not met": known_results.unmet(HERE, known_results.OSCILLATOR_CASES),
     }
