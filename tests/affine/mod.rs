@@ -11,6 +11,7 @@ mod enclosed;
 mod endings;
 mod files;
 mod follow;
+mod gradient_tables;
 mod gradients;
 mod hostile;
 mod kept;
