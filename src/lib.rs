@@ -140,13 +140,14 @@ mod unknown_name;
 
 #[cfg(feature = "affine")]
 pub use affine::events::{
-    Answer, Cause, Ending, Event, Events, Kind, Proved, Run, Samples, Solver,
+    Answer, Cause, Ending, Event, Events, Gradient, Kind, Proved, Run, Samples, Solver,
 };
 #[cfg(feature = "affine")]
 pub use affine::gallery;
 #[cfg(feature = "affine")]
 pub use affine::{
-    Bits212, Bits424, Bits848, Bits1696, Bits3392, DoubleDouble, Rational, System, SystemError,
+    Bits212, Bits424, Bits848, Bits1696, Bits3392, DoubleDouble, NoGradient, Rational, System,
+    SystemError,
 };
 pub use crossing::Counters;
 pub use error::InputError;
@@ -192,3 +193,8 @@ struct Readme;
 #[cfg(all(doctest, feature = "affine"))]
 #[doc = include_str!("../docs/LIBRARY.md")]
 struct LibraryPage;
+
+/// The code of the page on derivatives, too.
+#[cfg(all(doctest, feature = "affine"))]
+#[doc = include_str!("../docs/GRADIENTS.md")]
+struct GradientsPage;

@@ -1,9 +1,10 @@
 //! Derivatives of events against differences of runs in 424 bits, which know nothing of them.
 
-use percuss::affine::{Bits424, Event, NoGradient, Solver, System, SystemFile, Walk, What};
+use percuss::affine::{Bits424, Event, NoGradient, Solver, System, SystemFile, Walk};
 use percuss::number::Number;
 use percuss::system::Name;
 use percuss::{Bits212, Rational};
+use std::sync::Arc;
 
 /// Differences over steps of this share of a parameter, and of twice that: their extrapolation is
 /// off by the fourth power, 1e-41, and by what the fifth derivatives make of it.
@@ -81,16 +82,31 @@ type Cells<T> = Result<Vec<(T, <T as Number>::Bound)>, NoGradient>;
 
 /// The derivatives of the first events by a name.
 fn gradients<T: Number>(text: &str, name: &Name, count: usize) -> Vec<Cells<T>> {
+    let until = |system: &System| {
+        T::exact(system.start.as_ref().unwrap().time.to_f64() + 40.0 * system.time_scale)
+    };
+    walked(text, name, until, count)
+}
+
+/// The derivatives of the first events up to a time by a name.
+fn walked<T: Number>(
+    text: &str,
+    name: &Name,
+    until: impl Fn(&System) -> T,
+    count: usize,
+) -> Vec<Cells<T>> {
     let file = file(text, &[]);
-    let (system, tangent) = (file.system().unwrap(), file.tangent(name).unwrap());
+    let (system, tangent) = (file.system().unwrap(), Arc::new(file.tangent(name).unwrap()));
     let solver = Solver::<T>::new(&system).unwrap();
-    let run = solver.run_enclosed(system.start.as_ref().unwrap(), T::exact(1e9)).unwrap();
-    let mut walk = Walk::new(&solver, &tangent, &run.start()).unwrap();
-    events::<T>(&system, count)
-        .iter()
-        .map(|it| walk.step(it))
-        .map(|it| it.map(|it| std::iter::once(it.time).chain(it.state).collect()))
-        .collect()
+    let start = system.start.as_ref().unwrap();
+    let mut run = solver.run_enclosed(start, until(&system)).unwrap();
+    let mut walk = Walk::new(&solver, &tangent, start, &run.start()).unwrap();
+    let mut all = Vec::new();
+    while let Some(event) = run.next().filter(|_| all.len() < count) {
+        let gradient = walk.step(&event, &run);
+        all.push(gradient.map(|it| std::iter::once(it.time).chain(it.state).collect()));
+    }
+    all
 }
 
 /// Compares the derivatives of some events by each name that is given.
@@ -148,6 +164,7 @@ fn the_first_impact_of_a_ball_has_its_derivatives_in_closed_form() {
 #[test]
 fn a_start_on_a_guard_has_no_derivative_by_its_height() {
     let found = gradients::<Bits212>(system!("bouncing-ball"), &Name::read("start.x"), 3);
+    assert_eq!(found.len(), 3);
     assert!(found.iter().all(|it| *it.as_ref().unwrap_err() == NoGradient::OneSided));
 }
 
@@ -183,16 +200,93 @@ fn a_driven_rigid_oscillator_by_its_forcing() {
 
 #[test]
 fn the_horizon_does_not_move() {
-    let text = system!("bouncing-ball");
-    let system = file(text, &[]).system().unwrap();
-    let solver = Solver::<Bits212>::new(&system).unwrap();
-    let tangent = file(text, &[]).tangent(&Name::read("g")).unwrap();
-    let run = solver.run_enclosed(system.start.as_ref().unwrap(), Bits212::exact(0.5)).unwrap();
-    let mut walk = Walk::new(&solver, &tangent, &run.start()).unwrap();
-    let end = run.last().unwrap();
-    assert!(matches!(end.what, What::End(_)));
+    let by_gravity = Name::read("g");
+    let half = |_: &System| Bits212::exact(0.5);
+    let rows = walked(system!("bouncing-ball"), &by_gravity, half, 9);
+    let end = rows.last().unwrap().as_ref().unwrap();
     // x = v t - g t^2/2 and v = v - g t.
-    let end = walk.step(&end).unwrap();
-    let state: Vec<f64> = end.state.iter().map(|it| it.0.to_f64()).collect();
-    assert_eq!((end.time.0.to_f64(), state), (0.0, vec![-0.125, -0.5]));
+    assert_eq!(end.iter().map(|it| it.0.to_f64()).collect::<Vec<_>>(), [0.0, -0.125, -0.5]);
+}
+
+/// A horizon at the instant of an impact lies before or behind it.
+#[test]
+fn an_event_at_the_horizon_has_its_row_and_the_horizon_has_none() {
+    let rows = walked(system!("bouncing-ball"), &Name::read("g"), |_| Bits212::exact(1.5), 9);
+    let [impact, end] = &rows[..] else { panic!("{} rows", rows.len()) };
+    assert!(impact.is_ok());
+    assert_eq!(end.as_ref().unwrap_err(), &NoGradient::Undecided);
+}
+
+/// A ball thrown up at speed 2 with g = 8 turns at 1/4, after 1/4; it lands at 1/2.
+fn thrown(level: &str) -> String {
+    format!(
+        r#"
+        schema = 1
+        name = "thrown"
+        states = ["x", "v"]
+        [parameters]
+        g = 8
+        h = {level}
+        [[mode]]
+        name = "up"
+        equations = ["x' = v", "v' = -g"]
+        watch = [{{ name = "level", guard = "x > h", direction = "both" }}]
+        until = [{{ name = "land", guard = "x < 0", reset = ["x = 0", "v = -v/2"] }}]
+        [start]
+        mode = "up"
+        x = 0
+        v = 2
+        "#
+    )
+}
+
+fn outcomes(text: &str, name: &str, until: f64) -> Vec<Result<(), NoGradient>> {
+    let rows = walked(text, &Name::read(name), |_| Bits212::exact(until), 9);
+    rows.into_iter().map(|it| it.map(|_| ())).collect()
+}
+
+#[test]
+fn a_touch_without_a_crossing_has_two_sides() {
+    let touched = Err(NoGradient::Touch);
+    assert_eq!(outcomes(&thrown("0.25"), "g", 0.6), [touched, touched]);
+    assert_eq!(outcomes(&thrown("0.25"), "g", 0.24), [Ok(())]);
+    assert_eq!(outcomes(&thrown("0.375"), "g", 0.6), [Ok(()), Ok(())]);
+    // The second flight is lower and touches nothing.
+    assert_eq!(outcomes(&thrown("0.1875"), "g", 0.6).len(), 4);
+    assert!(outcomes(&thrown("0.1875"), "g", 0.6).iter().all(Result::is_ok));
+}
+
+/// 3 cos t + 4 sin t reaches 5 at the angle of (3, 4), and x'' = -4 x from x = 3 at the rate 8 has
+/// the amplitude 5.
+#[test]
+fn a_touch_of_an_oscillation_or_of_the_forcing_has_two_sides() {
+    let text = |forcing: &str, guard: &str| {
+        format!(
+            r#"
+            schema = 1
+            name = "swing"
+            states = ["x", "v"]
+            {forcing}
+            [parameters]
+            k = 4
+            level = 5
+            [[mode]]
+            name = "on"
+            equations = ["x' = v", "v' = -k*x"]
+            watch = [{{ name = "top", guard = "{guard} > level" }}]
+            [start]
+            mode = "on"
+            x = 3
+            v = 8
+            "#
+        )
+    };
+    let free = text("", "x");
+    let top = 0.5 * 0.8_f64.asin();
+    assert_eq!(outcomes(&free, "k", top - 1e-6), [Ok(())]);
+    assert_eq!(outcomes(&free, "k", top + 1e-6), [Err(NoGradient::Touch)]);
+    let forced = text("forcing = { omega = 1 }", "3*cos + 4*sin");
+    let angle = 4.0_f64.atan2(3.0);
+    assert_eq!(outcomes(&forced, "k", angle - 1e-6), [Ok(())]);
+    assert_eq!(outcomes(&forced, "k", angle + 1e-6), [Err(NoGradient::Touch)]);
 }

@@ -12,6 +12,7 @@ mod endings;
 mod files;
 mod follow;
 mod gradient_tables;
+mod gradient_runs;
 mod gradients;
 mod hostile;
 mod kept;

@@ -4,6 +4,7 @@
 use super::answer::{Answer, Running, sealed};
 use super::cause::Cause;
 use super::event::{Event, Kind};
+use super::gradient::ByName;
 use super::proved::Proved;
 use super::request::Request;
 use super::sizes::Sizes;
@@ -136,7 +137,12 @@ struct InArithmetic<'a, T: Number> {
 }
 
 impl<'a, T: Number> InArithmetic<'a, T> {
-    fn proved(&self, event: &engine::Event<T>, kind: Kind) -> Event<'a, Proved> {
+    fn proved(
+        &self,
+        event: &engine::Event<T>,
+        kind: Kind,
+        gradients: Vec<ByName<Proved>>,
+    ) -> Event<'a, Proved> {
         let errors = event.errors.as_ref();
         let error = |it: Option<&T::Bound>| it.copied().unwrap_or(T::Bound::INFINITY);
         let time = Proved::of(event.time.value(), error(errors.map(|it| &it.time)));
@@ -150,17 +156,20 @@ impl<'a, T: Number> InArithmetic<'a, T> {
             time,
             state: state.collect(),
             accumulation: accumulation(event),
+            gradients,
         }
     }
 }
 
 impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
     fn start(&self) -> Event<'a, Proved> {
-        self.proved(&self.steps.run.start(), Kind::Start)
+        let gradients = self.steps.walks.of_start(|it| Proved::of(it.0, it.1));
+        self.proved(&self.steps.run.start(), Kind::Start, gradients)
     }
 
     fn start_needs_more_bits(&mut self, digits: usize) -> bool {
-        self.sizes.have_too_few_digits(&self.steps.run.start(), digits)
+        let of_gradients = self.steps.walks.need_more_bits(digits);
+        self.sizes.have_too_few_digits(&self.steps.run.start(), digits) || of_gradients
     }
 
     fn advance(&mut self) -> Option<bool> {
@@ -174,7 +183,10 @@ impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
             engine::What::End(engine::Ending::Undecided) => !self.steps.run.is_exhausted(),
             // The events of a run with samples are not printed.
             _ if self.steps.has_samples() && !is_sample => false,
-            _ => self.sizes.have_too_few_digits(event, digits),
+            _ => {
+                let of_gradients = self.steps.walks.need_more_bits(digits);
+                self.sizes.have_too_few_digits(event, digits) || of_gradients
+            }
         }
     }
 
@@ -185,7 +197,8 @@ impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
 
     fn event(&self) -> Option<Event<'a, Proved>> {
         let step = self.step.as_ref()?;
-        Some(self.proved(&step.event, step.kind()))
+        let gradients = self.steps.walks.of_last(|it| Proved::of(it.0, it.1));
+        Some(self.proved(&step.event, step.kind(), gradients))
     }
 
     fn cause(&self) -> Option<Cause> {

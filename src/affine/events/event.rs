@@ -1,5 +1,7 @@
 //! Events with their names, and the endings of runs.
 
+use super::gradient::{ByName, Gradient};
+use crate::affine::gradient::derivative::NoGradient;
 pub use crate::affine::model::ending::Ending;
 use crate::affine::model::system::System;
 use crate::affine::solver::event as engine;
@@ -31,6 +33,7 @@ pub struct Event<'a, V> {
     pub(super) time: V,
     pub(super) state: Vec<V>,
     pub(super) accumulation: Option<Box<[V; 2]>>,
+    pub(super) gradients: Vec<ByName<V>>,
 }
 
 /// The kind of an event.
@@ -179,5 +182,54 @@ impl<'a, V> Event<'a, V> {
     #[must_use]
     pub fn accumulation(&self) -> Option<&[V; 2]> {
         self.accumulation.as_deref()
+    }
+
+    /// The derivatives of the event by a name for which the run was [asked](crate::Run::gradients),
+    /// or the reason why it has none; nothing for a name that was not asked for.
+    ///
+    /// ```
+    /// use percuss::{System, gallery};
+    ///
+    /// let ball = System::from_toml(gallery::BOUNCING_BALL)?;
+    /// let solver = ball.solver::<f64>()?;
+    /// let mut events = solver.run().gradients(["start.x"])?.until(1.5)?;
+    /// let fall = events.next().expect("an impact");
+    /// // The time of a fall from the height x is the root of 2 x/g.
+    /// let by_height = fall.gradient("start.x").expect("it was asked for").expect("it has one");
+    /// assert!((by_height.time() - 0.5_f64.sqrt()).abs() < 1e-15);
+    /// assert!(fall.gradient("g").is_none());
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    #[must_use]
+    pub fn gradient(&self, name: &str) -> Option<Result<&Gradient<V>, NoGradient>> {
+        let found = self.gradients.iter().find(|it| it.name == name)?;
+        Some(found.both.as_ref().map_err(|reason| *reason))
+    }
+
+    /// The derivatives of the event below and above the name's value, where they differ: each, or
+    /// the reason why it has none. Nothing where [`gradient`](Self::gradient) is that of both sides
+    /// or has another reason, and for a name that was not asked for.
+    ///
+    /// ```
+    /// use percuss::{NoGradient, System, gallery};
+    ///
+    /// // From the ground at the speed 1 with g = 1: it is back after 2.
+    /// let ball = System::from_toml(gallery::BOUNCING_BALL)?;
+    /// let solver = ball.solver::<f64>()?;
+    /// let thrown = ball.start_at("flight", 0.0, &[0.0, 1.0])?;
+    /// let run = solver.run_from(&thrown).gradients(["start.x"])?;
+    /// let back = run.events(1)?.next().expect("an impact");
+    /// assert_eq!(back.gradient("start.x").and_then(Result::err), Some(NoGradient::OneSided));
+    /// let [below, above] = back.one_sided("start.x").expect("they differ");
+    /// // Moved up it falls 1 per height longer; moved down it is below the ground.
+    /// assert_eq!(above.map(|it| *it.time()), Ok(1.0));
+    /// assert_eq!(below.err(), Some(NoGradient::OtherEvents));
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    #[must_use]
+    pub fn one_sided(&self, name: &str) -> Option<[Result<&Gradient<V>, NoGradient>; 2]> {
+        let found = self.gradients.iter().find(|it| it.name == name)?;
+        let sides = found.sides.as_deref()?;
+        Some(sides.each_ref().map(|it| it.as_ref().map_err(|reason| *reason)))
     }
 }

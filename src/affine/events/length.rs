@@ -8,7 +8,9 @@ use super::request::{Horizon, Request};
 use crate::affine::model::error::SystemError;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::StartPoint;
+use crate::affine::model::tangent::{Name, Tangent};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// The significant digits that are wanted of proved numbers, unless a run is told otherwise.
 const USUAL_DIGITS: usize = 17;
@@ -23,6 +25,7 @@ pub struct Run<'a, A: Answer> {
     start: Option<Cow<'a, StartPoint>>,
     digits: usize,
     most_bits: u32,
+    tangents: Vec<Arc<Tangent>>,
 }
 
 impl Run<'_, Proved> {
@@ -52,7 +55,47 @@ impl Run<'_, Proved> {
 impl<'a, A: Answer> Run<'a, A> {
     /// A run of a system that is prepared, from a start if it has one.
     pub(super) fn of(prepared: &'a A::Prepared, start: Option<Cow<'a, StartPoint>>) -> Self {
-        Self { prepared, start, digits: USUAL_DIGITS, most_bits: MOST_BITS }
+        let tangents = Vec::new();
+        Self { prepared, start, digits: USUAL_DIGITS, most_bits: MOST_BITS, tangents }
+    }
+
+    /// Differentiates the run by names: parameters of the system, or `start.STATE` for a state at
+    /// the start. Each [`Event`](crate::Event::gradient) then has the derivatives of its time and
+    /// its state by each of them; in a [`Proved`] run with so many digits as those have.
+    ///
+    /// A start that is not the system's own does not depend on its parameters.
+    ///
+    /// ```
+    /// use percuss::{Proved, System, gallery};
+    ///
+    /// let ball = System::from_toml(gallery::BOUNCING_BALL)?;
+    /// let solver = ball.solver::<Proved>()?;
+    /// let impact = solver.run().gradients(["g"])?.events(1)?.next().expect("an impact");
+    /// let by_gravity = impact.gradient("g").expect("it was asked for").expect("it has one");
+    /// assert_eq!(by_gravity.time().to_string(), "-0.70710678118654752");
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A name that is neither a parameter nor a state at the start, a system that was changed after
+    /// it was read or built, one without a start, and a run back in time.
+    pub fn gradients(
+        mut self,
+        names: impl IntoIterator<Item = impl AsRef<str>>,
+    ) -> Result<Self, SystemError> {
+        let system = A::system(self.prepared);
+        let Some(start) = &self.start else {
+            return Err(SystemError::NoStart { system: system.name.clone() });
+        };
+        for name in names {
+            let name = Name::read(name.as_ref());
+            if A::is_backward(self.prepared) {
+                let what = "a run back in time has none: accepted is a run forward".to_owned();
+                return Err(SystemError::Name { item: format!("a derivative by {name}"), what });
+            }
+            self.tangents.push(Arc::new(system.tangent(&name, start)?));
+        }
+        Ok(self)
     }
 
     /// The events up to a time, then the ending.
@@ -209,6 +252,7 @@ impl<'a, A: Answer> Run<'a, A> {
             samples,
             digits: self.digits,
             most_bits: self.most_bits,
+            tangents: self.tangents,
         };
         Ok(Events { run: A::begin(self.prepared, &request)?, left: count })
     }

@@ -2,7 +2,8 @@
 //! digits.
 //!
 //! [`answer`] has the kinds of numbers; [`plain`] runs in one arithmetic, and [`escalation`] in one
-//! after the other until the digits are proved. [`steps`] puts samples between the events of a run.
+//! after the other until the digits are proved. [`steps`] puts samples between the events of a run,
+//! and [`gradient`] has their derivatives.
 //! [`length`] says how long a run is, and [`iterators`] go through it. [`event`] and [`proved`] are
 //! what is given out, and [`interval`] prints it. Read this file first, then `length`, `event` and
 //! `escalation`.
@@ -11,6 +12,7 @@ mod answer;
 mod cause;
 mod escalation;
 mod event;
+mod gradient;
 mod interval;
 mod iterators;
 mod length;
@@ -24,6 +26,7 @@ pub use answer::Answer;
 pub use cause::Cause;
 pub use escalation::BITS;
 pub use event::{Ending, Event, Kind};
+pub use gradient::Gradient;
 pub use iterators::{Events, Samples};
 pub use length::Run;
 pub use proved::Proved;

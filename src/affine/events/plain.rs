@@ -3,6 +3,7 @@
 use super::answer::{Answer, Running, sealed};
 use super::cause::Cause;
 use super::event::{Event, Kind};
+use super::gradient::ByName;
 use super::request::Request;
 use super::steps::Steps;
 use crate::affine::model::error::SystemError;
@@ -23,7 +24,12 @@ impl<'a, T: Number> Plain<'a, T> {
         Ok(Self { solver, steps: Steps::begin(solver, request, false)? })
     }
 
-    fn event(&self, kind: Kind, event: engine::Event<T>) -> Event<'a, T> {
+    fn event(
+        &self,
+        kind: Kind,
+        event: engine::Event<T>,
+        gradients: Vec<ByName<T>>,
+    ) -> Event<'a, T> {
         let engine::Event { what, time, state, mode, .. } = event;
         let time = time.value();
         let accumulation = match what {
@@ -32,18 +38,21 @@ impl<'a, T: Number> Plain<'a, T> {
             }
             _ => None,
         };
-        Event { system: self.solver.system(), kind, mode, time, state, accumulation }
+        let system = self.solver.system();
+        Event { system, kind, mode, time, state, accumulation, gradients }
     }
 }
 
 impl<'a, T: Number> Running<'a, T> for Plain<'a, T> {
     fn start(&self) -> Event<'a, T> {
-        self.event(Kind::Start, self.steps.run.start())
+        let gradients = self.steps.walks.of_start(|it| it.0);
+        self.event(Kind::Start, self.steps.run.start(), gradients)
     }
 
     fn next(&mut self) -> Option<Event<'a, T>> {
         let step = self.steps.next()?;
-        Some(self.event(step.kind(), step.event))
+        let gradients = self.steps.walks.of_last(|it| it.0);
+        Some(self.event(step.kind(), step.event, gradients))
     }
 
     fn go_on(&mut self, until: f64) -> bool {

@@ -1,6 +1,8 @@
 //! The request of a run: its start, its end and its samples.
 
 use crate::affine::model::system::StartPoint;
+use crate::affine::model::tangent::Tangent;
+use std::sync::Arc;
 
 /// The start and the end of a run, and the samples between.
 #[derive(Clone, Debug)]
@@ -11,6 +13,8 @@ pub struct Request {
     pub(super) samples: Option<u32>,
     /// The significant digits that are wanted of proved numbers.
     pub(super) digits: usize,
+    /// The derivatives of the coefficients by each name by which the run is differentiated.
+    pub(super) tangents: Vec<Arc<Tangent>>,
     /// The most bits of an arithmetic.
     pub(super) most_bits: u32,
 }

@@ -2,6 +2,7 @@
 //! where these are asked for.
 
 use super::event::Kind;
+use super::gradient::Walks;
 use super::request::{Horizon, Request};
 use crate::affine::arithmetic::clock::{Time, full_turn};
 use crate::affine::model::error::SystemError;
@@ -18,6 +19,7 @@ pub const LONGEST: f64 = 1e9;
 /// A run with the samples that are asked for.
 pub(super) struct Steps<'a, T: Number> {
     pub run: Run<'a, T>,
+    pub walks: Walks<'a, T>,
     /// Whether an event has come.
     has_begun: bool,
     sampling: Option<Sampling<T>>,
@@ -52,7 +54,8 @@ impl<'a, T: Number> Steps<'a, T> {
             false => solver.run(start, horizon)?,
         };
         let sampling = Sampling::of(request, system, end, solver.is_backward());
-        Ok(Self { run, has_begun: false, sampling, is_over: false })
+        let walks = Walks::begin(solver, request, &run.start())?;
+        Ok(Self { run, walks, has_begun: false, sampling, is_over: false })
     }
 
     /// Whether the run has samples.
@@ -65,6 +68,7 @@ impl<'a, T: Number> Steps<'a, T> {
             return None;
         }
         let event = self.run.next()?;
+        self.walks.step(&event, &self.run);
         let is_horizon = event.what == What::End(Ending::Horizon);
         if let Some(sampling) = self.sampling.as_mut().filter(|it| is_horizon && !it.is_over) {
             // The start itself has no rounding of modal co-ordinates.

@@ -84,6 +84,9 @@ impl<T: Number> Ball<T> {
     /// The quotient, unless the divisor may be zero.
     pub fn over(self, divisor: Self) -> Option<Self> {
         divisor.sign()?;
+        if self.is_zero() {
+            return Some(Self::zero());
+        }
         let quotient = self.middle / divisor.middle;
         let least = divisor.middle.bound().abs() - divisor.radius * OUTWARD;
         let size = quotient.bound().abs();

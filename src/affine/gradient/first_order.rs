@@ -12,12 +12,14 @@ use crate::affine::zeros::residue::{Residue, Residues, residues};
 use crate::affine::zeros::space::{ZeroSpace, kernel};
 
 /// The rows of a mode over (s, z).
+#[derive(Clone)]
 struct ModeRows {
     matrix: Vec<Residues>,
     resets: Vec<Vec<Residues>>,
 }
 
 /// The zeros of a run that hold to first order, at the present segment.
+#[derive(Clone)]
 pub struct FirstOrder {
     modes: Vec<ModeRows>,
     at_entry: ZeroSpace,
@@ -74,6 +76,11 @@ impl FirstOrder {
     /// Whether a row that is not zero to first order is zero at the entry all the same.
     pub fn is_zero_at_entry(&self, row: &Row) -> bool {
         of_value(row).is_some_and(|it| self.at_entry.contains(&it))
+    }
+
+    /// Whether a row over (s, z) is zero along the whole segment.
+    pub fn lasts(&self, row: &Residues) -> bool {
+        self.lasting.contains(row)
     }
 
     /// The zeros at an instant of the segment, or at its entry, where a guard fires.

@@ -4,13 +4,17 @@
 //! from one exponential, whose entries have derivatives ([`exponential`], of numbers with bounds of
 //! their errors in [`ball`]). At a guard w the event's time moves by -(w s + dw z)/(w M z), and a
 //! reset R leaves R s + dR z. What is zero by the model has to be so to first order in the name
-//! ([`first_order`]); where it is not, a derivative has two sides and is refused. [`walk`] goes
-//! from event to event. Read it first.
-//!
-//! A guard that touches zero between two events without crossing, by exact arithmetic alone, is not
-//! noticed: behind it the derivatives are those of the side on which there is no event.
+//! ([`first_order`]). Where it is not, a derivative has two sides, each of which is followed by
+//! itself at the entry of a segment, and refused elsewhere ([`checks`]); so it is behind a guard
+//! that touches zero without crossing, of which the run tells. [`walk`] goes from event to event,
+//! [`start`] begins it with the [`coefficients`] of the modes, and [`derivative`] is what it gives
+//! out. Read `walk` first.
 
 mod ball;
+mod checks;
+mod coefficients;
+pub mod derivative;
 mod exponential;
 mod first_order;
+mod start;
 pub mod walk;

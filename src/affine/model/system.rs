@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
+use std::sync::Arc;
 
 /// A row of exact coefficients, one for each entry of z.
 pub type Row = Vec<Rational>;
@@ -85,10 +86,23 @@ pub struct System {
     /// The modes in which a start may lie, where the file lists them: the first whose condition
     /// holds at the start is its mode.
     pub start_modes: Vec<Successor>,
+    /// The file or the builder's items, whose expressions have the derivatives of all this.
+    pub(super) file: Origin,
+}
+
+/// The expressions that a system was made from, if it was.
+#[derive(Clone, Default)]
+pub(super) struct Origin(pub Option<Arc<SystemFile>>);
+
+impl fmt::Debug for Origin {
+    /// Two systems of the same coefficients are shown alike, whatever they were made from.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Origin")
+    }
 }
 
 /// A forcing of the phase theta = omega t + phi.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Forcing {
     /// The frequency, radians a unit of time: positive, or negative where a system runs backward.
     pub omega: Rational,
@@ -97,7 +111,7 @@ pub struct Forcing {
 }
 
 /// A mode of a system: its motion, with the guards that end it and those that are watched.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mode {
     /// The mode's name.
     pub name: String,
@@ -110,7 +124,7 @@ pub struct Mode {
 }
 
 /// A guard that ends its mode where it becomes positive.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Until {
     /// The event's name.
     pub name: String,
@@ -123,7 +137,7 @@ pub struct Until {
 }
 
 /// A mode that may follow an event.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Successor {
     /// The condition: that the first of this row's value and derivatives that is not zero is
     /// positive.
@@ -133,7 +147,7 @@ pub struct Successor {
 }
 
 /// A guard whose crossings are counted.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Watch {
     /// The event's name.
     pub name: String,

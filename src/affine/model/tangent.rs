@@ -126,6 +126,34 @@ impl SystemFile {
     }
 }
 
+impl System {
+    /// The derivatives of all coefficients by a name, with those of a start: by its expressions
+    /// where it is the file's own, and else of a state alone that is the name.
+    pub(in crate::affine) fn tangent(
+        &self,
+        by: &Name,
+        start: &StartPoint,
+    ) -> Result<Tangent, SystemError> {
+        let refused = |what: &str| SystemError::Name {
+            item: format!("a derivative by {by}"),
+            what: format!("{what}: accepted is a system as it was read or built"),
+        };
+        let file = self.file.0.as_ref().ok_or_else(|| refused("the system has no expressions"))?;
+        let read = file.system()?;
+        if read.modes != self.modes || read.forcing != self.forcing {
+            return Err(refused("the system was changed, and its expressions were not"));
+        }
+        let mut tangent = file.tangent(by)?;
+        if read.start.as_ref() != Some(start) {
+            let rate =
+                |state: &String| [Rational::ZERO, Rational::ZERO, Name::is_start(Some(by), state)];
+            let state = self.states.iter().map(rate).collect();
+            tangent.start = Some(StartPoint { mode: start.mode, time: Rational::ZERO, state });
+        }
+        Ok(tangent)
+    }
+}
+
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 mod tests {

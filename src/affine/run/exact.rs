@@ -5,9 +5,11 @@ use super::Run;
 use super::enclosure::Enclosure;
 use super::origins::{ExactRun, Origin};
 use crate::affine::arithmetic::vector::Vector;
+use crate::affine::solver::event::What;
 use crate::affine::zeros::exact::{Chain, Entries, Instant};
 use crate::affine::zeros::exact_mode::{entries_after, solve};
 use crate::affine::zeros::graph::ZeroGuards;
+use crate::affine::zeros::touch::Touch;
 use crate::numeric::number::{Bound, Number};
 
 impl<T: Number> Run<'_, T> {
@@ -19,6 +21,38 @@ impl<T: Number> Run<'_, T> {
         };
         let is_watched = guard >= self.solver.system.modes[mode].until.len();
         circle.keeps_sign && (is_watched || circle.is_below)
+    }
+
+    /// The event whose guard touches zero without crossing between two events of a run that
+    /// follows its errors, as exact arithmetic alone can tell: none up to the events that have
+    /// been returned.
+    #[must_use]
+    pub fn touched(&self) -> Option<What<T>> {
+        self.touch.map(|(mode, guard)| self.what(mode, guard))
+    }
+
+    /// Remembers the first guard that never crosses but touches zero, up to a time after the entry
+    /// of the segment.
+    #[inline]
+    pub(super) fn remember_touch(&mut self, mode: usize, elapsed: T) {
+        let Some(exact) = self.exact.as_ref().filter(|_| self.touch.is_none()) else { return };
+        let elapsed = elapsed.to_f64();
+        let touches = |n: &usize| exact.may_touch(*n, elapsed) || self.turns_to(exact, *n, elapsed);
+        let guards = self.tracks.len();
+        self.touch = (0..guards).find(touches).map(|guard| (mode, guard));
+    }
+
+    /// Whether a guard of the forcing angle and a constant that never changes its sign touches zero
+    /// within a time after the entry.
+    fn turns_to(&self, exact: &ExactRun<T>, guard: usize, elapsed: f64) -> bool {
+        let touch = exact.circle(guard).and_then(|it| it.touch);
+        let (Some(angle), Some(at)) = (touch, self.solver.phase()) else { return false };
+        let Some(forcing) = &self.solver.system.forcing else { return false };
+        let [cos, sin] = [self.state[at].to_f64(), self.state[at + 1].to_f64()];
+        let ahead = angle - libm::atan2(sin, cos);
+        let frequency = forcing.omega.to_f64();
+        let touch = Touch::of_angle(ahead, frequency, false);
+        touch.may_lie_in([0.0, elapsed])
     }
 
     /// A bound of the error of the time, where errors are followed.

@@ -69,6 +69,8 @@ pub struct Run<'a, T: Number> {
     tie: Option<(usize, u64)>,
     /// The mode and the guard that rounding left open by itself, first of all.
     doubt: Option<(usize, usize)>,
+    /// The mode and the guard that touched zero, and never crosses, first of all.
+    touch: Option<(usize, usize)>,
     events_in_instant: u32,
     queue: VecDeque<Event<T>>,
     /// The number of queued events that came before anything that rounding left open.
@@ -292,10 +294,13 @@ impl<'a, T: Number> Run<'a, T> {
                 segment.evaluate(&mut ends.left, limit, &mut self.work);
                 segment.complete(&mut ends.left);
                 ends.left.to_crossing = rest;
+                self.remember_touch(mode, limit);
                 self.at_horizon(mode, limit);
             }
             SearchOutcome::Crossing(guards) => {
                 segment.complete(&mut ends.left);
+                let elapsed = ends.left.time + ends.left.to_crossing;
+                self.remember_touch(mode, elapsed);
                 let before = self.errors_before(mode, guards);
                 self.crossed(guards);
                 if before.is_some() && self.is_open() {

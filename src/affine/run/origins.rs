@@ -11,6 +11,7 @@ use crate::affine::model::system::{Mode, Row, StartPoint, System, Until, is_unit
 use crate::affine::zeros::circle::Circle;
 use crate::affine::zeros::exact::{Chain, Entries, Fate};
 use crate::affine::zeros::exact_mode::{ExactMode, TurningGuard};
+use crate::affine::zeros::touch::Touch;
 use crate::numeric::number::{Bound, Number};
 
 /// An instant with the entries of z that are known there and whose rows of M have been the same
@@ -22,6 +23,12 @@ pub(super) struct Origin<T: Number> {
     pub entries: Entries,
 }
 
+/// A guard that is known never to cross, from an origin that lies this long before the entry.
+struct Kept {
+    since: f64,
+    touch: Option<Touch>,
+}
+
 /// The exact side of a run.
 pub(super) struct ExactRun<T: Number> {
     /// The entry of the segment.
@@ -30,8 +37,8 @@ pub(super) struct ExactRun<T: Number> {
     earlier: Vec<Origin<T>>,
     /// For each guard of the mode, its future from the entry of the segment, as far as it is known.
     fates: Vec<Option<Fate>>,
-    /// For each guard of the mode, whether it is known never to cross.
-    keeps_sign: Vec<bool>,
+    /// For each guard of the mode that is known never to cross, its touches.
+    kept: Vec<Option<Kept>>,
     /// For each guard of the mode that is one of the forcing angle and a constant on the segment:
     /// the constant may be what stands still there.
     circles: Vec<Option<Circle>>,
@@ -55,7 +62,7 @@ impl<T: Number> ExactRun<T> {
             entry: Origin { time, error: T::Bound::ZERO, entries },
             earlier: Vec::new(),
             fates: Vec::new(),
-            keeps_sign: Vec::new(),
+            kept: Vec::new(),
             circles: Vec::new(),
         }
     }
@@ -68,15 +75,23 @@ impl<T: Number> ExactRun<T> {
     /// Enters a mode: the future of its guards.
     pub fn enter(&mut self, mode: &ExactMode) {
         let fates = mode.guards.iter().map(|it| it.fate(&self.entry.entries)).collect();
-        let never = |fate: Option<Fate>| fate.is_some_and(|it| it.keeps_sign || it.begin.is_none());
-        let keeps_sign = |guard: &Chain| self.origins().any(|it| never(guard.fate(&it.entries)));
-        let keep_sign = mode.guards.iter().map(keeps_sign).collect();
+        let entered = self.entry.time;
+        let kept = |guard: &Chain| {
+            let kept = |it: &Origin<T>| {
+                let fate = guard.fate(&it.entries)?;
+                let since = entered.since(&it.time).value().to_f64();
+                let never = fate.keeps_sign || fate.begin.is_none();
+                never.then_some(Kept { since, touch: fate.touch })
+            };
+            self.origins().find_map(kept)
+        };
+        let kept = mode.guards.iter().map(kept).collect();
         let circle = |guard: &Option<TurningGuard>| {
             let guard = guard.as_ref()?;
             self.origins().find_map(|it| guard.circle(&it.entries))
         };
         let circles = mode.turning.iter().map(circle).collect();
-        (self.fates, self.keeps_sign, self.circles) = (fates, keep_sign, circles);
+        (self.fates, self.kept, self.circles) = (fates, kept, circles);
     }
 
     /// The future of a guard from the entry of the segment, as far as it is known.
@@ -86,7 +101,16 @@ impl<T: Number> ExactRun<T> {
 
     /// Whether a guard is known never to cross: it keeps the sign that it has.
     pub fn keeps_sign(&self, guard: usize) -> bool {
-        self.keeps_sign.get(guard).is_some_and(|it| *it)
+        self.kept.get(guard).is_some_and(Option::is_some)
+    }
+
+    /// Whether a guard that is known never to cross may touch zero within a time after the entry.
+    pub fn may_touch(&self, guard: usize, elapsed: f64) -> bool {
+        let kept = self.kept.get(guard).and_then(Option::as_ref);
+        kept.is_some_and(|it| {
+            let span = [it.since, it.since + elapsed];
+            it.touch.is_some_and(|touch| touch.may_lie_in(span))
+        })
     }
 
     /// A guard of the present mode as one of the forcing angle and a constant, if it is one.

@@ -16,6 +16,8 @@ pub struct Circle {
     pub is_below: bool,
     /// Whether the guard never changes its sign: it may touch zero.
     pub keeps_sign: bool,
+    /// The angle at which the guard touches zero, if it does and never changes its sign.
+    pub touch: Option<f64>,
     /// The two points (cos, sin) at which the guard is zero, if they are rational.
     pub points: Option<[[Rational; 2]; 2]>,
 }
@@ -41,7 +43,11 @@ impl Circle {
                 |root: &Rational| [(-a * c - b * root) / &square, (-b * c + a * root) / &square];
             [point(&root), point(&-&root)]
         });
-        Some(Self { is_below: *c < Rational::ZERO, keeps_sign: rest <= Rational::ZERO, points })
+        let (is_below, keeps_sign) = (*c < Rational::ZERO, rest <= Rational::ZERO);
+        let sign = if is_below { 1.0 } else { -1.0 };
+        let angle = || libm::atan2(sign * b.to_f64(), sign * a.to_f64());
+        let touch = rest.is_zero().then(angle);
+        Some(Self { is_below, keeps_sign, touch, points })
     }
 
     /// The number of the rational point that is nearest to an angle, if the two are well apart.
@@ -96,6 +102,9 @@ mod tests {
     fn touches_and_guards_of_states_have_none() {
         let touch = Circle::of(&guard([0, 3, 4, -5]), 1).unwrap();
         assert!(touch.keeps_sign && touch.points.is_none());
+        assert_eq!(touch.touch, Some(4.0_f64.atan2(3.0)));
+        let from_above = Circle::of(&guard([0, 3, 4, 5]), 1).unwrap().touch;
+        assert_eq!(from_above, Some((-4.0_f64).atan2(-3.0)));
         assert!(!Circle::of(&guard([0, 3, 4, -4]), 1).unwrap().keeps_sign);
         assert!(Circle::of(&guard([0, 3, 4, -4]), 1).unwrap().points.is_some());
         assert!(Circle::of(&guard([0, 1, 1, -1]), 1).unwrap().points.is_some());

@@ -7,6 +7,8 @@
 //! from a crossing, or which of two guards that cross at one instant is the first.
 
 use super::circle::root;
+use super::parabola;
+use super::touch::Touch;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::Row;
 
@@ -36,6 +38,8 @@ pub struct Fate {
     pub begin: Option<(usize, bool)>,
     /// Whether the sign that the guard has after the entry is the one that it keeps.
     pub keeps_sign: bool,
+    /// Where a guard that keeps its sign touches zero, if it does so after the entry.
+    pub touch: Option<Touch>,
 }
 
 /// An instant after an entry that is known exactly.
@@ -108,17 +112,18 @@ impl Chain {
     pub fn fate(&self, entries: &Entries) -> Option<Fate> {
         let values = self.values(entries)?;
         let begin = first_sign(&values);
-        let keeps_sign = match (&self.kind, begin) {
-            (_, None) => true,
+        let (keeps_sign, touch) = match (&self.kind, begin) {
+            (_, None) => (true, None),
             (Kind::Polynomial, Some((_, rises))) if values.len() <= 3 => {
-                parabola_keeps_sign(&values, rises)
+                (parabola::keeps_sign(&values, rises), parabola::touch(&values, rises))
             }
             (Kind::Oscillation(square), _) => {
-                Oscillation::of(&values, square).is_some_and(|it| it.keeps_sign())
+                let own = Oscillation::of(&values, square);
+                own.map_or((false, None), |it| (it.keeps_sign(), it.touch()))
             }
-            _ => false,
+            _ => (false, None),
         };
-        Some(Fate { begin, keeps_sign })
+        Some(Fate { begin, keeps_sign, touch: touch.filter(|_| keeps_sign) })
     }
 
     /// The instant of the guard's zero that is about a time after the entry, which has at most
@@ -129,7 +134,7 @@ impl Chain {
             Kind::Polynomial => {
                 let away = |it: &Rational| (it.to_f64() - time).abs() / time.abs();
                 let error = error / time.abs() + 2.0 * f64::EPSILON;
-                nearest(parabola_roots(&values), away, error).map(Instant::Time)
+                nearest(parabola::roots(&values), away, error).map(Instant::Time)
             }
             Kind::Oscillation(square) => Oscillation::of(&values, square)?.zero_near([time, error]),
             Kind::Other => None,
@@ -193,34 +198,6 @@ fn first_sign(values: &[Rational]) -> Option<(usize, bool)> {
     Some((first, values[first] > Rational::ZERO))
 }
 
-/// Whether a parabola with these derivatives keeps the sign that it has at first.
-fn parabola_keeps_sign(values: &[Rational], rises: bool) -> bool {
-    let sign = Rational::from(if rises { -1 } else { 1 });
-    let order = |k: usize| values.get(k).map_or(Rational::ZERO, |it| it * &sign);
-    let [value, slope, bend] = [0, 1, 2].map(order);
-    // The parabola is negative at first.
-    if bend.is_zero() {
-        return slope <= Rational::ZERO;
-    }
-    let rest = &slope * &slope - Rational::from(2) * &value * &bend;
-    bend < Rational::ZERO && (slope <= Rational::ZERO || rest <= Rational::ZERO)
-}
-
-/// The zeros of a polynomial of at most the second degree with these derivatives, if they are
-/// rational.
-fn parabola_roots(values: &[Rational]) -> Vec<Rational> {
-    let degree = values.iter().rposition(|it| !it.is_zero()).unwrap_or(0);
-    match &values[..=degree] {
-        [value, slope] => vec![-value / slope],
-        [value, slope, bend] => {
-            let rest = slope * slope - Rational::from(2) * value * bend;
-            let roots = root(&rest).map(|it| [(-slope + &it) / bend, (-slope - &it) / bend]);
-            roots.into_iter().flatten().collect()
-        }
-        _ => Vec::new(),
-    }
-}
-
 /// The exact zero of which a rounded one is known, by how far each is away, which has at most this
 /// error: the next one is much farther.
 fn nearest<Z: PartialEq>(mut zeros: Vec<Z>, away: impl Fn(&Z) -> f64, error: f64) -> Option<Z> {
@@ -257,6 +234,21 @@ impl<'a> Oscillation<'a> {
     /// Whether the constant outweighs the oscillation, which may touch zero.
     fn keeps_sign(&self) -> bool {
         !self.constant.is_zero() && self.amplitude <= &self.constant * &self.constant
+    }
+
+    /// The touches of zero, where the amplitude is the constant.
+    fn touch(&self) -> Option<Touch> {
+        let Self { square, constant, cos, sin, amplitude } = self;
+        if constant.is_zero() || *amplitude != constant * constant {
+            return None;
+        }
+        let frequency = square.to_f64().sqrt();
+        // The oscillation has its top at this angle, and its bottom half a turn from it.
+        let top = libm::atan2(sin.to_f64() / frequency, cos.to_f64());
+        let is_above = *constant > Rational::ZERO;
+        let angle = if is_above { top + std::f64::consts::PI } else { top };
+        let is_at_origin = (constant + cos).is_zero();
+        Some(Touch::of_angle(angle, frequency, is_at_origin))
     }
 
     fn at(&self, cos: &Rational, sin: &Rational) -> Rational {
@@ -311,6 +303,8 @@ mod tests {
         let fate = |level| Chain::of(&level, &matrix).fate(&start).unwrap();
         assert!(fate(level(1, 4)).keeps_sign);
         assert!(fate(level(1, 3)).keeps_sign);
+        let touches = [level(1, 4), level(1, 3)].map(|it| fate(it).touch);
+        assert_eq!(touches, [Some(Touch::Once(0.25)), None]);
         assert!(!fate(level(3, 16)).keeps_sign && !fate(level(1, 8)).keeps_sign);
         assert_eq!(fate(level(0, 1)).begin, Some((1, true)));
         let zero = |level, time| Chain::of(&level, &matrix).zero_near(&start, [time, 0.0]);
@@ -335,6 +329,16 @@ mod tests {
         };
         assert!(fate(5).keeps_sign && fate(6).keeps_sign && fate(-5).keeps_sign);
         assert!(!fate(4).keeps_sign);
+        // tan(2 t) = 4/3 at the top, and the bottom is half a period from it.
+        let top = 0.5 * libm::asin(0.8);
+        let touches = |level: i32, time: f64| {
+            let lies_in = |span| fate(level).touch.is_some_and(|it| it.may_lie_in(span));
+            lies_in([time - 1e-6, time + 1e-6]) && !lies_in([time + 1e-6, time + 1.0])
+        };
+        let half = 0.5 * std::f64::consts::PI;
+        assert!(touches(5, top) && touches(5, top + 2.0 * half) && !touches(5, top + half));
+        assert!(touches(-5, top + half) && !touches(-5, top));
+        assert_eq!([4, 6].map(|it| fate(it).touch), [None, None]);
     }
 
     /// x'' = -4 x from x = 5 at rest: at x = 3 the rate is -8, and at no rational time.

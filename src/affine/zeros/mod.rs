@@ -4,12 +4,15 @@
 //! is after an impact. [`space`] is the space of all rows that are zero so, and [`graph`] follows
 //! it from event to event. Whether a row belongs to it is decided by [`residue`], in exact
 //! arithmetic modulo two primes. Guards of the forcing angle and a constant are zero at points that
-//! may be rational ([`circle`]), and motion may be exactly rational ([`exact`], and [`exact_mode`]
-//! for a mode's rows). Read `space` first, then `graph`.
+//! may be rational ([`circle`]), and motion may be exactly rational ([`exact`], with [`parabola`],
+//! and [`exact_mode`] for a mode's rows); [`touch`] says when a guard that never crosses touches
+//! zero. Read `space` first, then `graph`.
 
 pub mod circle;
 pub mod exact;
 pub mod exact_mode;
 pub mod graph;
+mod parabola;
 pub mod residue;
 pub mod space;
+pub mod touch;

@@ -8,11 +8,14 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::file::{GivenParameter, StartTable, SystemFile};
 use crate::affine::model::naming::unknown_mode;
 use crate::affine::model::scalar::Scalar;
-use crate::affine::model::system::{LARGEST_COUNT, LARGEST_DIMENSION, StartPoint, System, TROUBLE};
+use crate::affine::model::system::{
+    LARGEST_COUNT, LARGEST_DIMENSION, Origin, StartPoint, System, TROUBLE,
+};
 use crate::affine::model::tangent::Name;
 use mode::ModeReader;
 use names::{Accepts, Names};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use toml::Spanned;
 
 impl SystemFile {
@@ -57,6 +60,7 @@ fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
         modes: Vec::new(),
         start: None,
         start_modes: Vec::new(),
+        file: Origin(by.is_none().then(|| Arc::new(file.clone()))),
     };
     let dimension = system.dimension();
     if dimension > LARGEST_DIMENSION {

@@ -1,0 +1,131 @@
+//! What a walk refuses: zeros that do not hold to first order, and what its bits leave open.
+
+use super::ball::{Ball, Jet, dot};
+use super::coefficients::times;
+use super::derivative::{NoGradient, Side};
+use super::first_order::with_derivative;
+use super::walk::Walk;
+use crate::affine::model::system::Row;
+use crate::affine::zeros::residue::Residues;
+use crate::affine::zeros::space::ZeroSpace;
+use crate::numeric::number::Number;
+
+/// How a row begins at the entry of a mode.
+enum Begin {
+    /// It is zero to first order, and stays so.
+    Zero,
+    /// The sign that it has on both sides of the name's value.
+    At { is_positive: bool },
+    /// The sign that it has beside the name's value, on the side that is followed, and the one that
+    /// it takes after the entry for the value itself, by its derivative of this order.
+    Beside { was: bool, is_positive: bool, order: usize },
+}
+
+impl<T: Number> Walk<'_, T> {
+    /// Refuses an instant at which another guard may be zero, unless it is so to first order.
+    pub(super) fn check_others(&self, fired: usize, zeros: &ZeroSpace) -> Result<(), NoGradient> {
+        self.check_guards(Some(fired), |row| zeros.contains(row))
+    }
+
+    /// Refuses an instant between two events at which a guard may be zero, unless it is so to first
+    /// order along the segment.
+    pub(super) fn check_along(&self) -> Result<(), NoGradient> {
+        self.check_guards(None, |row| self.zeros.lasts(row))
+    }
+
+    fn check_guards(
+        &self,
+        fired: Option<usize>,
+        is_zero: impl Fn(&Residues) -> bool,
+    ) -> Result<(), NoGradient> {
+        for (n, guard) in self.modes[self.mode].guards.iter().enumerate() {
+            if fired == Some(n) || dot(guard, &self.state).value.sign().is_some() {
+                continue;
+            }
+            let [row, rate] = self.guard(self.mode, n);
+            let row = with_derivative(row, rate).ok_or(NoGradient::Unknown)?;
+            if !is_zero(&row) {
+                return Err(NoGradient::Undecided);
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses an entry at which a guard is zero and not so to first order, and finds those of
+    /// `until` that fire there.
+    pub(super) fn check_entry(&mut self) -> Result<(), NoGradient> {
+        self.fires = 0;
+        let until = self.solver.system().modes[self.mode].until.len();
+        let mut crosses = 0;
+        for n in 0..self.modes[self.mode].guards.len() {
+            match self.begin_in(self.mode, self.guard(self.mode, n))? {
+                Begin::At { is_positive: true, .. } if n < until => self.fires |= 1 << n,
+                Begin::Beside { was: true, is_positive: false, order: 1 } if n < until => {
+                    // It fired at once, and beside the name's value it crosses shortly after.
+                    crosses += 1;
+                }
+                Begin::Beside { was, is_positive, .. } => {
+                    let stays = was == is_positive && !(n < until && was);
+                    if !stays {
+                        return Err(NoGradient::OtherEvents);
+                    }
+                }
+                _ => {}
+            }
+        }
+        // Of several that fire at once the order beside the value is another question.
+        let is_one = crosses == 0 || crosses == 1 && self.fires == 0;
+        if is_one { Ok(()) } else { Err(NoGradient::OtherEvents) }
+    }
+
+    /// Refuses a choice of a successor that is not the same to first order.
+    pub(super) fn check_successor(&self, mode: usize, until: usize) -> Result<(), NoGradient> {
+        let [own, rates] = [&self.solver.system().modes[mode], &self.tangent.modes[mode]]
+            .map(|it| &it.until[until].next);
+        for (own, rate) in own.iter().zip(rates) {
+            let (Some(row), Some(rate)) = (&own.when, &rate.when) else { return Ok(()) };
+            // The condition is decided in the mode that it would begin.
+            let is_chosen = match self.begin_in(own.mode, [row, rate])? {
+                Begin::Beside { was, is_positive, .. } if was != is_positive => {
+                    return Err(NoGradient::OtherEvents);
+                }
+                Begin::At { is_positive } | Begin::Beside { is_positive, .. } => is_positive,
+                Begin::Zero => false,
+            };
+            if is_chosen {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    /// How a row begins at the entry of a mode, by the first of its derivatives that is not zero to
+    /// first order.
+    fn begin_in(&self, mode: usize, [row, rate]: [&Row; 2]) -> Result<Begin, NoGradient> {
+        let both = with_derivative(row, rate).ok_or(NoGradient::Unknown)?;
+        let Some(order) = self.zeros.multiplicity(&both, mode) else { return Ok(Begin::Zero) };
+        let matrix = &self.solver.system().modes[mode].matrix;
+        let mut derivative = (0..order).fold(row.clone(), |row, _| times(&row, matrix));
+        if !self.zeros.is_zero_at_entry(&derivative) {
+            let is_positive = self.is_positive(&derivative)?;
+            return Ok(Begin::At { is_positive });
+        }
+        let side = self.side.filter(|_| order == 0).ok_or(NoGradient::OneSided)?;
+        let moved: Vec<Jet<T>> = row.iter().zip(rate).map(|(a, b)| Jet::of(a, b)).collect();
+        let moves_up = dot(&moved, &self.state).rate.sign().ok_or(NoGradient::Undecided)?;
+        let is_positive = moves_up == (side == Side::Above);
+        for order in 1..=matrix.len() {
+            derivative = times(&derivative, matrix);
+            if !self.zeros.is_zero_at_entry(&derivative) {
+                let was = self.is_positive(&derivative)?;
+                return Ok(Begin::Beside { was, is_positive, order });
+            }
+        }
+        Err(NoGradient::OtherEvents)
+    }
+
+    fn is_positive(&self, row: &Row) -> Result<bool, NoGradient> {
+        let row: Vec<Jet<T>> = row.iter().map(|it| Jet::fixed(Ball::of(it))).collect();
+        dot(&row, &self.state).value.sign().ok_or(NoGradient::Undecided)
+    }
+}
