@@ -27,6 +27,7 @@ mod findings;
 mod first_study;
 mod forged;
 mod formats;
+mod gradient;
 mod growth;
 mod horizon;
 #[cfg(unix)]

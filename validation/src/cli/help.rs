@@ -180,6 +180,25 @@ Words:
   undecided     a run that ends because even the last bits do not tell
                 which event comes first";
 
+pub(super) const GRADIENT: &str = "\
+Examples:
+  percuss gradient bouncing-ball --events 2 --wrt g,e,start.v
+      the first two impacts by gravity, restitution and speed
+  percuss gradient relay-feedback --until 4 --wrt delta --digits 25
+      with 25 digits, and the state at the end
+
+Words:
+  event           an instant at which a guard becomes true
+  derivative      of a row of `percuss events` by a name: of the event's
+                  time, and of the state just after it at that time,
+                  which moves with the name
+  side            `-` below and `+` above the name's value, where the
+                  derivatives differ
+  to first order  what is zero stays so for a small change of the name,
+                  but for terms of its square
+  proved digit    a digit that holds for the exact derivative; a cell
+                  holds no others";
+
 pub(super) const SIMULATE: &str = "\
 Examples:
   percuss simulate --omega 0.1 --events 5

@@ -10,6 +10,7 @@ mod completions;
 mod engines;
 mod events;
 mod export;
+mod gradient;
 mod help;
 mod lyapunov;
 mod man;
@@ -61,6 +62,7 @@ enum Verb {
     Cases(cases::Arguments),
     Bench(bench::Arguments),
     Events(events::Arguments),
+    Gradient(gradient::Arguments),
     Systems(systems::Arguments),
     Check(check::Arguments),
     New(new::Arguments),
@@ -135,6 +137,7 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Sweep(sweep) => sweep::run(sweep, arguments.threads),
         Verb::Cases(cases) => cases::run(cases).map(|()| DONE),
         Verb::Events(events) => events::run(events),
+        Verb::Gradient(gradient) => gradient::run(gradient),
         Verb::Systems(systems) => systems::run(systems).map(|()| DONE),
         Verb::Check(check) => check::run(check).map(|()| DONE),
         Verb::New(new) => new::run(new).map(|()| DONE),

@@ -122,6 +122,19 @@ fn events_of_a_system() {
 }
 
 #[test]
+fn gradients_of_a_system() {
+    let ball = ["gradient", "bouncing-ball", "--format", "json", "--wrt"];
+    let value = json(&stdout(&[&ball[..], &["g,e", "--until", "2"]].concat()));
+    assert_valid("gradient.schema.json", &value);
+    assert_eq!((&value["ending"], &value["rows"][2]["wrt"]), (&"end".into(), &"g".into()));
+    assert_eq!(value["rows"][2]["dtime"], "-0.75000000000000000");
+    let output = run(&[&ball[..], &["start.x", "--events", "2"]].concat());
+    let value = json(&text(&output.stdout));
+    assert_valid("gradient.schema.json", &value);
+    assert!(value["ending"].is_null() && value["rows"][1]["dtime"].is_null());
+}
+
+#[test]
 fn a_run_of_a_system() {
     let ball = ["simulate", "bouncing-ball", "--format", "json"];
     let value = json(&stdout(&[&ball[..], &["--events", "3"]].concat()));
