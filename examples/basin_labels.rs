@@ -39,6 +39,8 @@ fn letter(label: &Label) -> char {
         Label::Attractor(number) => (b'A'..=b'Z').map(char::from).nth(*number).unwrap_or('#'),
         Label::Escaping => '>',
         Label::Unresolved => '?',
+        // Of other systems alone: every state is a start here, and no run ends.
+        Label::Inadmissible | Label::Ended => '!',
     }
 }
 

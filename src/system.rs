@@ -18,8 +18,9 @@
 //! ```
 
 pub use crate::affine::{
-    Direction, Exponents, Expression, Forcing, Guard, LARGEST_DIMENSION, Mode, ModeBuilder, Name,
-    NoOrbit, NoReturn, Orbit, Passage, Place, RationalError, Return, Returns, Row, Section,
-    SectionMap, StartPoint, Successor, SystemBuilder, SystemFile, TROUBLE, Tangent, Until,
-    UntilBuilder, Watch,
+    Direction, Exponents, Expression, Forcing, Guard, LARGEST_DIMENSION, LeftOut, Mode,
+    ModeBuilder, Name, NoOrbit, NoReturn, Orbit, Passage, Place, Plane, RationalError, Return,
+    ReturnAttractor, ReturnBasins, ReturnDiagram, ReturnDiagramStep, Returns, Row, Section,
+    SectionMap, StartPoint, Successor, SystemBuilder, SystemFile, TROUBLE, Tangent,
+    UnresolvedReturn, Until, UntilBuilder, ValueError, Watch,
 };

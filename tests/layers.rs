@@ -133,7 +133,7 @@ const PACKAGES: [Package; 8] = [
 
 /// The rooms of `src/affine/`, each allowed to use those before it. What the folder exports comes
 /// from all of them.
-const AFFINE_ROOMS: [&str; 14] = [
+const AFFINE_ROOMS: [&str; 15] = [
     "model",
     "zeros",
     "arithmetic",
@@ -146,6 +146,7 @@ const AFFINE_ROOMS: [&str; 14] = [
     "gradient",
     "events",
     "returns",
+    "attractors",
     "gallery",
     EXPORTS,
 ];

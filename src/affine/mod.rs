@@ -6,8 +6,10 @@
 //! the tests use it as it is.
 
 // The rooms, each of which uses only those before it: model, zeros, arithmetic, modal, closed_form,
-// guards, first_crossing, solver, run, gradient, events, returns; gallery is beside them.
+// guards, first_crossing, solver, run, gradient, events, returns, attractors; gallery is beside
+// them.
 mod arithmetic;
+mod attractors;
 mod closed_form;
 pub(crate) mod events;
 mod first_crossing;
@@ -24,6 +26,7 @@ mod zeros;
 pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 pub use arithmetic::clock::Time;
+pub use attractors::{Plane, ReturnAttractor, ReturnBasins, UnresolvedReturn};
 pub use events::{BITS, LONGEST};
 pub use gradient::derivative::{Gradient, NoGradient};
 pub use gradient::walk::Walk;
@@ -37,6 +40,7 @@ pub use model::system::{
     Until, Watch, is_unit,
 };
 pub use model::tangent::{Name, Tangent};
+pub use returns::diagram::{LeftOut, ReturnDiagram, ReturnDiagramStep, ValueError};
 pub use returns::exponents::Exponents;
 pub use returns::map::SectionMap;
 pub use returns::orbit::{NoOrbit, Orbit};

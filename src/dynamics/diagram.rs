@@ -84,11 +84,7 @@ impl Diagram {
     /// The parameter's value at a step.
     #[must_use]
     pub fn value(&self, step: u32) -> f64 {
-        if step + 1 >= self.steps && step > 0 {
-            return self.to;
-        }
-        let share = f64::from(step) / f64::from(self.steps.max(2) - 1);
-        self.from + share * (self.to - self.from)
+        value(self.from, self.to, self.steps, step)
     }
 
     /// Makes the diagram; `seen` is called as values are done, in any order.
@@ -188,6 +184,20 @@ impl Diagram {
             undecidable: strobes.len() <= shown,
         }
     }
+}
+
+/// The values of a parameter at so many equal steps, both ends included; one is the first end.
+#[must_use]
+pub fn values(from: f64, to: f64, steps: u32) -> Vec<f64> {
+    (0..steps).map(|step| value(from, to, steps, step)).collect()
+}
+
+fn value(from: f64, to: f64, steps: u32, step: u32) -> f64 {
+    if step + 1 >= steps && step > 0 {
+        return to;
+    }
+    let share = f64::from(step) / f64::from(steps.max(2) - 1);
+    from + share * (to - from)
 }
 
 /// Whether a state has gone farther than any start.

@@ -8,7 +8,7 @@ pub mod ensemble;
 pub mod linear;
 pub mod lyapunov;
 pub mod orbit;
-mod parallel;
+pub(crate) mod parallel;
 pub mod section;
 pub mod strobe;
 mod tangent;

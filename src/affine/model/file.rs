@@ -268,11 +268,27 @@ impl SystemFile {
         }
         let known: Vec<_> = self.parameters.keys().map(String::as_str).collect();
         let what = format!(
-            "{name:?} is no parameter of {}: accepted is one of {}",
+            "{name:?} is no parameter of {}: accepted is one of {}{}",
             self.name(),
-            if known.is_empty() { "none".to_owned() } else { known.join(", ") }
+            if known.is_empty() { "none".to_owned() } else { known.join(", ") },
+            self.forcing_by(name)
         );
         Err(SystemError::at(&parameter.place, &what))
+    }
+
+    /// Words on the parameters that give the forcing's omega or phi, where these are asked for.
+    fn forcing_by(&self, name: &str) -> String {
+        let forcing = self.tables.forcing.as_ref();
+        let by = match name {
+            "omega" => forcing.map(|it| &it.omega),
+            "phi" => forcing.and_then(|it| it.phi.as_ref()),
+            _ => None,
+        };
+        match by.map(Spanned::get_ref) {
+            Some(Scalar::Text(text)) => format!("; the forcing's {name} is {text}"),
+            Some(_) => format!("; the forcing's {name} is a number, and no parameter"),
+            None => String::new(),
+        }
     }
 
     /// A name of lower-case words that are joined by hyphens.

@@ -7,11 +7,12 @@
 //! [`mod@rational`] numbers), and what is refused becomes an [`error`] with its place in the
 //! [`source`]. [`check`] refuses systems that were changed by hand and are none any more. Read
 //! `system` first, then `file` and `build`. Coefficients are read with their derivatives
-//! ([`dual`]), which [`tangent`] gives out.
+//! ([`dual`]), which [`tangent`] gives out. [`drift`] says on which states nothing depends.
 
 mod build;
 pub mod builder;
 mod check;
+mod drift;
 mod dual;
 pub mod ending;
 pub mod error;

@@ -20,6 +20,8 @@ pub struct SectionMap<'a, T: Number> {
     longest: T,
     /// The forcing period, and the first time of the strobe's angle.
     period: Option<[Time<T>; 2]>,
+    /// Whether each state is a drift: orbits close without these.
+    drifts: Vec<bool>,
 }
 
 impl<'a, T: Number> SectionMap<'a, T> {
@@ -37,7 +39,9 @@ impl<'a, T: Number> SectionMap<'a, T> {
         };
         let period = system.forcing.as_ref().map(|it| strobes(it, angle));
         let longest = T::exact(USUAL_LONGEST * system.time_scale);
-        Ok(Self { solver, section: resolved, longest, period })
+        let drifts = system.drifts();
+        let drifts = (0..system.states.len()).map(|n| drifts.contains(&n)).collect();
+        Ok(Self { solver, section: resolved, longest, period, drifts })
     }
 
     /// Waits for a return no longer than this time.
@@ -66,6 +70,18 @@ impl<'a, T: Number> SectionMap<'a, T> {
         self.period.is_some() && matches!(self.section.returns, Returning::Events(_))
     }
 
+    /// Whether a state is a [drift](System::drifts): orbits close without it.
+    #[must_use]
+    pub fn is_drift(&self, state: usize) -> bool {
+        self.drifts.get(state).copied().unwrap_or(false)
+    }
+
+    /// The forcing period, of a forced system.
+    #[must_use]
+    pub fn forcing_period(&self) -> Option<T> {
+        self.period.map(|[period, _]| period.value())
+    }
+
     /// The time from a place to another; of a forced system less whole forcing periods.
     #[must_use]
     pub fn time_apart(&self, from: &Place<T>, to: &Place<T>) -> T {
@@ -88,7 +104,25 @@ impl<'a, T: Number> SectionMap<'a, T> {
         place.moved_to(time, place.state.clone())
     }
 
-    pub(super) fn solver(&self) -> &'a Solver<T> {
+    /// The time of a place as a share of the forcing period; 0 where nothing is forced.
+    pub(super) fn share_of_period(&self, place: &Place<T>) -> T {
+        self.period.map_or(T::zero(), |[period, _]| place.time.value() / period.high)
+    }
+
+    /// The time that is so large a share of the forcing period; at a strobe it is the first of its
+    /// angle.
+    pub(super) fn time_at_share(&self, share: T) -> Time<T> {
+        match (&self.section.returns, self.period) {
+            (_, None) => Time { high: T::zero(), low: T::zero() },
+            (Returning::Strobe(_), Some([_, first])) => first,
+            (Returning::Events(_), Some([period, _])) => {
+                let high = share * period.high;
+                Time { high, low: share.product_error(period.high) + share * period.low }
+            }
+        }
+    }
+
+    pub(in crate::affine) fn solver(&self) -> &'a Solver<T> {
         self.solver
     }
 

@@ -3,15 +3,16 @@
 //! [`section`] says what a section is, [`map`] when a motion may return to it, and [`walk`] follows
 //! a motion from one return to the next; [`passage`] has the derivative of that. [`shooting`] is
 //! any return map as [`newton`] sees it, which solves for [`orbit`]s, and [`multipliers`] has their
-//! stability. [`exponents`] has the mean growth of small changes along any motion. Read them in
-//! this order.
+//! stability. [`exponents`] has the mean growth of small changes along any motion, and [`diagram`]
+//! the returns at many values of a parameter. Read them in this order.
 
+pub mod diagram;
 pub mod exponents;
 pub mod map;
-mod multipliers;
+pub(in crate::affine) mod multipliers;
 mod newton;
 pub mod orbit;
 pub mod passage;
 pub mod section;
-mod shooting;
+pub(in crate::affine) mod shooting;
 pub mod walk;

@@ -96,7 +96,7 @@ fn product(matrix: &Columns, vector: &[f64]) -> Vec<f64> {
 
 /// Orthonormal vectors of the space of these, without those that others leave no more of than
 /// `gone`.
-pub(super) fn orthonormal(columns: Columns, gone: f64) -> Columns {
+pub(in crate::affine) fn orthonormal(columns: Columns, gone: f64) -> Columns {
     let mut found: Columns = Vec::new();
     for mut column in columns {
         // Once more, because the first time leaves the roundings of what it takes away.

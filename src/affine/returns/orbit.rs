@@ -24,7 +24,8 @@ pub struct Orbit {
     /// The events of one whole period, in order, from the first point on.
     pub events: Vec<Guard>,
     /// The multipliers of the whole orbit, real and imaginary part, largest modulus first, as many
-    /// as states; zero for a direction that a section or a reset removes.
+    /// as states without [drifts](System::drifts); zero for a direction that a section or a reset
+    /// removes.
     pub multipliers: Vec<[f64; 2]>,
     /// The largest distance of an image to the next point, over 1 + |point|.
     pub residual: f64,
@@ -96,20 +97,31 @@ impl SectionMap<'_, f64> {
     /// # Errors
     /// [`NoOrbit`] says why none was reached and how close it came.
     pub fn orbit(&self, guess: &Place<f64>, period: u32) -> Result<Orbit, NoOrbit> {
+        self.orbit_with_places(guess, period).map(|(orbit, _)| orbit)
+    }
+
+    /// The same orbit, and the places of its points.
+    pub(in crate::affine) fn orbit_with_places(
+        &self,
+        guess: &Place<f64>,
+        period: u32,
+    ) -> Result<(Orbit, Vec<Place<f64>>), NoOrbit> {
         if !(1..=LARGEST_PERIOD).contains(&period) {
             return Err(NoOrbit::Period(period));
         }
         let shots = Shots::along(self, &self.rebased(guess), period).map_err(NoOrbit::NoReturn)?;
         let shots = solved(self, shots).map_err(NoOrbit::Stalled)?;
         let shots = least(self, shots);
-        self.of_shots(&shots).ok_or(NoOrbit::NoDerivative(shots.residual))
+        let orbit = self.of_shots(&shots).ok_or(NoOrbit::NoDerivative(shots.residual))?;
+        Ok((orbit, shots.points))
     }
 
     /// The orbit that closed shots are.
     fn of_shots(&self, shots: &Shots<Place<f64>, Way>) -> Option<Orbit> {
         let ways = || shots.images.iter().map(|it| &it.way);
         let returns: Vec<_> = ways().map(|it| it.at_fixed_time.clone()).collect();
-        let flow = self.system().forcing.is_none().then(|| self.rates(&shots.points[0]));
+        let flow = || self.without_drifts(&self.rates(&shots.points[0]));
+        let flow = self.system().forcing.is_none().then(flow);
         let point = |it: &Place<f64>| Return {
             mode: it.mode,
             time: it.time.value(),
@@ -125,6 +137,12 @@ impl SectionMap<'_, f64> {
         })
     }
 
+    /// The entries of states that are no drifts.
+    fn without_drifts(&self, entries: &[f64]) -> Vec<f64> {
+        let kept = entries.iter().enumerate().filter(|(n, _)| !self.is_drift(*n));
+        kept.map(|(_, it)| *it).collect()
+    }
+
     /// The derivative of a return's co-ordinates: the states, and the time where points have one.
     fn derivative(&self, from: &Place<f64>, passage: &Passage<f64>) -> Derivative {
         let states = from.state.len();
@@ -137,6 +155,10 @@ impl SectionMap<'_, f64> {
             let (column, delay) = self.by_time(from, passage);
             (0..states).for_each(|i| derivative[i][states] = column[i]);
             derivative[states][states] = delay;
+        }
+        for n in (0..states).filter(|n| self.is_drift(*n)) {
+            derivative[n] = [0.0; MOST];
+            derivative.iter_mut().for_each(|row| row[n] = 0.0);
         }
         derivative
     }
@@ -158,7 +180,9 @@ impl ReturnMap for SectionMap<'_, f64> {
     fn image(&self, point: &Place<f64>) -> Result<Image<Place<f64>, Way>, NoReturn> {
         let passage = self.passage(point)?;
         let states = point.state.len();
-        let columns = passage.at_fixed_time.iter().map(|it| it[..states].to_vec());
+        let columns = passage.at_fixed_time.iter().enumerate();
+        let columns = columns.filter(|(n, _)| !self.is_drift(*n));
+        let columns = columns.map(|(_, it)| self.without_drifts(&it[..states]));
         let way = Way {
             events: passage.events.clone(),
             at_fixed_time: columns.collect(),
@@ -172,7 +196,7 @@ impl ReturnMap for SectionMap<'_, f64> {
     fn apart(&self, from: &Place<f64>, to: &Place<f64>) -> Change {
         let mut change = [0.0; MOST];
         for (n, (from, to)) in from.state.iter().zip(&to.state).enumerate() {
-            change[n] = to - from;
+            change[n] = if self.is_drift(n) { 0.0 } else { to - from };
         }
         if self.has_times() {
             change[from.state.len()] = self.time_apart(from, to);
@@ -200,7 +224,9 @@ impl ReturnMap for SectionMap<'_, f64> {
             };
             values.fold(0.0, larger)
         };
-        let own = largest(&mut point.state.iter().zip(&system.scales).map(|(it, by)| it / by));
+        let own = point.state.iter().zip(&system.scales).enumerate();
+        let own = own.filter(|(n, _)| !self.is_drift(*n)).map(|(_, (it, by))| it / by);
+        let own = largest(&mut { own });
         largest(&mut change.iter().zip(scales).map(|(it, by)| it / by)) / (1.0 + own)
     }
 }

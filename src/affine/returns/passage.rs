@@ -75,6 +75,11 @@ impl<T: Number> SectionMap<'_, T> {
         Returns::begin(self, place)
     }
 
+    /// The returns of the motion from a place, without one at that place itself.
+    pub(in crate::affine) fn returns_after(&self, place: &Place<T>) -> Returns<'_, T> {
+        Returns::after(self, place)
+    }
+
     /// The next return from a place, with its derivative.
     ///
     /// # Errors

@@ -112,6 +112,13 @@ pub struct Return<T> {
     pub state: Vec<T>,
 }
 
+impl<T: Number> Return<T> {
+    /// The mode, time and state of an event.
+    fn of(event: &Event<T>) -> Self {
+        Self { mode: event.mode, time: event.time.value(), state: event.state.clone() }
+    }
+}
+
 /// The returns of a motion to its section, as an iterator; the first error is the last item.
 pub struct Returns<'a, T: Number> {
     walk: Walk<'a, T>,
@@ -123,12 +130,24 @@ impl<'a, T: Number> Returns<'a, T> {
         Self { walk: Walk::begin(map, place, true), is_over: false }
     }
 
+    /// Without a return at the place itself.
+    pub(super) fn after(map: &'a SectionMap<'a, T>, place: &Place<T>) -> Self {
+        Self { walk: Walk::begin(map, place, false), is_over: false }
+    }
+
     /// The place of the last return, from which a motion may go on.
     ///
     /// # Errors
     /// A return that is one of several events of one instant.
     pub fn place(&mut self) -> Result<Place<T>, NoReturn> {
         self.walk.place()
+    }
+
+    /// The last event of the motion, whether it is a return or not: the state in which a motion
+    /// ends that does not return.
+    #[must_use]
+    pub fn last_event(&self) -> Return<T> {
+        Return::of(&self.walk.last)
     }
 
     /// The number of ties, touches and entries so far that rounding does not decide.
@@ -145,12 +164,7 @@ impl<T: Number> Iterator for Returns<'_, T> {
         if self.is_over {
             return None;
         }
-        let point = |it: &Event<T>| Return {
-            mode: it.mode,
-            time: it.time.value(),
-            state: it.state.clone(),
-        };
-        let next = self.walk.next(&mut |_, _| ()).map(point);
+        let next = self.walk.next(&mut |_, _| ()).map(Return::of);
         self.is_over = next.is_err();
         Some(next)
     }

@@ -7,7 +7,7 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::system::StartPoint;
 use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Ending, What};
-use crate::affine::solver::start_cache::RunStart;
+use crate::affine::solver::start_cache::{RunStart, zeros_at_start};
 use crate::affine::zeros::graph::ZeroGuards;
 use crate::affine::zeros::space::ZeroSpace;
 use crate::numeric::number::Number;
@@ -44,6 +44,28 @@ impl<T: Number> Solver<T> {
         let state = run.state[..self.system.states.len()].to_vec();
         let zeros = run.graph.node(run.node).zeros().clone();
         Ok(Place { mode: start.mode, time: run.entered, state, zeros })
+    }
+
+    /// The place of a start of which some states, by their indices, may be moved: what is zero
+    /// there by the model holds wherever they are.
+    ///
+    /// # Errors
+    /// As [`Solver::place`].
+    pub fn place_free_in(
+        &self,
+        start: &StartPoint,
+        free: &[usize],
+    ) -> Result<Place<T>, SystemError> {
+        let zeros = zeros_at_start(&self.system, start, free);
+        let item = || SystemError::Undecidable { item: "start".to_owned() };
+        Ok(Place { zeros: zeros.ok_or_else(item)?, ..self.place(start)? })
+    }
+
+    /// Whether a motion may begin at a place: no guard of its mode is positive there.
+    #[must_use]
+    pub fn admits(&self, place: &Place<T>) -> bool {
+        let run = self.run_at(place, place.time);
+        !matches!(run.ending(), Some(Ending::BeyondGuard))
     }
 
     /// A run from a place up to a time.

@@ -59,7 +59,7 @@ impl<T: Copy> StartCache<T> {
                 graph.at_start(point.mode, &known.zeros, Some(known.run_start.node));
             return Some(known.run_start);
         }
-        let zeros = zeros_at_start(system, point)?;
+        let zeros = zeros_at_start(system, point, &[])?;
         let node = graph.at_start(point.mode, &zeros, None);
         let (time, state) = time_and_state();
         let run_start = RunStart { node, time, state };
@@ -77,8 +77,9 @@ impl<T: Copy> StartCache<T> {
     }
 }
 
-/// The left kernel of the start's coefficients over cos theta, sin theta and 1.
-fn zeros_at_start(system: &System, start: &StartPoint) -> Option<ZeroSpace> {
+/// The left kernel of the start's coefficients over cos theta, sin theta and 1, of which some
+/// states are free: they may be anywhere.
+pub fn zeros_at_start(system: &System, start: &StartPoint, free: &[usize]) -> Option<ZeroSpace> {
     let zero_angle = system.is_at_zero_angle(start);
     let mut rows: Vec<[Rational; 3]> = start.state.clone();
     if system.forcing.is_some() {
@@ -86,17 +87,19 @@ fn zeros_at_start(system: &System, start: &StartPoint) -> Option<ZeroSpace> {
         rows.push([Rational::ZERO, Rational::ONE, Rational::ZERO]);
     }
     rows.push([Rational::ZERO, Rational::ZERO, Rational::ONE]);
-    let row = |[cos, sin, one]: &[Rational; 3]| {
+    let row = |(n, [cos, sin, one]): (usize, &[Rational; 3])| {
         // At theta = 0 the cosine is 1 and the sine 0.
-        let row = if zero_angle {
+        let mut row = if zero_angle {
             vec![Rational::ZERO, Rational::ZERO, cos + one]
         } else {
             vec![cos.clone(), sin.clone(), one.clone()]
         };
+        let own = |it: &usize| if *it == n { Rational::ONE } else { Rational::ZERO };
+        row.extend(free.iter().map(own));
         residues(&row)
     };
     let mut zeros = ZeroSpace::default();
-    for row in kernel(rows.iter().map(row).collect::<Option<_>>()?) {
+    for row in kernel(rows.iter().enumerate().map(row).collect::<Option<_>>()?) {
         zeros.insert(&row);
     }
     Some(zeros)

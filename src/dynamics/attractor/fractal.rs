@@ -113,13 +113,18 @@ pub fn uncertainty_of(
 /// what is near the window's sides would count more the smaller the distance.
 #[must_use]
 pub fn uncertainty(basins: &Basins) -> Uncertainty {
-    let columns = basins.grid.columns as usize;
+    uncertainty_of_labels(&basins.labels, basins.grid.columns as usize)
+}
+
+/// The uncertainty exponent of labels in rows of so many columns, as [`uncertainty`] takes it.
+#[must_use]
+pub fn uncertainty_of_labels(labels: &[Label], columns: usize) -> Uncertainty {
     let mut scales = Vec::new();
     let largest = (columns / 8).checked_ilog2().map_or(0, |log| 1 << log);
     let mut step: usize = largest;
     while step > 0 {
         let mut scale = Scale { epsilon: step as f64 / columns as f64, starts: 0, uncertain: 0 };
-        for row in basins.labels.chunks(columns) {
+        for row in labels.chunks(columns) {
             for at in largest..columns - largest {
                 scale.starts += 1;
                 let here = row[at];
@@ -130,21 +135,27 @@ pub fn uncertainty(basins: &Basins) -> Uncertainty {
         step /= 2;
     }
     let mut counts = BTreeMap::new();
-    basins.labels.iter().for_each(|label| *counts.entry(*label).or_insert(0) += 1);
+    labels.iter().for_each(|label| *counts.entry(*label).or_insert(0) += 1);
     Uncertainty::fitted(scales, saturation(&counts))
 }
 
 /// Basin entropy in boxes of `side` by `side` cells; cells that fill no box are left out.
 #[must_use]
 pub fn entropy(basins: &Basins, side: u32) -> Entropy {
-    let (columns, wide) = (basins.grid.columns as usize, side.max(1) as usize);
-    let rows = basins.grid.rows as usize;
+    entropy_of_labels(&basins.labels, basins.grid.columns as usize, side)
+}
+
+/// Basin entropy of labels in rows of so many columns, as [`entropy`] takes it.
+#[must_use]
+pub fn entropy_of_labels(labels: &[Label], columns: usize, side: u32) -> Entropy {
+    let wide = side.max(1) as usize;
+    let rows = labels.len() / columns.max(1);
     let mut boxes = Vec::new();
     for (i, j) in (0..rows / wide).flat_map(|i| (0..columns / wide).map(move |j| (i, j))) {
         let mut counts = BTreeMap::new();
         for row in 0..wide {
             let from = (i * wide + row) * columns + j * wide;
-            for label in &basins.labels[from..from + wide] {
+            for label in &labels[from..from + wide] {
                 *counts.entry(*label).or_insert(0_u32) += 1;
             }
         }

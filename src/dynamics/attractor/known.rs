@@ -17,16 +17,23 @@ pub enum Label {
     Escaping,
     /// It is not known where the start leads.
     Unresolved,
+    /// No motion begins there: a guard of its mode is positive.
+    Inadmissible,
+    /// The motion ends.
+    Ended,
 }
 
 impl Label {
-    /// The number used in files: an attractor's place, -1 of what is not known, -2 of what escapes.
+    /// The number used in files: an attractor's place, -1 of what is not known, -2 of what escapes,
+    /// -3 of what is no start, -4 of what ends.
     #[must_use]
     pub fn number(self) -> i32 {
         match self {
             Self::Attractor(place) => i32::try_from(place).unwrap_or(i32::MAX),
             Self::Unresolved => -1,
             Self::Escaping => -2,
+            Self::Inadmissible => -3,
+            Self::Ended => -4,
         }
     }
 }

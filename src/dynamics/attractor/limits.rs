@@ -24,7 +24,7 @@ impl From<u64> for SearchLimits {
 
 impl SearchLimits {
     /// These limits, at least one period and at most what Newton's method is made for.
-    pub(super) fn clamped(self) -> Self {
+    pub(crate) fn clamped(self) -> Self {
         Self {
             transient: self.transient.max(1),
             max_period: self.max_period.clamp(1, LARGEST_PERIOD),
@@ -32,7 +32,7 @@ impl SearchLimits {
     }
 
     /// The number of strobes in which an orbit of the longest period repeats once.
-    pub(super) const fn strobes(self) -> u64 {
+    pub(crate) const fn strobes(self) -> u64 {
         2 * self.max_period as u64
     }
 }

@@ -30,7 +30,10 @@ mod unresolved;
 
 pub use block::{BlockLabeller, LabelledBlock};
 pub use catalog::AttractorCatalog;
-pub use fractal::{Entropy, Scale, Uncertainty, entropy, uncertainty, uncertainty_of};
+pub use fractal::{
+    Entropy, Scale, Uncertainty, entropy, entropy_of_labels, uncertainty, uncertainty_of,
+    uncertainty_of_labels,
+};
 pub use grid::{Basins, Grid, Window};
 pub use known::Label;
 pub use limits::{MAX_PERIOD, SearchLimits};
@@ -63,12 +66,14 @@ pub enum AttractorKind {
     QuasiPeriodic,
     /// A set to which motions return and of which no more is known: its starts are unresolved.
     Unidentified,
+    /// A state of rest, or a motion that does not return to the section for long.
+    Equilibrium,
 }
 
 impl AttractorKind {
     /// All kinds of attractors.
-    pub const ALL: [Self; 4] =
-        [Self::Periodic, Self::Chaotic, Self::QuasiPeriodic, Self::Unidentified];
+    pub const ALL: [Self; 5] =
+        [Self::Periodic, Self::Chaotic, Self::QuasiPeriodic, Self::Unidentified, Self::Equilibrium];
 
     /// The name used in files.
     #[must_use]
@@ -78,6 +83,7 @@ impl AttractorKind {
             Self::Chaotic => "chaotic",
             Self::QuasiPeriodic => "quasi-periodic",
             Self::Unidentified => "unidentified",
+            Self::Equilibrium => "equilibrium",
         }
     }
 }

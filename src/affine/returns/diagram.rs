@@ -1,0 +1,214 @@
+//! Brute-force diagrams of a system's returns: the points of a section after a transient, value by
+//! value of a parameter.
+//!
+//! A motion escapes whose state passes [`FARTHEST`] at a return, and it may end before it has
+//! returned as often as was asked. It has no points then, and no value starts from where it went.
+
+use super::map::SectionMap;
+use super::section::Section;
+use super::walk::{NoReturn, Return};
+use crate::affine::model::error::SystemError;
+use crate::affine::model::system::System;
+use crate::affine::run::place::Place;
+use crate::affine::solver::Solver;
+use crate::dynamics::diagram::{FARTHEST, Follow};
+use crate::dynamics::parallel;
+use std::fmt;
+
+/// A diagram of the returns to a section that is to be made.
+#[derive(Clone, Debug)]
+pub struct ReturnDiagram {
+    /// The section.
+    pub section: Section,
+    /// The longest time of a return that is waited for; none is that of [`SectionMap::new`].
+    pub longest: Option<f64>,
+    /// The returns that are left out at each value.
+    pub transient: u64,
+    /// The returns that are kept at each value.
+    pub returns: u32,
+    /// The start of each value.
+    pub follow: Follow,
+}
+
+/// The part of a diagram at one value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReturnDiagramStep {
+    /// The parameter's value.
+    pub value: f64,
+    /// The returns; none where the motion is left out.
+    pub points: Vec<Return<f64>>,
+    /// The reason for which the motion is left out, if it is.
+    pub left_out: Option<LeftOut>,
+    /// The number of ties, touches and entries that rounding does not decide.
+    pub undecidable: u64,
+}
+
+/// The reason for which a diagram has no points at a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeftOut {
+    /// A state passes [`FARTHEST`].
+    Escapes,
+    /// The motion does not return as often.
+    NoReturn(NoReturn),
+}
+
+impl fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Escapes => f.write_str("its state passes 1e9"),
+            Self::NoReturn(why) => why.fmt(f),
+        }
+    }
+}
+
+/// A value at which there is no system, or none with such a section.
+#[derive(Clone, Debug)]
+pub struct ValueError {
+    /// The value.
+    pub value: f64,
+    /// The error of the system there.
+    pub error: SystemError,
+}
+
+impl fmt::Display for ValueError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "at {}: {}", self.value, self.error)
+    }
+}
+
+impl std::error::Error for ValueError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(&self.error)
+    }
+}
+
+/// Values whose systems are prepared in one go: they are held in memory meanwhile.
+const BLOCK: usize = 64;
+
+impl ReturnDiagram {
+    /// Makes the diagram at these values, of which each has a system; `seen` is called as values
+    /// are done, in any order. Results are the same for any number of threads.
+    ///
+    /// # Errors
+    /// A value at which there is no system with a start, or none with this section.
+    pub fn steps(
+        &self,
+        values: &[f64],
+        system: impl Fn(f64) -> Result<System, SystemError> + Sync + Send,
+        seen: impl Fn() + Sync + Send,
+    ) -> Result<Vec<ReturnDiagramStep>, ValueError> {
+        let solver = |value: &f64| {
+            let solver = system(*value).and_then(|it| Solver::<f64>::new(&it));
+            solver.map_err(|error| ValueError { value: *value, error })
+        };
+        let mut steps = Vec::with_capacity(values.len());
+        let mut last = None;
+        for block in values.chunks(BLOCK) {
+            match self.follow {
+                Follow::Reset => {
+                    let alone = |value: &f64| {
+                        let step = self.followed(*value, &solver(value)?, &mut None)?;
+                        seen();
+                        Ok(step)
+                    };
+                    let done: Result<Vec<_>, _> = parallel::map(block, alone).into_iter().collect();
+                    steps.extend(done?);
+                }
+                Follow::Carry => {
+                    let prepared = parallel::map(block, solver);
+                    for (value, solver) in block.iter().zip(prepared) {
+                        steps.push(self.followed(*value, &solver?, &mut last)?);
+                        seen();
+                    }
+                }
+            }
+        }
+        Ok(steps)
+    }
+
+    /// The step of a value from where the last one ended, which this one takes the place of unless
+    /// it is left out; without a last one, from the start of its system.
+    fn followed(
+        &self,
+        value: f64,
+        solver: &Solver<f64>,
+        last: &mut Option<Carried>,
+    ) -> Result<ReturnDiagramStep, ValueError> {
+        let begun = SectionMap::new(solver, &self.section).and_then(|map| {
+            let map = match self.longest {
+                Some(longest) => map.within(longest),
+                None => map,
+            };
+            let from = match &*last {
+                Some(last) => map.taken_up(last),
+                None => solver.place(solver.system().start()?)?,
+            };
+            Ok((map, from))
+        });
+        let (map, from) = begun.map_err(|error| ValueError { value, error })?;
+        let (step, place) = self.step(value, &map, &from);
+        if let Some(place) = place {
+            *last = Some(map.carried(&place));
+        }
+        Ok(step)
+    }
+
+    /// The step of a value from a place, and the place of its last return if it has all.
+    fn step(
+        &self,
+        value: f64,
+        map: &SectionMap<'_, f64>,
+        from: &Place<f64>,
+    ) -> (ReturnDiagramStep, Option<Place<f64>>) {
+        let mut returns = map.returns_from(from);
+        let mut points = Vec::with_capacity(self.returns as usize);
+        let mut left_out = None;
+        let all = self.transient + u64::from(self.returns);
+        for (n, point) in (0..all).zip(returns.by_ref()) {
+            left_out = match &point {
+                Ok(point) if is_far(point) => Some(LeftOut::Escapes),
+                Ok(_) => None,
+                Err(why) => Some(LeftOut::NoReturn(*why)),
+            };
+            if left_out.is_some() {
+                points = Vec::new();
+                break;
+            }
+            if n >= self.transient {
+                points.extend(point);
+            }
+        }
+        let undecidable = returns.undecidable();
+        let place = if left_out.is_none() { returns.place().ok() } else { None };
+        (ReturnDiagramStep { value, points, left_out, undecidable }, place)
+    }
+}
+
+/// Whether a state has gone farther than any start.
+fn is_far(point: &Return<f64>) -> bool {
+    point.state.iter().any(|it| it.is_nan() || it.abs() > FARTHEST)
+}
+
+/// The place of a return that a motion of another system may take up: a place at the earliest time
+/// with its forcing angle, and that time as a share of the forcing period.
+#[derive(Clone, Debug)]
+struct Carried {
+    place: Place<f64>,
+    share: f64,
+}
+
+impl SectionMap<'_, f64> {
+    /// The place of a return, for a system that differs in its parameters.
+    fn carried(&self, place: &Place<f64>) -> Carried {
+        let place = self.rebased(place);
+        let share = self.share_of_period(&place);
+        Carried { place, share }
+    }
+
+    /// The place in this map's system: mode and state stay, with what the model has made zero there
+    /// before, and so does the forcing angle.
+    fn taken_up(&self, carried: &Carried) -> Place<f64> {
+        let time = self.time_at_share(carried.share);
+        carried.place.moved_to(time, carried.place.state.clone())
+    }
+}

@@ -1,0 +1,179 @@
+//! Attractors and basins of return maps, beside the oscillator's own and systems whose attractors
+//! are known.
+
+use percuss::affine::{Plane, ReturnBasins, SectionMap, Solver, System, SystemFile};
+use percuss::dynamics::attractor::{AttractorKind, Basins, Grid, Label, Window};
+use percuss::dynamics::strobe::StrobeMap;
+use percuss::system::Section;
+use percuss::{Instant, Model, Parameters};
+
+const OSCILLATOR: &str = include_str!("../../validation/systems/percussive-oscillator.system.toml");
+const RELAY: &str = include_str!("../../validation/systems/relay-feedback.system.toml");
+const RIGID: &str = include_str!("../../validation/systems/rigid-impact-oscillator.system.toml");
+
+/// Two wells at x = -1 and x = 1, each linear, that meet at x = 0.
+const WELLS: &str = r#"
+schema = 1
+name = "wells"
+states = ["x", "v"]
+forcing = { omega = 1, phi = 0 }
+[parameters]
+damping = 0.5
+force = 0.05
+[[mode]]
+name = "left"
+equations = ["x' = v", "v' = force*cos - damping*v - (x + 1)"]
+[[mode.until]]
+name = "up"
+guard = "x > 0"
+next = [{ mode = "right" }]
+[[mode]]
+name = "right"
+equations = ["x' = v", "v' = force*cos - damping*v - (x - 1)"]
+[[mode.until]]
+name = "down"
+guard = "x < 0"
+next = [{ mode = "left" }]
+[start]
+mode = "right"
+x = 1
+v = 0
+"#;
+
+fn with(text: &str, set: &[(&str, f64)], mode: &str) -> System {
+    let mut file = SystemFile::read("test.system.toml", text).unwrap();
+    for (name, value) in set {
+        file.set(name, *value, "the test").unwrap();
+    }
+    file.set_start_mode(mode, "the test");
+    file.system().unwrap()
+}
+
+fn basins(system: &System, section: &Section, plane: &Plane, transient: u64) -> ReturnBasins {
+    let solver = Solver::<f64>::new(system).unwrap();
+    let map = SectionMap::new(&solver, section).unwrap();
+    map.basins(system.start().unwrap(), plane, transient, &|_| ()).unwrap()
+}
+
+fn plane(window: [f64; 4], columns: u32, rows: u32) -> Plane {
+    let [left, right, low, high] = window;
+    Plane { axes: [0, 1], window: [[left, right], [low, high]], columns, rows }
+}
+
+fn kinds(basins: &ReturnBasins) -> Vec<(AttractorKind, Option<usize>)> {
+    basins.attractors.iter().map(|it| (it.kind, it.period())).collect()
+}
+
+/// The oscillator's own labels of starts with q = 0 that fly.
+fn own(window: [f64; 4], columns: u32, rows: u32) -> Basins {
+    let parameters = Parameters { xi: 0.1, omega: 1.6, ..Parameters::default() };
+    let map = StrobeMap::new(Model::new(parameters).unwrap(), Instant::at(1.6, 0.0, 0));
+    let [left, right, low, high] = window;
+    let window = Window { p: [left, right], y: [low, high] };
+    Basins::of(&map, &Grid { window, columns, rows, q: 0.0 }, 60, &|_| ())
+}
+
+/// Cells may differ whose own label hangs on the last digits: it changes where the start is
+/// shifted by 1e-12. The census is that of Fig. 7's window at xi = 0.1, omega = 1.6.
+#[test]
+fn the_oscillators_census_is_its_own() {
+    let (columns, rows, q_and_gap) = (14, 12, 0.02);
+    let window = [-3.0, q_and_gap, -1.5, 1.5];
+    let system = with(OSCILLATOR, &[("xi", 0.1), ("frequency", 1.6)], "no-contact");
+    let found = basins(&system, &Section::strobe(0.0), &plane(window, columns, rows), 60);
+    let known = own(window, columns, rows);
+    let listed: Vec<_> = known.attractors.iter().map(|it| (it.kind, it.period())).collect();
+    let listed: Vec<_> =
+        listed.iter().map(|(kind, it)| (*kind, it.map(|it| it as usize))).collect();
+    assert_eq!(kinds(&found), listed);
+    let shifted = [1e-12, -1e-12].map(|by| {
+        own([window[0] + by, window[1] + by, window[2], window[3]], columns, rows).labels
+    });
+    for (n, (label, own)) in found.labels.iter().zip(&known.labels).enumerate() {
+        let hangs_on_digits = shifted.iter().any(|it| it[n] != *own);
+        assert!(label == own || hangs_on_digits, "{n}: {label:?} {own:?}");
+    }
+    // Orbits have the oscillator's exponents, chaos the same to its standard errors.
+    for (found, own) in found.attractors.iter().zip(&known.attractors) {
+        let error = 5.0 * found.lyapunov_error.hypot(own.lyapunov_error) + 1e-8;
+        let apart = (found.lyapunov_per_return - own.lyapunov_per_period).abs();
+        assert!(apart <= error, "{found:?} {own:?}");
+    }
+}
+
+/// Near the bottom of each well a motion stays in it: the force moves it by 0.05/|1 - 1 + i/2| =
+/// 0.1 at most, and both orbits have the multipliers exp(-pi/2 +- ...) of their mode alone.
+#[test]
+fn each_well_has_its_orbit() {
+    for (mode, middle) in [("right", 1.0), ("left", -1.0)] {
+        let system = with(WELLS, &[], mode);
+        let window = [middle - 0.3, middle + 0.3, -0.3, 0.3];
+        let found = basins(&system, &Section::strobe(0.0), &plane(window, 4, 3), 20);
+        assert_eq!(kinds(&found), [(AttractorKind::Periodic, Some(1))]);
+        assert!(found.labels.iter().all(|it| *it == Label::Attractor(0)));
+        let orbit = &found.attractors[0];
+        // x - middle = 0.05 Re(e^(it)/(i/2)) is 0 at the strobe, where its rate is 0.1.
+        assert!((orbit.points[0].state[0] - middle).abs() < 1e-12, "{orbit:?}");
+        assert!((orbit.points[0].state[1] - 0.1).abs() < 1e-12, "{orbit:?}");
+        let decay = -0.25 * std::f64::consts::TAU;
+        assert!((orbit.lyapunov_per_return - decay).abs() < 1e-12, "{orbit:?}");
+    }
+    // A start in the other mode's half is none.
+    let system = with(WELLS, &[], "right");
+    let found = basins(&system, &Section::strobe(0.0), &plane([-1.0, 1.0, -0.1, 0.1], 4, 1), 20);
+    let is_beyond: Vec<_> = found.labels.iter().map(|it| *it == Label::Inadmissible).collect();
+    assert_eq!(is_beyond, [true, true, false, false]);
+}
+
+/// Without a force motions come to rest in one well or the other, which the crossings of x = 0
+/// decide: a start with v = 0 and 0 < x < 2 lies too low to cross.
+#[test]
+fn motions_that_rest_are_equilibria() {
+    let text = WELLS.replace("forcing = { omega = 1, phi = 0 }\n", "").replace("force*cos", "0");
+    let text = text.replace("force = 0.05\n", "");
+    let system = with(&text, &[], "right");
+    let found = basins(&system, &Section::event("down"), &plane([0.1, 1.9, -0.1, 0.1], 6, 3), 20);
+    assert_eq!(kinds(&found), [(AttractorKind::Equilibrium, None)]);
+    assert!((found.attractors[0].points[0].state[0] - 1.0).abs() < 1e-9, "{found:?}");
+    // Thrown fast enough to the left, some motions end on that side.
+    let found = basins(&system, &Section::event("down"), &plane([0.1, 1.9, -4.0, 0.1], 6, 9), 20);
+    let rests: Vec<f64> = found.attractors.iter().map(|it| it.points[0].state[0].round()).collect();
+    assert_eq!(rests, [-1.0, 1.0]);
+    assert_eq!(found.fraction(Label::Unresolved), 0.0);
+}
+
+/// The relay's cycle attracts from everywhere; its multipliers along the flow and across it are
+/// known from its closed form.
+#[test]
+fn the_relays_cycle_attracts_all() {
+    let system = with(RELAY, &[], "up");
+    let section = Section::event("switch-up");
+    let found = basins(&system, &section, &plane([-0.5, 0.005, -0.5, 0.5], 4, 4), 30);
+    assert_eq!(kinds(&found), [(AttractorKind::Periodic, Some(1))]);
+    assert_eq!(found.fraction(Label::Attractor(0)), 1.0);
+}
+
+#[test]
+fn chaos_is_one_attractor_with_its_exponent() {
+    let system = with(RIGID, &[], "free");
+    let section = Section::strobe(0.0);
+    let found = basins(&system, &section, &plane([-0.5, 0.1, -0.5, 0.5], 5, 4), 40);
+    assert_eq!(kinds(&found), [(AttractorKind::Chaotic, None)], "{:?}", found.labels);
+    let solver = Solver::<f64>::new(&system).unwrap();
+    let map = SectionMap::new(&solver, &section).unwrap();
+    let place = solver.place(system.start().unwrap()).unwrap();
+    let known = map.exponents(&place, 500, 20_000, &mut |_| ()).unwrap();
+    let (own, error) =
+        (found.attractors[0].lyapunov_per_return, found.attractors[0].lyapunov_error);
+    assert!((own - known.per_return[0]).abs() <= 5.0 * error.hypot(known.standard_error[0]));
+}
+
+/// A well that is a hill: all motions escape.
+#[test]
+fn motions_that_escape_have_no_attractor() {
+    let text = WELLS.replace("(x + 1)", "(-x)").replace("(x - 1)", "(-x)");
+    let system = with(&text, &[], "right");
+    let found = basins(&system, &Section::strobe(0.0), &plane([0.5, 1.0, 0.0, 0.1], 3, 2), 20);
+    assert_eq!(found.fraction(Label::Escaping), 1.0);
+    assert!(found.attractors.is_empty());
+}
