@@ -64,7 +64,8 @@ const MISSING_FOLDER: &[&str] = &["/no/such/folder/file.json"];
 const SWEEP: &[&str] = &["sweep run", "sweep status", "sweep merge"];
 
 /// The verbs of the dynamics that take a SYSTEM.
-const OF_SYSTEMS: &[&str] = &["poincare", "lyapunov", "orbit"];
+const OF_SYSTEMS: &[&str] =
+    &["poincare", "lyapunov", "bifurcation", "attractors", "basins", "orbit"];
 
 /// The verbs that a row is for (all where empty), a flag, values that are refused, and what the
 /// line says is accepted.
@@ -125,10 +126,21 @@ const ROWS: &[Row] = &[
     (OF_SYSTEMS, "--max-time", NUMBERS, "accepted is a positive number"),
     (OF_SYSTEMS, "--max-time", &["0", "-1"], "accepted is a positive number"),
     (OF_SYSTEMS, "--max-time", &["5"], "without SYSTEM"),
-    (&["poincare", "lyapunov"], "--returns", INTEGERS, "1 to 1000000000"),
-    (&["poincare", "lyapunov"], "--returns", &["3"], "without SYSTEM"),
-    (&["lyapunov", "orbit"], "--section", &["", "1,5", "-inf", "a@", "strobe:x"], "-1e15 to 1e15"),
-    (&["lyapunov", "orbit"], "--section", &["0.5", "impact"], "without SYSTEM"),
+    (&["poincare", "lyapunov", "bifurcation"], "--returns", INTEGERS, "1 to 1000000000"),
+    (&["poincare", "lyapunov", "bifurcation"], "--returns", &["3"], "without SYSTEM"),
+    (
+        &["lyapunov", "bifurcation", "attractors", "basins", "orbit"],
+        "--section",
+        &["", "1,5", "-inf", "a@", "strobe:x"],
+        "-1e15 to 1e15",
+    ),
+    (
+        &["lyapunov", "bifurcation", "attractors", "basins", "orbit"],
+        "--section",
+        &["0.5", "impact"],
+        "without SYSTEM",
+    ),
+    (&["attractors", "basins"], "--axes", &["", "x,v"], "without SYSTEM"),
     (&["orbit"], "--transient", INTEGERS, "0 to 1000000000"),
     (&["orbit"], "--transient", &["3"], "without SYSTEM"),
     (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
@@ -227,7 +239,7 @@ fn arguments(verb: &str, flag: &str, value: &str) -> Vec<String> {
     let mut words: Vec<String> = verb.split(' ').map(str::to_owned).collect();
     let one_of = |name: &str| ["--periods", "--events", "--until", "--returns"].contains(&name);
     for (name, usual) in usual.iter() {
-        let has_lengths = ["simulate", "poincare", "lyapunov"].contains(&verb);
+        let has_lengths = ["simulate", "poincare", "lyapunov", "bifurcation"].contains(&verb);
         let replaced = has_lengths && one_of(name) && one_of(flag);
         if *name != flag && !replaced && !name.starts_with("--") {
             words.push((*usual).to_owned());
@@ -302,6 +314,22 @@ const SCORED: [&str; 7] =
 /// A section of a system that is not forced, to which the flag `--section` is missing.
 const RELAY: [&str; 6] = ["poincare", "relay-feedback", "--transient", "1", "--returns", "2"];
 
+/// A diagram of a system, to which the number of its points is missing.
+const RIG: [&str; 12] = [
+    "bifurcation",
+    "rigid-impact-oscillator",
+    "--parameter",
+    "d",
+    "--from",
+    "0.1",
+    "--to",
+    "0.2",
+    "--steps",
+    "2",
+    "--transient",
+    "1",
+];
+
 /// A section of a system with a count of forcing periods.
 const SECTION: [&str; 6] = ["poincare", "relay-feedback", "--transient", "1", "--periods", "3"];
 
@@ -374,6 +402,23 @@ fn flags_without_effect() {
             &["--all", "SYSTEM"],
         ),
         ([&diagram[..], &["--carry", "--reset"]].concat(), &["--carry", "--reset"]),
+        (
+            [&["attractors", "relay-feedback"], &grid[..], &["--p", "1"]].concat(),
+            &["--p 1", "--at"],
+        ),
+        ([&["attractors", "relay-feedback"], &grid[..]].concat(), &["--section", "no forcing"]),
+        (
+            [&["attractors", "rigid-impact-oscillator"], &grid[..], &["--axes", "x"]].concat(),
+            &["--axes x", "two of x, v"],
+        ),
+        (
+            [&["attractors", "rigid-impact-oscillator"], &grid[..], &["--axes", "x,x"]].concat(),
+            &["--axes x,x", "two of x, v"],
+        ),
+        ([&RIG[..], &["--periods", "2"]].concat(), &["--periods 2", "--returns"]),
+        ([&RIG[..], &["--returns", "2", "--b", "1"]].concat(), &["--b 1", "--set"]),
+        ([&RIG[..], &["--returns", "2", "--set", "d=1"]].concat(), &["--set d=1", "--parameter d"]),
+        ([&RIG[..], &["--returns", "2", "--section", "hit"]].concat(), &["hit is no event"]),
         (
             [&basins[..], &["--output", "a.npz", "--format", "png"]].concat(),
             &["--format png", "a.npz"],

@@ -56,6 +56,7 @@ mod spoiled;
 mod strobe_derivative;
 mod sweep;
 mod system_cases;
+mod system_diagrams;
 mod system_grazes;
 mod system_sections;
 mod systems;

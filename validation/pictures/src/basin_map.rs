@@ -15,11 +15,13 @@ pub struct BasinMap {
     pub title: String,
     /// A note on how the picture was made, and on what is assumed.
     pub note: String,
-    /// The ranges of p and of y, from and to.
+    /// The names of the axes, across and up.
+    pub axes: [String; 2],
+    /// The ranges of the axes, from and to.
     pub window: [[f64; 2]; 2],
-    /// Cells along p.
+    /// Cells across.
     pub columns: usize,
-    /// The place to which each cell leads, row by row from the lowest y on: an attractor by its
+    /// The place to which each cell leads, row by row from the lowest on: an attractor by its
     /// place in `attractors`.
     pub cells: Vec<Label>,
     /// The attractors.
@@ -33,7 +35,7 @@ pub struct ShownAttractor {
     pub name: String,
     /// The attractor's colours, by their place in a palette of [`BASIN_COLOURS`].
     pub colour: usize,
-    /// The attractor's strobes in (p, y).
+    /// The attractor's points, across and up.
     pub points: Vec<[f64; 2]>,
     /// Drawn point by point as large markers.
     pub is_orbit: bool,
@@ -66,10 +68,10 @@ impl Drawing for BasinMap {
             canvas.text(line, at, TEXT - 2.0, TextSide::Left, palette::INK);
         }
         self.cells(canvas);
-        let [[p_from, p_to], [y_from, y_to]] = self.window;
-        let (x, y) = (Ruler::between(p_from, p_to), Ruler::between(y_from, y_to));
+        let [x, y] = self.window.map(|[from, to]| Ruler::between(from, to));
         let panel = Panel { from: FROM, to: TO, x, y };
-        panel.draw_over(canvas, "p (displacement)", "y (velocity)");
+        let [across, up] = &self.axes;
+        panel.draw_over(canvas, across, up);
         for shown in &self.attractors {
             shown.draw(canvas, &panel);
         }
@@ -83,6 +85,8 @@ impl BasinMap {
             Label::Attractor(k) => self.attractors.get(k).map_or(WHITE, |it| it.colours().0),
             Label::Escaping => WHITE,
             Label::Unresolved => palette::UNRESOLVED,
+            Label::Inadmissible => palette::NO_START,
+            Label::Ended => palette::ENDED,
         }
     }
 
@@ -102,6 +106,8 @@ impl BasinMap {
         let others = [
             (Label::Unresolved, "unresolved", palette::UNRESOLVED),
             (Label::Escaping, "escaping (white)", WHITE),
+            (Label::Inadmissible, "no start", palette::NO_START),
+            (Label::Ended, "the run ends", palette::ENDED),
         ];
         let others = others.into_iter().filter(|(cell, ..)| self.cells.contains(cell));
         let others = others.map(|(_, name, colour)| {

@@ -46,6 +46,10 @@ pub(super) const SKIPPED: Colour = Colour(150, 150, 150);
 pub(super) const GRID: Colour = Colour(225, 225, 225);
 /// Cells of which it is not known where they lead.
 pub(super) const UNRESOLVED: Colour = Colour(176, 176, 176);
+/// Cells at which no motion begins.
+pub(super) const NO_START: Colour = Colour(112, 112, 112);
+/// Cells whose motions end.
+pub(super) const ENDED: Colour = Colour(226, 226, 226);
 
 /// A basin's light colour and its attractor's dark one. The first pairs are near those of the
 /// paper's Fig. 7: orange on yellow, black on purple, red on blue, green on pink; light ones differ

@@ -280,25 +280,36 @@ Examples:
       --to 1.8 --steps 40 --transient 100 --periods 20 --reset \\
       --output diagram.svg
       a picture, each value from rest
+  percuss bifurcation rigid-impact-oscillator --parameter d \\
+      --from 0.2 --to 0.3 --steps 100 --transient 200 --returns 20 \\
+      --output stops.png
+      of a system, over any of its parameters
 
 Words:
   strobe          the state once a forcing period, where the forcing
                   angle has one value
+  section         of a SYSTEM: strobes, or the states just after an
+                  event; a motion returns to it
   carry           each value starts where the last one ended, so
                   coexisting motions show as hysteresis
   reset           each value starts from the start given
   escape          a state that passes 1e9, or is proved to: the value
-                  is left out and counted
+                  is left out and counted, as one of a SYSTEM is whose
+                  motion does not return as often
   drift           v, by which the slider has gone forward; per period,
                   its mean rate
   forcing period  2 pi/omega, the unit of all periods in flags and
                   results";
 
 pub(super) const ATTRACTORS: &str = "\
-Example:
+Examples:
   percuss attractors --xi 0.1 --omega 1.6 --grid 20x20 \\
       --window -3,1.2,-1.5,1.5 --transient 60 --format table
       a table for reading
+  percuss attractors rigid-impact-oscillator --set zeta=0.1 \\
+      --grid 12x12 --window -1,0.4,-1,1 --transient 60 \\
+      --format table
+      of a system, in its first two states
 
 Words:
   attractor   a motion that starts settle into: periodic, quasi-
@@ -307,6 +318,7 @@ Words:
   unresolved  a start whose attractor is not known after the last
               extension of its transient
   escaping    starts whose state grows without bound; their id is -2
+  equilibrium of a SYSTEM: a motion that does not return
   exponent    mean rate, per forcing period, at which a small
               difference between two motions grows; positive: chaos
   multiplier  factor by which a small deviation from an orbit grows in
@@ -330,7 +342,8 @@ Words:
                periodic or chaotic
   basin        the starts that settle into one attractor
   label        the id of a start's attractor; -1 unresolved, -2
-               escaping
+               escaping; of a SYSTEM also -3 where a guard is positive
+               at the start, and -4 where the run ends
   unresolved   a start whose attractor is not known after the last
                extension of its transient
   uncertainty  shares of starts whose neighbour at a distance has

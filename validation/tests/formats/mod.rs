@@ -316,6 +316,20 @@ fn exponents_of_a_system() {
 }
 
 #[test]
+fn attractors_of_a_system() {
+    let words = ["attractors", "rigid-impact-oscillator", "--set", "zeta=0.2", "--transient", "50"];
+    let grid = ["--grid", "4x3", "--window", "-1,0.4,-1,1", "--format", "json"];
+    let found = json_of(&[&words[..], &grid].concat(), 0);
+    assert_valid("attractors-system.schema.json", &found);
+    // One of four columns lies beyond the stop.
+    assert_eq!(found["inadmissible"], 0.25);
+    assert_eq!(found["unresolved"], 0.0, "{found}");
+    let balls = ["attractors", "bouncing-ball", "--section", "impact", "--transient", "50"];
+    let found = json_of(&[&balls[..], &grid].concat(), 0);
+    assert_valid("attractors-system.schema.json", &found);
+}
+
+#[test]
 fn follow() {
     let interval = ["continue", "--parameter", "omega", "--xi", "0.1", "--from", "1.6"];
     let six = [&interval[..], &["--to", "1.56", "--period", "6", "--doubled"]].concat();

@@ -9,7 +9,7 @@ pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
     let Survey { problem, limits, basins, .. } = survey;
     let transient = limits.transient;
     let grid = &basins.grid;
-    let colours = colours(&basins.attractors);
+    let colours = colours(basins.attractors.iter().map(|it| it.kind));
     let shown = basins.attractors.iter().enumerate().zip(colours);
     let map = BasinMap {
         title: picture::caption(problem.model.parameters()),
@@ -18,6 +18,7 @@ pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
              strobes at \u{3c4} = {} and whole forcing periods later; at first {transient} periods a start",
             grid.columns, grid.rows, grid.q, problem.start.tau
         ),
+        axes: ["p (displacement)", "y (velocity)"].map(str::to_owned),
         window: [grid.window.p, grid.window.y],
         columns: grid.columns as usize,
         cells: basins.labels.clone(),
@@ -28,8 +29,9 @@ pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
 
 /// The first chaotic attractor is orange on yellow, as in the paper; all others take the colours
 /// that follow.
-fn colours(attractors: &[Attractor]) -> Vec<usize> {
-    let first = attractors.iter().position(|it| it.kind == AttractorKind::Chaotic);
+pub(super) fn colours(kinds: impl Iterator<Item = AttractorKind>) -> Vec<usize> {
+    let kinds: Vec<_> = kinds.collect();
+    let first = kinds.iter().position(|it| *it == AttractorKind::Chaotic);
     let mut next = 0;
     let colour = |id: usize| {
         if Some(id) == first {
@@ -38,7 +40,7 @@ fn colours(attractors: &[Attractor]) -> Vec<usize> {
         next += 1;
         1 + (next - 1) % (BASIN_COLOURS - 1)
     };
-    (0..attractors.len()).map(colour).collect()
+    (0..kinds.len()).map(colour).collect()
 }
 
 fn shown_as(basins: &Basins, id: usize, attractor: &Attractor, colour: usize) -> ShownAttractor {

@@ -51,7 +51,7 @@ struct UnresolvedJson {
 }
 
 #[derive(Serialize)]
-struct UncertaintyJson {
+pub(super) struct UncertaintyJson {
     epsilon: Vec<f64>,
     uncertain: Vec<f64>,
     exponent: f64,
@@ -60,7 +60,7 @@ struct UncertaintyJson {
 }
 
 #[derive(Serialize)]
-struct EntropyJson {
+pub(super) struct EntropyJson {
     side: u32,
     all: f64,
     boundary: f64,
@@ -69,9 +69,9 @@ struct EntropyJson {
 }
 
 /// Strobes that are written of an attractor that is no orbit.
-const POINTS: usize = 1000;
+pub(super) const POINTS: usize = 1000;
 /// Cells along the side of a box of the basin entropy, as in its authors' paper.
-const BOX: u32 = 5;
+pub(super) const BOX: u32 = 5;
 
 impl Json {
     pub(in crate::cli) fn of(survey: &Survey) -> Self {
@@ -154,7 +154,7 @@ impl UnresolvedJson {
 }
 
 impl UncertaintyJson {
-    fn of(uncertainty: &Uncertainty) -> Self {
+    pub(super) fn of(uncertainty: &Uncertainty) -> Self {
         let scales = &uncertainty.scales;
         Self {
             epsilon: scales.iter().map(|scale| scale.epsilon).collect(),
@@ -167,7 +167,7 @@ impl UncertaintyJson {
 }
 
 impl EntropyJson {
-    fn of(entropy: &Entropy) -> Self {
+    pub(super) fn of(entropy: &Entropy) -> Self {
         let Entropy { side, all, boundary, boundary_error, boundary_boxes } = *entropy;
         Self { side, all, boundary, boundary_error, boundary_boxes }
     }

@@ -3,6 +3,7 @@
 mod draw;
 pub(super) mod json;
 mod npz;
+mod system;
 mod table;
 
 use super::help;
@@ -11,6 +12,8 @@ use super::shared::long_work;
 use super::shared::model::ModelFlags;
 use super::shared::output::Destination;
 use super::shared::parse::{self, MAX_TRANSIENT};
+use super::shared::section::{SectionFlags, without_system};
+use super::shared::system_choice::SystemChoice;
 use crate::case::Problem;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
@@ -23,12 +26,16 @@ use std::path::PathBuf;
 /// List the attractors that a grid of starts reaches
 ///
 /// Answers which motions starts settle into, how large a share of them does, and
-/// how fast each goes forward.
+/// how fast each goes forward. Of a SYSTEM starts cover two of its states.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = help::ATTRACTORS)]
 pub(super) struct AttractorArguments {
     #[command(flatten)]
+    pub(super) system: SystemChoice,
+    #[command(flatten)]
     pub(super) grid: GridFlags,
+    #[command(flatten)]
+    section: SectionFlags,
     #[command(flatten)]
     output: OutputFlags<AttractorFormat>,
     #[command(flatten)]
@@ -52,7 +59,11 @@ enum AttractorFormat {
 #[command(verbatim_doc_comment, after_long_help = help::BASINS)]
 pub(super) struct BasinArguments {
     #[command(flatten)]
+    pub(super) system: SystemChoice,
+    #[command(flatten)]
     pub(super) grid: GridFlags,
+    #[command(flatten)]
+    section: SectionFlags,
     /// Where the labels go; its extension (npz, png) is its format
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -66,17 +77,20 @@ pub(super) struct BasinArguments {
 /// The grid of starts and the time for which they are followed.
 #[derive(Args, Clone, Debug)]
 pub(super) struct GridFlags {
-    /// Cells along p and along y; starts are their centres
+    /// With SYSTEM: the states across and up [default: its first two]
+    #[arg(long, value_name = "NAME,NAME")]
+    axes: Option<String>,
+    /// Cells along p and along y, with SYSTEM across and up; starts are their centres
     #[arg(long, value_name = "NXxNY", value_parser = parse::grid)]
     grid: [u32; 2],
-    /// Rectangle of p and y that the cells cover
+    /// Rectangle of p and y, with SYSTEM of its two states, that the cells cover
     #[arg(long, value_name = "pmin,pmax,ymin,ymax", value_parser = parse::window, allow_hyphen_values = true)]
     window: Window,
-    /// Forcing periods that a start is followed before it is examined; doubled up to three times
-    /// where that does not settle it, and cut short as soon as it does
+    /// Forcing periods, with SYSTEM returns, that a start is followed before it is examined;
+    /// doubled up to three times where that does not settle it, and cut short as soon as it does
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_TRANSIENT), allow_hyphen_values = true)]
     pub(super) transient: u64,
-    /// Longest period of an orbit that is looked for, in forcing periods, 1 to 10000
+    /// Longest period of an orbit that is looked for, in forcing periods or returns, 1 to 10000
     #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true, default_value_t = MAX_PERIOD)]
     max_period: u32,
 }
@@ -126,6 +140,12 @@ pub(super) struct Survey {
 pub(super) fn attractors(arguments: &AttractorArguments, threads: Option<u16>) -> Result<()> {
     let destination = arguments.output.destination();
     let shown = arguments.output.format(usual(&destination))?;
+    let AttractorArguments { system, grid, section, model, .. } = arguments;
+    if let Some(chosen) = system.chosen(model)? {
+        let survey = system::Survey::of(&chosen, grid, section, threads)?;
+        return survey.show(shown, &destination);
+    }
+    arguments.refuse_flags_of_system()?;
     let survey = arguments.grid.survey(&arguments.model, threads)?;
     show(&survey, shown, &destination)
 }
@@ -144,13 +164,25 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
     let labels = format::chosen(Some(output), labels, Labels::Npz)?;
     let file = Destination::new(Some(output));
     file.check()?;
+    let shown = shown.unwrap_or(usual(&Destination::Stdout));
+    let BasinArguments { system, grid, section, model, .. } = arguments;
+    if let Some(chosen) = system.chosen(model)? {
+        let survey = system::Survey::of(&chosen, grid, section, threads)?;
+        let bytes = match labels {
+            Labels::Npz => survey.npz()?,
+            Labels::Png => survey.png()?,
+        };
+        file.write(|out| Ok(out.write_all(&bytes)?))?;
+        return survey.show(shown, &Destination::Stdout);
+    }
+    arguments.refuse_flags_of_system()?;
     let survey = arguments.grid.survey(&arguments.model, threads)?;
     let bytes = match labels {
         Labels::Npz => npz::bytes(&survey, &json::Json::of(&survey))?,
         Labels::Png => draw::bytes(&survey)?,
     };
     file.write(|out| Ok(out.write_all(&bytes)?))?;
-    show(&survey, shown.unwrap_or(usual(&Destination::Stdout)), &Destination::Stdout)
+    show(&survey, shown, &Destination::Stdout)
 }
 
 /// The default format: a table on a terminal, JSON elsewhere.
@@ -178,7 +210,30 @@ fn show(survey: &Survey, shown: AttractorFormat, destination: &Destination) -> R
     }
 }
 
+impl AttractorArguments {
+    /// Refuses the flags of a system where none is chosen.
+    pub(super) fn refuse_flags_of_system(&self) -> Result<()> {
+        self.grid.refuse_axes()?;
+        self.section.refuse()
+    }
+}
+
+impl BasinArguments {
+    /// Refuses the flags of a system where none is chosen.
+    pub(super) fn refuse_flags_of_system(&self) -> Result<()> {
+        self.grid.refuse_axes()?;
+        self.section.refuse()
+    }
+}
+
 impl GridFlags {
+    fn refuse_axes(&self) -> Result<()> {
+        match &self.axes {
+            Some(axes) => bail!("{}", without_system("--axes", axes)),
+            None => Ok(()),
+        }
+    }
+
     /// The grid, with this displacement of the slider's top.
     pub(super) fn grid_of(&self, q: Option<f64>) -> Grid {
         let [columns, rows] = self.grid;

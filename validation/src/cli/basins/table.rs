@@ -69,7 +69,7 @@ fn row(basins: &Basins, id: usize, attractor: &Attractor) -> Vec<String> {
 
 /// The digits after the point of a number with this standard error: down to the error's first, six
 /// at most.
-fn digits(error: f64) -> usize {
+pub(super) fn digits(error: f64) -> usize {
     if error > 0.0 { (-error.log10().floor()).clamp(0.0, 6.0) as usize } else { 6 }
 }
 

@@ -5,7 +5,6 @@ use super::system_choice::AFTER_SYSTEM;
 use super::terminal::note;
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
-use percuss::Ending;
 use percuss::affine::{NoReturn, Section, SectionMap, Solver};
 
 /// The number of returns between two updates of a progress bar.
@@ -41,6 +40,16 @@ impl SectionFlags {
         self.returns.map(self.section.as_ref(), solver)
     }
 
+    /// The section, and the longest time to wait for a return to it if that is given.
+    pub(in crate::cli) fn section(&self) -> Result<(Section, Option<f64>)> {
+        Ok((self.returns.section(self.section.as_ref())?, self.returns.longest()))
+    }
+
+    /// The section as it was written.
+    pub(in crate::cli) fn text(&self) -> &str {
+        self.section.as_ref().map_or("strobe", |it| it.text.as_str())
+    }
+
     /// Refuses the flags where no system is chosen.
     pub(in crate::cli) fn refuse(&self) -> Result<()> {
         if let Some(section) = &self.section {
@@ -57,6 +66,16 @@ impl ReturnFlags {
         section: Option<&Typed<SectionChoice>>,
         solver: &'a Solver<f64>,
     ) -> Result<SectionMap<'a, f64>> {
+        let map = SectionMap::new(solver, &self.section(section)?);
+        let map = map.map_err(|error| anyhow!("--{error}"))?;
+        Ok(match self.longest() {
+            Some(longest) => map.within(longest),
+            None => map,
+        })
+    }
+
+    /// The section, the strobe at the angle 0 where none is given.
+    fn section(&self, section: Option<&Typed<SectionChoice>>) -> Result<Section> {
         let section = match section.map(|it| (&it.value, it)) {
             Some((SectionChoice::Angle(_), it)) => bail!(
                 "--section {it} is not accepted with SYSTEM: strobe:{it}, EVENT and EVENT@MODE are"
@@ -66,12 +85,12 @@ impl ReturnFlags {
             Some((SectionChoice::Event(name, Some(mode)), _)) => Section::event(name).in_mode(mode),
             None => Section::strobe(0.0),
         };
-        let section = section.every(self.every.unwrap_or(1));
-        let map = SectionMap::new(solver, &section).map_err(|error| anyhow!("--{error}"))?;
-        Ok(match &self.max_time {
-            Some(longest) => map.within(longest.value),
-            None => map,
-        })
+        Ok(section.every(self.every.unwrap_or(1)))
+    }
+
+    /// The longest time to wait for a return, if it is given.
+    fn longest(&self) -> Option<f64> {
+        self.max_time.as_ref().map(|it| it.value)
     }
 
     /// Refuses the flags where no system is chosen.
@@ -94,10 +113,13 @@ pub(in crate::cli) fn without_system(flag: &str, value: &dyn std::fmt::Display) 
 /// the arithmetic.
 pub(in crate::cli) fn tell_no_return(why: NoReturn, returns: u64) -> bool {
     note(&format!("equilibrium or end after {returns} returns: {why}"));
+    is_told_by_model(why)
+}
+
+/// Whether the model says that a motion does not return, and not the arithmetic.
+pub(in crate::cli) const fn is_told_by_model(why: NoReturn) -> bool {
     match why {
-        NoReturn::Ended(ending) => {
-            matches!(ending, Ending::Accumulation | Ending::Horizon | Ending::LeavesDomain)
-        }
+        NoReturn::Ended(ending) => ending.is_decided(),
         NoReturn::Equilibrium => true,
         _ => false,
     }

@@ -72,6 +72,19 @@ impl SystemChoice {
     }
 }
 
+impl SystemChoice {
+    /// Refuses `--set` of the parameter that `--parameter` varies: it would have no effect.
+    pub(in crate::cli) fn check_varied(&self, varied: &str) -> Result<()> {
+        if let Some((name, value)) = self.flags.set.iter().find(|it| it.0 == varied) {
+            bail!(
+                "--set {name}={value} has no effect with --parameter {name}, which goes from --from \
+                 to --to; accepted is one of the two"
+            );
+        }
+        Ok(())
+    }
+}
+
 impl SystemFlags {
     /// The system of a path or of a name, with what the flags replace.
     pub(in crate::cli) fn system(&self, path: &Path) -> Result<ChosenSystem> {

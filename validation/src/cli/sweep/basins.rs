@@ -38,12 +38,17 @@ struct Ground {
 const PILOT: u32 = 16;
 
 impl BasinWork {
-    pub(super) fn labels(arguments: BasinArguments) -> Self {
-        Self::new(arguments.grid, arguments.model, Wanted::Labels)
+    // A system has no place in a plan, and its flags are refused without one.
+    pub(super) fn labels(arguments: BasinArguments) -> Result<Self> {
+        arguments.system.chosen(&arguments.model)?;
+        arguments.refuse_flags_of_system()?;
+        Ok(Self::new(arguments.grid, arguments.model, Wanted::Labels))
     }
 
-    pub(super) fn attractors(arguments: AttractorArguments) -> Self {
-        Self::new(arguments.grid, arguments.model, Wanted::Attractors)
+    pub(super) fn attractors(arguments: AttractorArguments) -> Result<Self> {
+        arguments.system.chosen(&arguments.model)?;
+        arguments.refuse_flags_of_system()?;
+        Ok(Self::new(arguments.grid, arguments.model, Wanted::Attractors))
     }
 
     fn new(grid: GridFlags, model: ModelFlags, wanted: Wanted) -> Self {

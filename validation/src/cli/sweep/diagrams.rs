@@ -13,6 +13,7 @@ use percuss::dynamics::diagram::{Diagram, DiagramStep};
 /// Diagrams at each point; a point is one tile.
 pub(super) struct DiagramWork {
     arguments: Arguments,
+    periods: u32,
     /// Whether the last axis is what varies in the diagram.
     by_axis: bool,
 }
@@ -49,11 +50,14 @@ impl DiagramWork {
     }
 
     pub(super) fn new(arguments: Arguments, plan: &Plan) -> Result<Self> {
-        bifurcation::check_size(&arguments, MAX_ROWS)?;
+        // A system has no place in a plan, and its flags are refused without one.
+        arguments.system.chosen(&arguments.model)?;
+        let periods = arguments.periods_of_oscillator()?;
+        bifurcation::check_size(&arguments, periods, MAX_ROWS)?;
         if names_parameter(plan) {
-            arguments.model.check_varied(arguments.parameter)?;
+            arguments.model.check_varied(arguments.parameter_of_oscillator()?)?;
         }
-        Ok(Self { arguments, by_axis: !names_parameter(plan) })
+        Ok(Self { arguments, periods, by_axis: !names_parameter(plan) })
     }
 
     fn diagram(&self, point: &SweepPoint) -> Result<Diagram> {
@@ -120,7 +124,7 @@ impl SweepVerb for DiagramWork {
 
     fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
         let problem = self.arguments.model.at(point).problem()?;
-        let periods = self.arguments.transient + u64::from(self.arguments.periods);
+        let periods = self.arguments.transient + u64::from(self.periods);
         Ok(vec![records::events(&problem.model, problem.entry, periods)])
     }
 }

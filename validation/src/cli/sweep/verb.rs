@@ -27,8 +27,8 @@ pub(super) fn work(plan: &Plan) -> Result<Box<dyn SweepVerb>> {
     let parsed = cli::Arguments::try_parse_from(words)
         .map_err(|error| anyhow!("[fixed]: {}", cli::objection(&error)))?;
     Ok(match parsed.verb {
-        Verb::Basins(arguments) => Box::new(BasinWork::labels(*arguments)),
-        Verb::Attractors(arguments) => Box::new(BasinWork::attractors(*arguments)),
+        Verb::Basins(arguments) => Box::new(BasinWork::labels(*arguments)?),
+        Verb::Attractors(arguments) => Box::new(BasinWork::attractors(*arguments)?),
         Verb::Lyapunov(arguments) => Box::new(ExponentWork::new(*arguments)?),
         Verb::Bifurcation(arguments) => Box::new(DiagramWork::new(*arguments, plan)?),
         Verb::Continue(arguments) => Box::new(BranchWork::new(*arguments)?),

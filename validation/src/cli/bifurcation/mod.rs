@@ -1,4 +1,7 @@
-//! `bifurcation`: a brute-force diagram, as a table or a picture.
+//! `bifurcation`: a brute-force diagram of the impact oscillator or of a SYSTEM, as a table or a
+//! picture.
+
+mod system;
 
 use super::help;
 use super::note;
@@ -6,25 +9,30 @@ use super::shared::format::OutputFlags;
 use super::shared::long_work;
 use super::shared::model::ModelFlags;
 use super::shared::parse::{self, MAX_PERIODS, Typed};
+use super::shared::section::{SectionFlags, without_system};
+use super::shared::system_choice::SystemChoice;
 use super::shared::terminal::endless_words;
 use crate::number::shortest;
 use crate::picture::{self, Figure, Layer, Plot};
 use anyhow::{Result, anyhow, bail};
-use clap::{Args, ValueEnum};
+use clap::{ArgGroup, Args, ValueEnum};
 use percuss::dynamics::diagram::{Diagram, DiagramStep, Follow};
 use percuss::{InputError, Parameter};
 use std::io::Write;
 
-/// Draw a brute-force bifurcation diagram, with the drift
+/// Draw a brute-force bifurcation diagram; of the oscillator with the drift
 ///
 /// Answers what settles at each value of a parameter, and how fast it goes
-/// forward there.
+/// forward there. Of a SYSTEM it shows the returns to a section.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = help::BIFURCATION)]
+#[command(group(ArgGroup::new("length").required(true).args(["periods", "returns"])))]
 pub(super) struct Arguments {
-    /// What varies: a, b, xi, omega, g or phi
-    #[arg(long, value_name = "NAME", value_parser = parse::parameter)]
-    pub(super) parameter: Parameter,
+    #[command(flatten)]
+    pub(super) system: SystemChoice,
+    /// What varies: a, b, xi, omega, g or phi; with SYSTEM a parameter of it
+    #[arg(long, value_name = "NAME")]
+    parameter: String,
     /// The parameter's first value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
     pub(super) from: Typed<f64>,
@@ -34,18 +42,23 @@ pub(super) struct Arguments {
     /// Number of values, both ends included
     #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, 1_000_000), allow_hyphen_values = true)]
     pub(super) steps: u32,
-    /// Forcing periods that are left out at each value
+    /// Forcing periods that are left out at each value, with SYSTEM returns
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
     pub(super) transient: u64,
     /// Points at each value, one a forcing period, at least 1
     #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, MAX_PERIODS), allow_hyphen_values = true)]
-    pub(super) periods: u32,
+    periods: Option<u32>,
+    /// With SYSTEM: points at each value, one a return to the section, at least 1
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, MAX_PERIODS), allow_hyphen_values = true)]
+    returns: Option<u32>,
     /// Starts each value from the last state of the one before (the default)
     #[arg(long, conflicts_with = "reset")]
     carry: bool,
     /// Starts each value from the start given
     #[arg(long)]
     pub(super) reset: bool,
+    #[command(flatten)]
+    section: SectionFlags,
     #[command(flatten)]
     output: OutputFlags<Format>,
     #[command(flatten)]
@@ -67,10 +80,12 @@ const MAX_SVG: u64 = 20_000;
 /// Writes the diagram; whether the motion was decided to its end at every value.
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
+    if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
+        return system::run(arguments, &chosen, format, threads);
+    }
     let diagram = diagram(arguments, &arguments.model)?;
-    arguments.model.check_varied(arguments.parameter)?;
-    let most = if format == Format::Svg { MAX_SVG } else { MAX_ROWS };
-    check_size(arguments, most)?;
+    arguments.model.check_varied(diagram.parameter)?;
+    check_size(arguments, diagram.periods, format.most_rows())?;
     let bar = long_work::bar(u64::from(arguments.steps), "values");
     let steps = long_work::pool(threads)?.install(|| diagram.steps(|| bar.inc(1)));
     bar.finish_and_clear();
@@ -86,17 +101,52 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     Ok(tell_undecidable(diagram.parameter, &steps))
 }
 
+impl Format {
+    /// The most rows, or points of a picture.
+    const fn most_rows(self) -> u64 {
+        match self {
+            Self::Svg => MAX_SVG,
+            Self::Csv | Self::Png => MAX_ROWS,
+        }
+    }
+}
+
+impl Arguments {
+    /// The number of forcing periods of the impact oscillator that are shown at each value.
+    pub(super) fn periods_of_oscillator(&self) -> Result<u32> {
+        self.section.refuse()?;
+        let returns = || without_system("--returns", &self.returns.unwrap_or(1));
+        let Some(periods) = self.periods else { bail!("{}", returns()) };
+        Ok(periods)
+    }
+
+    /// The parameter of the impact oscillator that varies.
+    pub(super) fn parameter_of_oscillator(&self) -> Result<Parameter> {
+        let name = &self.parameter;
+        parse::parameter(name).map_err(|what| anyhow!("--parameter {name} is not accepted: {what}"))
+    }
+
+    /// Refuses two ends where there is one value.
+    fn check_steps(&self) -> Result<()> {
+        if self.steps == 1 && self.from.value != self.to.value {
+            bail!("--to {} has no effect with --steps 1; accepted is the value of --from", self.to);
+        }
+        Ok(())
+    }
+
+    /// The start of each value.
+    const fn follow(&self) -> Follow {
+        if self.reset { Follow::Reset } else { Follow::Carry }
+    }
+}
+
 /// The diagram that the flags ask for, with this model and start.
 pub(super) fn diagram(arguments: &Arguments, model: &ModelFlags) -> Result<Diagram> {
+    let parameter = arguments.parameter_of_oscillator()?;
+    let periods = arguments.periods_of_oscillator()?;
     let problem = model.problem()?;
     let parameters = *problem.model.parameters();
-    let parameter = arguments.parameter;
-    if arguments.steps == 1 && arguments.from.value != arguments.to.value {
-        bail!(
-            "--to {} has no effect with --steps 1; accepted is the value of --from",
-            arguments.to
-        );
-    }
+    arguments.check_steps()?;
     for (flag, value) in [("--from", &arguments.from), ("--to", &arguments.to)] {
         if let Err(InputError::OutOfRange { accepted, .. }) =
             parameter.set(parameters, value.value).check()
@@ -104,7 +154,6 @@ pub(super) fn diagram(arguments: &Arguments, model: &ModelFlags) -> Result<Diagr
             bail!("{flag} {value} is not accepted: {accepted}");
         }
     }
-    let follow = if arguments.reset { Follow::Reset } else { Follow::Carry };
     Ok(Diagram {
         parameters,
         start: problem.start,
@@ -113,15 +162,15 @@ pub(super) fn diagram(arguments: &Arguments, model: &ModelFlags) -> Result<Diagr
         to: arguments.to.value,
         steps: arguments.steps,
         transient: arguments.transient,
-        periods: arguments.periods,
-        follow,
+        periods,
+        follow: arguments.follow(),
     })
 }
 
 /// Refuses more rows than are held in memory.
-pub(super) fn check_size(arguments: &Arguments, most: u64) -> Result<()> {
-    long_work::check_horizon(arguments.transient, u64::from(arguments.periods))?;
-    let rows = u64::from(arguments.steps) * u64::from(arguments.periods);
+pub(super) fn check_size(arguments: &Arguments, periods: u32, most: u64) -> Result<()> {
+    long_work::check_horizon(arguments.transient, u64::from(periods))?;
+    let rows = u64::from(arguments.steps) * u64::from(periods);
     if rows > most {
         bail!("--steps times --periods is {rows}: accepted are at most {most}");
     }
@@ -144,10 +193,7 @@ fn write_csv(steps: &[DiagramStep], out: &mut dyn Write) -> Result<()> {
 fn drawing(diagram: &Diagram, steps: &[DiagramStep]) -> Figure {
     let section =
         |step: &DiagramStep| step.points.iter().map(|it| [step.value, it[0]]).collect::<Vec<_>>();
-    let how = match diagram.follow {
-        Follow::Carry => "each value starts where the last one ended",
-        Follow::Reset => "each value starts from the start given",
-    };
+    let how = told_start(diagram.follow);
     let left_out = match steps.iter().filter(|step| step.escapes).count() {
         0 => String::new(),
         count => format!("; {count} values that escape are left out"),
@@ -173,6 +219,14 @@ fn drawing(diagram: &Diagram, steps: &[DiagramStep]) -> Figure {
             plot("p (displacement)", steps.iter().flat_map(section).collect()),
             plot("drift per period", drift.collect()),
         ],
+    }
+}
+
+/// The words of a caption for the start of each value.
+const fn told_start(follow: Follow) -> &'static str {
+    match follow {
+        Follow::Carry => "each value starts where the last one ended",
+        Follow::Reset => "each value starts from the start given",
     }
 }
 

@@ -1,0 +1,150 @@
+//! `attractors SYSTEM` and `basins SYSTEM`: where the starts of a grid in two states lead.
+
+mod json;
+mod table;
+
+use super::draw::colours;
+use super::{AttractorFormat, GridFlags};
+use crate::arrays::Npz;
+use crate::cli::shared::long_work;
+use crate::cli::shared::output::Destination;
+use crate::cli::shared::section::SectionFlags;
+use crate::cli::shared::system_choice::ChosenSystem;
+use crate::picture::{self, BasinMap, ShownAttractor};
+use anyhow::{Result, bail};
+use percuss::System;
+use percuss::affine::{Plane, ReturnAttractor, ReturnBasins, Solver};
+use percuss::dynamics::attractor::{Label, SearchLimits};
+
+/// A surveyed grid of a system's starts.
+pub(super) struct Survey {
+    system: System,
+    limits: SearchLimits,
+    basins: ReturnBasins,
+    /// The section as it was written.
+    section: String,
+}
+
+impl Survey {
+    pub(super) fn of(
+        chosen: &ChosenSystem,
+        grid: &GridFlags,
+        section: &SectionFlags,
+        threads: Option<u16>,
+    ) -> Result<Self> {
+        let system = chosen.system()?;
+        let plane = grid.plane(&system)?;
+        let limits = grid.limits();
+        let solver = Solver::<f64>::new(&system)?;
+        let map = section.map(&solver)?;
+        let bar = long_work::bar(plane.count() as u64, "starts");
+        let seen = |count| bar.inc(count);
+        let start = system.start()?;
+        let basins =
+            long_work::pool(threads)?.install(|| map.basins(start, &plane, limits, &seen))?;
+        bar.finish_and_clear();
+        Ok(Self { limits, basins, section: section.text().to_owned(), system })
+    }
+
+    pub(super) fn show(&self, shown: AttractorFormat, destination: &Destination) -> Result<()> {
+        match shown {
+            AttractorFormat::Json => destination.json(&json::Json::of(self)),
+            AttractorFormat::Table => {
+                let text = table::text(self);
+                destination.write(|out| Ok(out.write_all(text.as_bytes())?))
+            }
+        }
+    }
+
+    /// The names of the two states, across and up.
+    fn axes(&self) -> [&str; 2] {
+        self.basins.plane.axes.map(|it| self.system.states[it].as_str())
+    }
+
+    /// `labels` int32 [NY, NX], the centres f8 under the states' names, `ids` int32, `meta` the
+    /// JSON as bytes.
+    pub(super) fn npz(&self) -> Result<Vec<u8>> {
+        let ReturnBasins { plane, attractors, labels, .. } = &self.basins;
+        let (columns, rows) = (plane.columns as usize, plane.rows as usize);
+        let ids: Vec<i32> = (0..attractors.len()).map(|k| Label::Attractor(k).number()).collect();
+        let meta = serde_json::to_vec(&json::Json::of(self))?;
+        let mut archive = Npz::new(Vec::new());
+        archive.add("labels", &[rows, columns], labels.iter().map(|label| label.number()))?;
+        for (axis, name) in self.axes().into_iter().enumerate() {
+            let centres = plane.centres(axis);
+            archive.add(&array_name(name), &[centres.len()], centres)?;
+        }
+        archive.add("ids", &[ids.len()], ids)?;
+        archive.add("meta", &[meta.len()], meta)?;
+        archive.finish()
+    }
+
+    pub(super) fn png(&self) -> Result<Vec<u8>> {
+        let ReturnBasins { plane, attractors, labels, .. } = &self.basins;
+        let colours = colours(attractors.iter().map(|it| it.kind));
+        let shown = attractors.iter().enumerate().zip(colours);
+        let map = BasinMap {
+            title: self.system.name.clone(),
+            note: format!(
+                "{} x {} starts at the centres of cells, other states as those of the start;\n\
+                 returns to {}; at first {} returns a start",
+                plane.columns, plane.rows, self.section, self.limits.transient
+            ),
+            axes: self.axes().map(str::to_owned),
+            window: plane.window,
+            columns: plane.columns as usize,
+            cells: labels.clone(),
+            attractors: shown.map(|((id, it), colour)| self.shown(id, it, colour)).collect(),
+        };
+        Ok(picture::png(&map)?)
+    }
+
+    fn shown(&self, id: usize, attractor: &ReturnAttractor, colour: usize) -> ShownAttractor {
+        let what = match attractor.period() {
+            Some(period) => format!("{id}: period {period}"),
+            None => format!("{id}: {}", attractor.kind.as_str()),
+        };
+        let share = 100.0 * self.basins.fraction(Label::Attractor(id));
+        let [across, up] = self.basins.plane.axes;
+        ShownAttractor {
+            name: format!("{what}\n{share:.2} % of starts"),
+            colour,
+            points: attractor.points.iter().map(|it| [it.state[across], it.state[up]]).collect(),
+            is_orbit: attractor.orbit.is_some(),
+        }
+    }
+}
+
+/// The name of a state's array, which is none of the others'.
+fn array_name(state: &str) -> String {
+    match state {
+        "labels" | "ids" | "meta" => format!("state.{state}"),
+        _ => state.to_owned(),
+    }
+}
+
+impl GridFlags {
+    /// The grid of two states.
+    fn plane(&self, system: &System) -> Result<Plane> {
+        let [columns, rows] = self.grid;
+        let window = [self.window.p, self.window.y];
+        Ok(Plane { axes: self.axes_of(system)?, window, columns, rows })
+    }
+
+    fn axes_of(&self, system: &System) -> Result<[usize; 2]> {
+        let states = &system.states;
+        let accepted = || format!("accepted are two of {}", states.join(", "));
+        let Some(text) = &self.axes else {
+            if states.len() < 2 {
+                bail!("{} has one state, and no grid of two: {}", system.name, states.join(", "));
+            }
+            return Ok([0, 1]);
+        };
+        let names: Vec<&str> = text.split(',').map(str::trim).collect();
+        let place = |name: &&str| states.iter().position(|it| it == name);
+        match names.iter().map(place).collect::<Option<Vec<_>>>().as_deref() {
+            Some([across, up]) if across != up => Ok([*across, *up]),
+            _ => bail!("--axes {text} is not accepted: {}", accepted()),
+        }
+    }
+}
