@@ -177,3 +177,21 @@ fn motions_that_escape_have_no_attractor() {
     assert_eq!(found.fraction(Label::Escaping), 1.0);
     assert!(found.attractors.is_empty());
 }
+
+/// With one mode for all starts those on the other side are none; where the start's conditions
+/// choose the mode, each begins in its own, and the whole plane falls into the two wells.
+#[test]
+fn starts_of_a_plane_lie_in_the_modes_that_the_conditions_choose() {
+    let window = [-2.0, 2.0, -1.0, 1.0];
+    let one = basins(&with(WELLS, &[], "right"), &Section::strobe(0.0), &plane(window, 8, 4), 100);
+    assert_eq!(one.fraction(Label::Inadmissible), 0.5);
+    let list = r#"mode = [{ when = "x > 0", mode = "right" }, { mode = "left" }]"#;
+    let system = System::from_toml(&WELLS.replace("mode = \"right\"\nx", &format!("{list}\nx")));
+    let system = system.unwrap();
+    assert_eq!(system.start_modes.len(), 2);
+    let both = basins(&system, &Section::strobe(0.0), &plane(window, 8, 4), 100);
+    assert_eq!(both.fraction(Label::Inadmissible), 0.0);
+    assert_eq!(kinds(&both), [(AttractorKind::Periodic, Some(1)); 2]);
+    let share = |id| both.fraction(Label::Attractor(id));
+    assert_eq!(share(0) + share(1), 1.0);
+}

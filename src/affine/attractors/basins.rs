@@ -5,10 +5,13 @@ use super::catalog::AttractorCatalog;
 use super::space::Space;
 use super::unresolved::UnresolvedReturn;
 use crate::affine::model::error::SystemError;
-use crate::affine::model::system::StartPoint;
+use crate::affine::model::rational::Rational;
+use crate::affine::model::system::{StartPoint, System};
 use crate::affine::returns::map::SectionMap;
 use crate::affine::run::place::Place;
+use crate::affine::solver::Solver;
 use crate::dynamics::attractor::{AttractorKind, Label, SearchLimits};
+use std::collections::BTreeSet;
 
 /// A rectangle of two states, in cells at whose centres starts lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,27 +60,71 @@ impl Plane {
         self.columns as usize * self.rows as usize
     }
 
-    /// All starts, row by row from the lowest on, at the place of a start but for the two states.
-    fn starts(&self, at: &Place<f64>) -> Vec<Place<f64>> {
+    /// All starts, row by row from the lowest on, at a start but for the two states.
+    fn starts(&self, at: &PlaneStart<'_>) -> Result<Vec<Place<f64>>, SystemError> {
         let [across, up] = [0, 1].map(|axis| self.centres(axis));
-        let start = |x: f64, y: f64| {
-            let mut state = at.state.clone();
-            for (axis, value) in self.axes.iter().zip([x, y]) {
-                if let Some(entry) = state.get_mut(*axis) {
-                    *entry = value;
-                }
-            }
-            at.moved_to(at.time, state)
-        };
         up.iter()
-            .flat_map(|y| across.iter().map(move |x| (*x, *y)))
-            .map(|(x, y)| start(x, y))
+            .flat_map(|y| across.iter().map(move |x| [*x, *y]))
+            .map(|values| at.with(self.axes, values))
             .collect()
     }
 }
 
+/// The start of which two states are moved, in each of the modes in which it may lie.
+struct PlaneStart<'a> {
+    system: &'a System,
+    start: &'a StartPoint,
+    places: Vec<Place<f64>>,
+}
+
+impl<'a> PlaneStart<'a> {
+    fn of(
+        solver: &'a Solver<f64>,
+        start: &'a StartPoint,
+        axes: &[usize],
+    ) -> Result<Self, SystemError> {
+        let system = solver.system();
+        let listed = system.start_modes.iter().map(|it| it.mode);
+        let modes: BTreeSet<usize> = listed.chain([start.mode]).collect();
+        let place = |mode| solver.place_free_in(&StartPoint { mode, ..start.clone() }, axes);
+        let places = modes.into_iter().map(place).collect::<Result<_, _>>()?;
+        Ok(Self { system, start, places })
+    }
+
+    /// The start with these values of two states, in the mode that the start's conditions choose,
+    /// or in its own where it has none.
+    fn with(&self, axes: [usize; 2], values: [f64; 2]) -> Result<Place<f64>, SystemError> {
+        let mode = if self.system.start_modes.is_empty() {
+            self.start.mode
+        } else {
+            let mut moved = self.start.clone();
+            for (axis, value) in axes.into_iter().zip(values) {
+                let value = Rational::try_from(value).unwrap_or_default();
+                if let Some(entry) = moved.state.get_mut(axis) {
+                    *entry = [Rational::ZERO, Rational::ZERO, value];
+                }
+            }
+            self.system.mode_by_conditions(&moved)?
+        };
+        let unknown = || SystemError::UnknownMode {
+            item: "start".to_owned(),
+            index: mode,
+            modes: self.system.modes.len(),
+        };
+        let place = self.places.iter().find(|it| it.mode == mode).ok_or_else(unknown)?;
+        let mut state = place.state.clone();
+        for (axis, value) in axes.into_iter().zip(values) {
+            if let Some(entry) = state.get_mut(axis) {
+                *entry = value;
+            }
+        }
+        Ok(place.moved_to(place.time, state))
+    }
+}
+
 impl SectionMap<'_, f64> {
-    /// Labels every start of a plane. The other states, the mode and the time are those of a start.
+    /// Labels every start of a plane. The other states and the time are those of a start, and so is
+    /// the mode, unless the system's start chooses it by conditions.
     ///
     /// `limits` say how many returns a start is followed at first, and how long orbits may be;
     /// `seen` is told of how many starts more the label is known. Results are the same for any
@@ -93,12 +140,12 @@ impl SectionMap<'_, f64> {
         limits: impl Into<SearchLimits>,
         seen: &(dyn Fn(u64) + Sync),
     ) -> Result<ReturnBasins, SystemError> {
-        let at = self.solver().place_free_in(start, &plane.axes)?;
+        let at = PlaneStart::of(self.solver(), start, &plane.axes)?;
         let limits = limits.into().clamped();
         let mut catalog = AttractorCatalog { space: Space::of(self), limits, known: Vec::new() };
         let lattice = Plane { columns: LATTICE, rows: LATTICE, ..*plane };
-        catalog.label_all(&lattice.starts(&at), &|_| ());
-        let starts = plane.starts(&at);
+        catalog.label_all(&lattice.starts(&at)?, &|_| ());
+        let starts = plane.starts(&at)?;
         let labels = catalog.label_all(&starts, seen);
         let known: Vec<_> = catalog.known.iter().map(|it| it.attractor.clone()).collect();
         let mut basins = ReturnBasins::sorted(*plane, &known, labels);

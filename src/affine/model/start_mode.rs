@@ -68,7 +68,10 @@ impl System {
     }
 
     /// The mode that the conditions of the start choose for its time and state.
-    pub(super) fn mode_by_conditions(&self, start: &StartPoint) -> Result<usize, SystemError> {
+    pub(in crate::affine) fn mode_by_conditions(
+        &self,
+        start: &StartPoint,
+    ) -> Result<usize, SystemError> {
         for choice in &self.start_modes {
             let holds =
                 choice.when.as_ref().map_or(Some(true), |it| self.holds_at(it, choice, start));
