@@ -1,5 +1,6 @@
 //! Runs that are differentiated by names, as users of the library ask for them.
 
+use percuss::system::SystemFile;
 use percuss::{Bits212, Event, NoGradient, Proved, System, SystemError, gallery};
 
 fn ball() -> System {
@@ -131,4 +132,63 @@ fn a_run_that_was_not_asked_has_none() {
     let start = asked.start();
     assert!(start.gradient("e").is_none());
     assert!(cells(&start, "g").unwrap().iter().all(Proved::is_zero));
+}
+
+/// A start on a surface lies in the one mode or the other as its velocity has it: by its place it
+/// has a side each, and by its velocity none.
+#[test]
+fn a_start_whose_mode_hangs_on_a_zero_has_no_derivative_of_both_sides() {
+    let text = |x: &str, v: &str| {
+        format!(
+            r#"
+            schema = 1
+            name = "gap"
+            states = ["x", "v"]
+            [[mode]]
+            name = "free"
+            equations = ["x' = v", "v' = 1"]
+            until = [{{ name = "hits", guard = "x > 1", next = [{{ mode = "contact" }}] }}]
+            [[mode]]
+            name = "contact"
+            equations = ["x' = v", "v' = -9*(x - 1)"]
+            until = [{{ name = "leaves", guard = "x < 1", next = [{{ mode = "free" }}] }}]
+            [start]
+            mode = [{{ when = "x > 1", mode = "contact" }}, {{ mode = "free" }}]
+            x = {x}
+            v = {v}
+            "#
+        )
+    };
+    let found = |x, v, name| {
+        let system = System::from_toml(&text(x, v)).unwrap();
+        let solver = system.solver::<Proved>().unwrap();
+        let mut run = solver.run().gradients([name]).unwrap().events(1).unwrap();
+        let event = run.next().expect("an event");
+        event.gradient(name).expect("it was asked for").map(|_| ())
+    };
+    assert_eq!(found("0", "1", "start.x"), Ok(()));
+    assert_eq!(found("1.5", "1", "start.v"), Ok(()));
+    assert_eq!(found("1", "1", "start.v"), Ok(()));
+    assert_eq!(found("1", "1", "start.x"), Err(NoGradient::OneSided));
+}
+
+/// Two balls that leave a blow at one speed for e = 1 part by (1 - e)^2/4 for every other e, and
+/// then meet again at once: the zero holds to first order, and for this value alone.
+#[test]
+fn a_zero_of_one_value_alone_is_no_zero() {
+    let text = include_str!("../../validation/systems/newton-cradle.system.toml");
+    let mut file = SystemFile::read("newton-cradle", text).unwrap();
+    file.set("e", 1.0, "the test").unwrap();
+    let system = file.system().unwrap();
+    let solver = system.solver::<Proved>().unwrap();
+    let events: Vec<_> = solver
+        .run()
+        .gradients(["e"])
+        .unwrap()
+        .events(4)
+        .unwrap()
+        .map(|it| it.gradient("e").expect("it was asked for").map(|_| ()))
+        .collect();
+    assert!(events[0].is_ok(), "{events:?}");
+    assert_eq!(events.last(), Some(&Err(NoGradient::HigherOrder)), "{events:?}");
 }

@@ -3,11 +3,9 @@
 use super::ball::{Ball, Jet, dot};
 use super::coefficients::times;
 use super::derivative::{NoGradient, Side};
-use super::first_order::with_derivative;
+use super::first_order::{InstantZeros, VariedRow};
 use super::walk::Walk;
-use crate::affine::model::system::Row;
-use crate::affine::zeros::residue::Residues;
-use crate::affine::zeros::space::ZeroSpace;
+use crate::affine::model::system::{Mode, Row, Successor};
 use crate::numeric::number::Number;
 
 /// How a row begins at the entry of a mode.
@@ -23,8 +21,12 @@ enum Begin {
 
 impl<T: Number> Walk<'_, T> {
     /// Refuses an instant at which another guard may be zero, unless it is so to first order.
-    pub(super) fn check_others(&self, fired: usize, zeros: &ZeroSpace) -> Result<(), NoGradient> {
-        self.check_guards(Some(fired), |row| zeros.contains(row))
+    pub(super) fn check_others(
+        &self,
+        fired: usize,
+        zeros: &InstantZeros,
+    ) -> Result<(), NoGradient> {
+        self.check_guards(Some(fired), |row| zeros.contain(row))
     }
 
     /// Refuses an instant between two events at which a guard may be zero, unless it is so to first
@@ -36,15 +38,13 @@ impl<T: Number> Walk<'_, T> {
     fn check_guards(
         &self,
         fired: Option<usize>,
-        is_zero: impl Fn(&Residues) -> bool,
+        is_zero: impl Fn(&VariedRow<'_>) -> Result<bool, NoGradient>,
     ) -> Result<(), NoGradient> {
         for (n, guard) in self.modes[self.mode].guards.iter().enumerate() {
             if fired == Some(n) || dot(guard, &self.state).value.sign().is_some() {
                 continue;
             }
-            let [row, rate] = self.guard(self.mode, n);
-            let row = with_derivative(row, rate).ok_or(NoGradient::Unknown)?;
-            if !is_zero(&row) {
+            if !is_zero(&self.guard(self.mode, n))? {
                 return Err(NoGradient::Undecided);
             }
         }
@@ -58,7 +58,7 @@ impl<T: Number> Walk<'_, T> {
         let until = self.solver.system().modes[self.mode].until.len();
         let mut crosses = 0;
         for n in 0..self.modes[self.mode].guards.len() {
-            match self.begin_in(self.mode, self.guard(self.mode, n))? {
+            match self.begin_in(self.mode, &self.guard(self.mode, n))? {
                 Begin::At { is_positive: true, .. } if n < until => self.fires |= 1 << n,
                 Begin::Beside { was: true, is_positive: false, order: 1 } if n < until => {
                     // It fired at once, and beside the name's value it crosses shortly after.
@@ -80,12 +80,29 @@ impl<T: Number> Walk<'_, T> {
 
     /// Refuses a choice of a successor that is not the same to first order.
     pub(super) fn check_successor(&self, mode: usize, until: usize) -> Result<(), NoGradient> {
-        let [own, rates] = [&self.solver.system().modes[mode], &self.tangent.modes[mode]]
-            .map(|it| &it.until[until].next);
-        for (own, rate) in own.iter().zip(rates) {
+        let next = |it: &'_ [Mode]| it[mode].until[until].next.clone();
+        let nearby = self.tangent.nearby.as_ref().map(|it| next(&it.modes));
+        let (own, rates) = (next(&self.solver.system().modes), next(&self.tangent.modes));
+        self.check_choice([&own, &rates], nearby.as_deref())
+    }
+
+    /// Refuses a mode of the start that its conditions do not choose to first order.
+    pub(super) fn check_start_mode(&self) -> Result<(), NoGradient> {
+        let nearby = self.tangent.nearby.as_ref().map(|it| &it.start_modes[..]);
+        let own = &self.solver.system().start_modes;
+        self.check_choice([own, &self.tangent.start_modes], nearby)
+    }
+
+    fn check_choice(
+        &self,
+        [own, rates]: [&[Successor]; 2],
+        nearby: Option<&[Successor]>,
+    ) -> Result<(), NoGradient> {
+        for (n, (own, rate)) in own.iter().zip(rates).enumerate() {
             let (Some(row), Some(rate)) = (&own.when, &rate.when) else { return Ok(()) };
+            let nearby = nearby.and_then(|it| it.get(n)?.when.as_ref());
             // The condition is decided in the mode that it would begin.
-            let is_chosen = match self.begin_in(own.mode, [row, rate])? {
+            let is_chosen = match self.begin_in(own.mode, &VariedRow { row, rate, nearby })? {
                 Begin::Beside { was, is_positive, .. } if was != is_positive => {
                     return Err(NoGradient::OtherEvents);
                 }
@@ -101,9 +118,9 @@ impl<T: Number> Walk<'_, T> {
 
     /// How a row begins at the entry of a mode, by the first of its derivatives that is not zero to
     /// first order.
-    fn begin_in(&self, mode: usize, [row, rate]: [&Row; 2]) -> Result<Begin, NoGradient> {
-        let both = with_derivative(row, rate).ok_or(NoGradient::Unknown)?;
-        let Some(order) = self.zeros.multiplicity(&both, mode) else { return Ok(Begin::Zero) };
+    fn begin_in(&self, mode: usize, varied: &VariedRow<'_>) -> Result<Begin, NoGradient> {
+        let Some(order) = self.zeros.multiplicity(varied, mode)? else { return Ok(Begin::Zero) };
+        let VariedRow { row, rate, .. } = *varied;
         let matrix = &self.solver.system().modes[mode].matrix;
         let mut derivative = (0..order).fold(row.clone(), |row, _| times(&row, matrix));
         if !self.zeros.is_zero_at_entry(&derivative) {

@@ -30,6 +30,9 @@ pub enum NoGradient {
     /// A guard, or a condition of a successor, is zero without being so to first order: the
     /// derivatives on the two sides differ.
     OneSided,
+    /// A guard, or a condition of a successor, is zero for this value of the name and not for
+    /// others, though it is so to first order.
+    HigherOrder,
     /// On this side of the name's value the run has other events from there on.
     OtherEvents,
     /// A guard touches zero without crossing, so that it crosses on one side or the other.
@@ -45,6 +48,7 @@ impl fmt::Display for NoGradient {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::OneSided => "a zero there does not hold to first order: it has two sides",
+            Self::HigherOrder => "a zero there is one of this value alone, if to first order",
             Self::OtherEvents => "the run has other events on that side",
             Self::Touch => "a guard touches zero without crossing: it has two sides",
             Self::Undecided => "a graze, a tie or an event at the horizon, or too few digits",

@@ -22,6 +22,12 @@ impl StartRows {
     }
 }
 
+/// The entries of z at the start of a system, as combinations of independent numbers.
+pub(super) fn nearby_values(system: &System) -> Option<Vec<Vec<Rational>>> {
+    let point = system.start.as_ref()?;
+    Some(independent(&values(system, point), system.is_at_zero_angle(point)))
+}
+
 /// A row of factors at an angle, whose cosine and sine stand before 1.
 pub(super) fn at_angle<T: Number>(row: &[Rational; 3], angle: &[Ball<T>; 3]) -> Ball<T> {
     let terms = row.iter().zip(angle).map(|(a, b)| Ball::of(a).times(*b));

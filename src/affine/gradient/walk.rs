@@ -4,15 +4,14 @@ use super::ball::{Ball, Jet, applied, dot};
 use super::coefficients::{ModeJets, guard_of};
 use super::derivative::{Gradient, NoGradient, Side};
 use super::exponential::exponential;
-use super::first_order::FirstOrder;
-use super::start::{StartRows, at_angle, independent};
+use super::first_order::{FirstOrder, InstantZeros, StartZeros, VariedRow};
+use super::start::{StartRows, at_angle, independent, nearby_values};
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::model::system::{Row, StartPoint};
+use crate::affine::model::system::StartPoint;
 use crate::affine::model::tangent::Tangent;
 use crate::affine::run::Run;
 use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Ending, Event, What};
-use crate::affine::zeros::space::ZeroSpace;
 use crate::numeric::number::{Bound, Number};
 use std::sync::Arc;
 
@@ -33,6 +32,8 @@ pub struct Walk<'a, T: Number> {
     pub(super) fires: u64,
     /// The event that ended the last mode: a mode and its `until`.
     entered_by: Option<[usize; 2]>,
+    /// Whether the system's conditions have chosen the mode of the start.
+    is_chosen_at_start: bool,
     /// Whether the last event is a sample, whose time does not move with the name.
     is_sampled: bool,
     /// The side of the name's value on which the derivatives are, if they are not those of both.
@@ -58,8 +59,14 @@ impl<'a, T: Number> Walk<'a, T> {
         let rows = StartRows::of(system, tangent, [point, rates]);
         let is_at_zero = system.is_at_zero_angle(point);
         let [z, s] = [&rows.values, &rows.slopes].map(|it| independent(it, is_at_zero));
-        let zeros =
-            FirstOrder::at_start(&system.modes, &tangent.modes, start.mode, [&s[..], &z[..]])?;
+        let beside = tangent.nearby.as_ref();
+        let nearby = beside.and_then(|it| nearby_values(it));
+        let zeros = FirstOrder::at_start(
+            [&system.modes, &tangent.modes],
+            beside.map(|it| &it.modes[..]),
+            start.mode,
+            &StartZeros { s: &s, z: &z, nearby: nearby.as_deref() },
+        )?;
         let modes = system.modes.iter().zip(&tangent.modes).map(ModeJets::of).collect();
         let mut own = Self {
             solver,
@@ -73,6 +80,7 @@ impl<'a, T: Number> Walk<'a, T> {
             state: Vec::new(),
             fires: 0,
             entered_by: None,
+            is_chosen_at_start: system.start.as_ref() == Some(point),
             is_sampled: false,
             side: None,
             refused: None,
@@ -104,6 +112,8 @@ impl<'a, T: Number> Walk<'a, T> {
     fn check_begun(&mut self) -> Result<(), NoGradient> {
         if let Some([mode, until]) = self.entered_by {
             self.check_successor(mode, until)?;
+        } else if self.is_chosen_at_start {
+            self.check_start_mode()?;
         }
         self.check_entry()
     }
@@ -162,7 +172,7 @@ impl<'a, T: Number> Walk<'a, T> {
     fn until(&mut self, event: &Event<T>, mode: usize, until: usize) -> Result<(), NoGradient> {
         let at_entry = self.fires >> until & 1 == 1;
         let zeros = if at_entry {
-            self.zeros.with_guard(self.guard(mode, until), true).ok_or(NoGradient::Unknown)?
+            self.zeros.with_guard(&self.guard(mode, until), true).ok_or(NoGradient::Unknown)?
         } else {
             self.cross(event, until)?
         };
@@ -177,7 +187,7 @@ impl<'a, T: Number> Walk<'a, T> {
     }
 
     /// Moves to the instant at which a guard crosses.
-    fn cross(&mut self, event: &Event<T>, guard: usize) -> Result<ZeroSpace, NoGradient> {
+    fn cross(&mut self, event: &Event<T>, guard: usize) -> Result<InstantZeros, NoGradient> {
         self.move_to(event)?;
         let rate = applied(&self.modes[self.mode].matrix, &self.state);
         let own = &self.modes[self.mode].guards[guard];
@@ -185,7 +195,7 @@ impl<'a, T: Number> Walk<'a, T> {
         let later = shift.over(dot(own, &rate).value).ok_or(NoGradient::Undecided)?;
         self.shift(&rate, later);
         self.time_rate = self.time_rate.plus(later);
-        let zeros = self.zeros.with_guard(self.guard(self.mode, guard), false);
+        let zeros = self.zeros.with_guard(&self.guard(self.mode, guard), false);
         let zeros = zeros.ok_or(NoGradient::Unknown)?;
         self.check_others(guard, &zeros)?;
         Ok(zeros)
@@ -272,7 +282,10 @@ impl<'a, T: Number> Walk<'a, T> {
     }
 
     /// A guard of a mode with its derivative.
-    pub(super) fn guard(&self, mode: usize, guard: usize) -> [&Row; 2] {
-        [&self.solver.system().modes[mode], &self.tangent.modes[mode]].map(|it| guard_of(it, guard))
+    pub(super) fn guard(&self, mode: usize, guard: usize) -> VariedRow<'_> {
+        let [row, rate] = [&self.solver.system().modes[mode], &self.tangent.modes[mode]]
+            .map(|it| guard_of(it, guard));
+        let nearby = self.tangent.nearby.as_ref().map(|it| guard_of(&it.modes[mode], guard));
+        VariedRow { row, rate, nearby }
     }
 }

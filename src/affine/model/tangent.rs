@@ -3,7 +3,8 @@
 use super::error::SystemError;
 use super::file::SystemFile;
 use super::rational::Rational;
-use super::system::{Forcing, Mode, StartPoint, System};
+use super::scalar::Scalar;
+use super::system::{Forcing, Mode, StartPoint, Successor, System};
 use std::fmt;
 
 /// A name by which a run may be differentiated.
@@ -71,6 +72,10 @@ pub struct Tangent {
     pub forcing: Option<Forcing>,
     /// The derivatives of the time and the states of the start, if the file has one.
     pub start: Option<StartPoint>,
+    /// The modes in which the start may lie, with derivatives for their conditions.
+    pub(in crate::affine) start_modes: Vec<Successor>,
+    /// The system for another value of the name, where it accepts one.
+    pub(in crate::affine) nearby: Option<Box<System>>,
 }
 
 impl SystemFile {
@@ -104,8 +109,27 @@ impl SystemFile {
     /// for k = 1.
     pub fn tangent(&self, by: &Name) -> Result<Tangent, SystemError> {
         self.check_name(by)?;
-        let System { modes, forcing, start, .. } = self.derivatives(by)?;
-        Ok(Tangent { name: by.clone(), modes, forcing, start })
+        let System { modes, forcing, start, start_modes, .. } = self.derivatives(by)?;
+        let (name, nearby) = (by.clone(), self.nearby(by));
+        Ok(Tangent { name, modes, forcing, start, start_modes, nearby })
+    }
+
+    /// The system for another value of a name. What is zero for both values by the model is so for
+    /// all but a few; how far apart they are does not matter.
+    fn nearby(&self, by: &Name) -> Option<Box<System>> {
+        let moved = |sign: i32| {
+            let mut file = self.clone();
+            if let Name::Parameter(name) = by {
+                let parameter = file.parameters.get_mut(name)?;
+                parameter.value = Scalar::Exact(apart(&parameter.value.number()?, sign));
+            }
+            let mut system = file.system().ok()?;
+            if let Some(start) = &mut system.start {
+                move_start(start, &system.states, by, sign);
+            }
+            Some(Box::new(system))
+        };
+        moved(1).or_else(|| moved(-1))
     }
 
     /// Refuses a name that is neither a parameter nor a state at the start.
@@ -149,8 +173,30 @@ impl System {
                 |state: &String| [Rational::ZERO, Rational::ZERO, Name::is_start(Some(by), state)];
             let state = self.states.iter().map(rate).collect();
             tangent.start = Some(StartPoint { mode: start.mode, time: Rational::ZERO, state });
+            if let Some(nearby) = &mut tangent.nearby {
+                let mut moved = start.clone();
+                move_start(&mut moved, &self.states, by, 1);
+                nearby.start = Some(moved);
+            }
         }
         Ok(tangent)
+    }
+}
+
+/// Another value than this, by a share of it that no model has.
+fn apart(value: &Rational, sign: i32) -> Rational {
+    /// A prime.
+    const PARTS: i32 = 1_048_583;
+    let size = if value.is_zero() { Rational::ONE } else { value.abs() };
+    value + size * Rational::from(sign) / Rational::from(PARTS)
+}
+
+/// Moves the state of a start that is the name.
+fn move_start(start: &mut StartPoint, states: &[String], by: &Name, sign: i32) {
+    let Name::Start(name) = by else { return };
+    let Some(entry) = states.iter().position(|it| it == name) else { return };
+    if let Some([.., one]) = start.state.get_mut(entry) {
+        *one = apart(one, sign);
     }
 }
 
