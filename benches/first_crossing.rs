@@ -1,5 +1,5 @@
-//! The cost of an event: guessed and certified, and by the plain one-sided steps of the tests, beside
-//! the floor: the sine, cosine and exponential of one closed-form evaluation, each waiting for the
+//! The cost of an event: guessed and certified, and by the tests' plain one-sided steps, beside the
+//! floor: the sine, cosine and exponential of one closed-form evaluation, each waiting for the
 //! last as in one trajectory, and independent. The evaluations per event are printed with each
 //! regime, so that one run tells the quotients.
 //!
