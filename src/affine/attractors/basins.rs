@@ -10,7 +10,7 @@ use crate::affine::model::system::{StartPoint, System};
 use crate::affine::returns::map::SectionMap;
 use crate::affine::run::place::Place;
 use crate::affine::solver::Solver;
-use crate::dynamics::attractor::{AttractorKind, Label, SearchLimits};
+use crate::dynamics::attractor::{Label, SearchLimits, grid};
 use std::collections::BTreeSet;
 
 /// A rectangle of two states, in cells at whose centres starts lie.
@@ -31,8 +31,8 @@ pub struct Plane {
 pub struct ReturnBasins {
     /// The plane.
     pub plane: Plane,
-    /// What it reaches: orbits first, by period, then by smallest first state; then the others by
-    /// kind.
+    /// The attractors that it reaches: orbits first, by period, then by smallest first state; then
+    /// the others by kind.
     pub attractors: Vec<ReturnAttractor>,
     /// A label a start, row by row from the lowest on: an index into the attractors.
     pub labels: Vec<Label>,
@@ -48,10 +48,7 @@ impl Plane {
     /// The centres of the columns, or with 1 of the rows.
     #[must_use]
     pub fn centres(&self, axis: usize) -> Vec<f64> {
-        let [from, to] = self.window[axis];
-        let count = [self.columns, self.rows][axis];
-        let width = (to - from) / f64::from(count);
-        (0..count).map(|k| from + (f64::from(k) + 0.5) * width).collect()
+        grid::centres(self.window[axis], [self.columns, self.rows][axis])
     }
 
     /// The number of starts.
@@ -157,32 +154,20 @@ impl SectionMap<'_, f64> {
 impl ReturnBasins {
     /// Drops attractors that no start reaches and puts the others in order.
     fn sorted(plane: Plane, known: &[ReturnAttractor], labels: Vec<Label>) -> Self {
-        let is_reached = |id: usize| labels.contains(&Label::Attractor(id));
-        let listed = |id: &usize| known[*id].kind != AttractorKind::Unidentified && is_reached(*id);
-        let mut order: Vec<usize> = (0..known.len()).filter(listed).collect();
-        order.sort_by(|a, b| known[*a].order(&known[*b]));
-        let place = |label: Label| match label {
-            Label::Attractor(id) => {
-                order.iter().position(|it| *it == id).map_or(Label::Unresolved, Label::Attractor)
-            }
-            other => other,
-        };
-        let attractors = order.iter().map(|id| known[*id].clone()).collect();
-        let labels = labels.iter().map(|it| place(*it)).collect();
+        let (attractors, labels) =
+            grid::in_order(known, labels, |it| it.kind, ReturnAttractor::order);
         Self { plane, attractors, labels, unresolved: Vec::new() }
     }
 
     /// The share of all starts that have a label.
     #[must_use]
     pub fn fraction(&self, label: Label) -> f64 {
-        let count = self.labels.iter().filter(|it| **it == label).count();
-        count as f64 / self.labels.len() as f64
+        grid::fraction(&self.labels, label)
     }
 
     /// The standard error of a share, as of independent starts.
     #[must_use]
     pub fn fraction_error(&self, label: Label) -> f64 {
-        let share = self.fraction(label);
-        (share * (1.0 - share) / self.labels.len() as f64).sqrt()
+        grid::fraction_error(&self.labels, label)
     }
 }

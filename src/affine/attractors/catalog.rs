@@ -19,7 +19,7 @@ pub struct AttractorCatalog<'a> {
 const BLOCK: usize = 1 << 14;
 /// Most starts that are settled between two looks at what has been found.
 const LARGEST_BATCH: usize = 64;
-/// How often a transient is doubled before a start is given up.
+/// The number of times that a transient is doubled before a start is given up.
 pub const EXTENSIONS: u32 = 3;
 
 /// A start by its number, and where its motion is.

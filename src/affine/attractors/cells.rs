@@ -1,4 +1,4 @@
-//! What an attractor that is no orbit occupies: small cells that a long run has visited.
+//! The small cells that a long run on an attractor which is no orbit has visited.
 
 use super::space::Spot;
 use crate::affine::returns::shooting::MOST;

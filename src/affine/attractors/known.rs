@@ -1,4 +1,4 @@
-//! What is known of an attractor that has been met: what a motion near it is recognised by.
+//! An attractor that has been met, with the evidence by which a motion near it is recognised.
 
 use super::ReturnAttractor;
 use super::cells::CellSet;

@@ -11,7 +11,7 @@
 
 use super::space::{Space, Spot};
 use crate::affine::returns::multipliers::orthonormal;
-use crate::affine::returns::shooting::{Change, Derivative, MOST, ReturnMap};
+use crate::affine::returns::shooting::{Change, Derivative, MOST, ReturnMap, identity};
 use crate::affine::run::place::Place;
 use crate::dynamics::linear::{apply, dot, product};
 
@@ -243,10 +243,6 @@ fn directions(dimension: usize) -> Vec<Vec<f64>> {
 fn golden_ratio(dimension: usize) -> f64 {
     let power = 1.0 / (dimension + 1) as f64;
     (0..64).fold(1.5, |x, _| libm::pow(1.0 + x, power))
-}
-
-fn identity() -> Derivative {
-    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }))
 }
 
 fn transposed(m: &Derivative) -> Derivative {

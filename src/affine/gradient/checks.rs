@@ -1,11 +1,10 @@
 //! What a walk refuses: zeros that do not hold to first order, and what its bits leave open.
 
 use super::ball::{Ball, Jet, dot};
-use super::coefficients::times;
 use super::derivative::{NoGradient, Side};
 use super::first_order::{InstantZeros, VariedRow};
 use super::walk::Walk;
-use crate::affine::model::system::{Mode, Row, Successor};
+use crate::affine::model::system::{Mode, Row, Successor, row_times};
 use crate::numeric::number::Number;
 
 /// How a row begins at the entry of a mode.
@@ -80,10 +79,13 @@ impl<T: Number> Walk<'_, T> {
 
     /// Refuses a choice of a successor that is not the same to first order.
     pub(super) fn check_successor(&self, mode: usize, until: usize) -> Result<(), NoGradient> {
-        let next = |it: &'_ [Mode]| it[mode].until[until].next.clone();
-        let nearby = self.tangent.nearby.as_ref().map(|it| next(&it.modes));
-        let (own, rates) = (next(&self.solver.system().modes), next(&self.tangent.modes));
-        self.check_choice([&own, &rates], nearby.as_deref())
+        fn next(modes: &[Mode], [mode, until]: [usize; 2]) -> &[Successor] {
+            &modes[mode].until[until].next
+        }
+        let event = [mode, until];
+        let nearby = self.tangent.nearby.as_ref().map(|it| next(&it.modes, event));
+        let own = next(&self.solver.system().modes, event);
+        self.check_choice([own, next(&self.tangent.modes, event)], nearby)
     }
 
     /// Refuses a mode of the start that its conditions do not choose to first order.
@@ -122,7 +124,7 @@ impl<T: Number> Walk<'_, T> {
         let Some(order) = self.zeros.multiplicity(varied, mode)? else { return Ok(Begin::Zero) };
         let VariedRow { row, rate, .. } = *varied;
         let matrix = &self.solver.system().modes[mode].matrix;
-        let mut derivative = (0..order).fold(row.clone(), |row, _| times(&row, matrix));
+        let mut derivative = (0..order).fold(row.clone(), |row, _| row_times(&row, matrix));
         if !self.zeros.is_zero_at_entry(&derivative) {
             let is_positive = self.is_positive(&derivative)?;
             return Ok(Begin::At { is_positive });
@@ -132,7 +134,7 @@ impl<T: Number> Walk<'_, T> {
         let moves_up = dot(&moved, &self.state).rate.sign().ok_or(NoGradient::Undecided)?;
         let is_positive = moves_up == (side == Side::Above);
         for order in 1..=matrix.len() {
-            derivative = times(&derivative, matrix);
+            derivative = row_times(&derivative, matrix);
             if !self.zeros.is_zero_at_entry(&derivative) {
                 let was = self.is_positive(&derivative)?;
                 return Ok(Begin::Beside { was, is_positive, order });

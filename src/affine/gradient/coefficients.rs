@@ -1,7 +1,6 @@
 //! The coefficients of modes with their derivatives, as numbers.
 
 use super::ball::Jet;
-use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{Mode, Row};
 use crate::numeric::number::Number;
 
@@ -37,13 +36,4 @@ pub(super) fn guard_of(mode: &Mode, guard: usize) -> &Row {
         Some(watch) => &mode.watch[watch].guard,
         None => &mode.until[guard].guard,
     }
-}
-
-/// The product of a row and a matrix, exactly.
-pub(super) fn times(row: &Row, matrix: &[Row]) -> Row {
-    let entry = |k: usize| {
-        let terms = row.iter().zip(matrix).map(|(factor, own)| factor * &own[k]);
-        terms.fold(Rational::ZERO, |sum, term| sum + term)
-    };
-    (0..row.len()).map(entry).collect()
 }

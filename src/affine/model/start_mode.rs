@@ -8,7 +8,7 @@
 
 use super::error::SystemError;
 use super::rational::Rational;
-use super::system::{Row, StartPoint, Successor, System};
+use super::system::{Row, StartPoint, Successor, System, row_times};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::number::{Bound, Number};
 use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
@@ -93,7 +93,7 @@ impl System {
         // By the theorem of Cayley and Hamilton further derivatives are zero where these are.
         for _ in 0..matrix.len() {
             match self.sign_at(&row, start)? {
-                Ordering::Equal => row = times(&row, matrix),
+                Ordering::Equal => row = row_times(&row, matrix),
                 sign => return Some(sign == Ordering::Greater),
             }
         }
@@ -129,17 +129,6 @@ impl System {
             .or_else(|| sign_in::<Bits1696>(&sum, &theta))
             .or_else(|| sign_in::<Bits3392>(&sum, &theta))
     }
-}
-
-/// A row times a matrix.
-fn times(row: &Row, matrix: &[Row]) -> Row {
-    let mut product = vec![Rational::ZERO; row.len()];
-    for (factor, line) in row.iter().zip(matrix).filter(|(factor, _)| !factor.is_zero()) {
-        for (entry, other) in product.iter_mut().zip(line) {
-            *entry += factor * other;
-        }
-    }
-    product
 }
 
 /// The sign of a cos theta + b sin theta + c, if it shows in this arithmetic.

@@ -17,6 +17,16 @@ use std::sync::Arc;
 /// A row of exact coefficients, one for each entry of z.
 pub type Row = Vec<Rational>;
 
+/// The product of a row and a matrix, exactly.
+pub(in crate::affine) fn row_times(row: &Row, matrix: &[Row]) -> Row {
+    let mut sums = vec![Rational::ZERO; row.len()];
+    for (factor, own) in row.iter().zip(matrix).filter(|(factor, _)| !factor.is_zero()) {
+        let entries = sums.iter_mut().zip(own).filter(|(_, entry)| !entry.is_zero());
+        entries.for_each(|(sum, entry)| *sum += factor * entry);
+    }
+    sums
+}
+
 /// Whether a row is that of the identity for an entry of z: a reset with it leaves the entry as it
 /// is.
 #[must_use]

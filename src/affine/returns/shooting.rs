@@ -193,7 +193,8 @@ fn length(change: &[f64]) -> f64 {
     change.iter().map(|it| it * it).sum::<f64>().sqrt()
 }
 
-fn identity() -> Derivative {
+/// The derivative of a map that changes nothing.
+pub(in crate::affine) fn identity() -> Derivative {
     std::array::from_fn(|n| std::array::from_fn(|k| if n == k { 1.0 } else { 0.0 }))
 }
 

@@ -50,7 +50,8 @@ impl<T: Number> Solver<T> {
     /// there by the model holds wherever they are.
     ///
     /// # Errors
-    /// As [`Solver::place`].
+    /// A start in no mode, with more or fewer states than the system has, or whose structural zeros
+    /// cannot be decided.
     pub fn place_free_in(
         &self,
         start: &StartPoint,

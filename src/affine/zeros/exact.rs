@@ -10,7 +10,7 @@ use super::circle::root;
 use super::parabola;
 use super::touch::Touch;
 use crate::affine::model::rational::Rational;
-use crate::affine::model::system::Row;
+use crate::affine::model::system::{Row, row_times};
 
 /// The rows w, w M, w M^2, ... of a guard, as far as they are needed.
 #[derive(Clone, Debug)]
@@ -172,15 +172,6 @@ pub(super) fn product(row: &Row, entries: &Entries) -> Option<Rational> {
     }
     let mut terms = needed.map(|(factor, entry)| Some(factor * entry.as_ref()?));
     terms.try_fold(Rational::ZERO, |sum, term| Some(sum + term?))
-}
-
-fn row_times(row: &Row, matrix: &[Row]) -> Row {
-    let mut sums = vec![Rational::ZERO; row.len()];
-    for (factor, own) in row.iter().zip(matrix).filter(|(factor, _)| !factor.is_zero()) {
-        let entries = sums.iter_mut().zip(own).filter(|(_, entry)| !entry.is_zero());
-        entries.for_each(|(sum, entry)| *sum += factor * entry);
-    }
-    sums
 }
 
 /// The square s of a frequency for which the next row is -s times the last but one, which is the

@@ -5,6 +5,7 @@ use super::{Attractor, AttractorKind};
 use crate::dynamics::strobe::StrobePoint;
 use crate::error::InputError;
 use crate::parameters::within;
+use std::cmp::Ordering;
 use std::ops::Range;
 
 /// A rectangle of starts.
@@ -95,45 +96,67 @@ impl Grid {
     }
 }
 
-fn centres([from, to]: [f64; 2], count: u32) -> Vec<f64> {
+/// The centres of so many cells of a range.
+pub(crate) fn centres([from, to]: [f64; 2], count: u32) -> Vec<f64> {
     let width = (to - from) / f64::from(count);
     (0..count).map(|k| from + (f64::from(k) + 0.5) * width).collect()
+}
+
+/// The attractors that some label names, without unidentified ones and in their order, and the
+/// labels by their new places.
+pub(crate) fn in_order<A: Clone>(
+    known: &[A],
+    labels: Vec<Label>,
+    kind: impl Fn(&A) -> AttractorKind,
+    compare: impl Fn(&A, &A) -> Ordering,
+) -> (Vec<A>, Vec<Label>) {
+    let mut reached = vec![false; known.len()];
+    for label in &labels {
+        if let Label::Attractor(id) = label {
+            reached[*id] = true;
+        }
+    }
+    let listed = |id: &usize| reached[*id] && kind(&known[*id]) != AttractorKind::Unidentified;
+    let mut order: Vec<usize> = (0..known.len()).filter(listed).collect();
+    order.sort_by(|a, b| compare(&known[*a], &known[*b]));
+    let place = |label: Label| match label {
+        Label::Attractor(id) => {
+            order.iter().position(|it| *it == id).map_or(Label::Unresolved, Label::Attractor)
+        }
+        other => other,
+    };
+    let labels = labels.into_iter().map(place).collect();
+    (order.iter().map(|id| known[*id].clone()).collect(), labels)
+}
+
+/// The share of labels that are this one.
+pub(crate) fn fraction(labels: &[Label], label: Label) -> f64 {
+    let count = labels.iter().filter(|it| **it == label).count();
+    count as f64 / labels.len() as f64
+}
+
+/// The standard error of a share, as of independent starts.
+pub(crate) fn fraction_error(labels: &[Label], label: Label) -> f64 {
+    let share = fraction(labels, label);
+    (share * (1.0 - share) / labels.len() as f64).sqrt()
 }
 
 impl Basins {
     /// Drops attractors that no start reaches and puts the others in order.
     pub(super) fn sorted(grid: Grid, known: &[Attractor], labels: Vec<Label>) -> Self {
-        let mut reached = vec![false; known.len()];
-        for label in &labels {
-            if let Label::Attractor(id) = label {
-                reached[*id] = true;
-            }
-        }
-        let listed = |id: &usize| reached[*id] && known[*id].kind != AttractorKind::Unidentified;
-        let mut order: Vec<usize> = (0..known.len()).filter(listed).collect();
-        order.sort_by(|a, b| known[*a].order(&known[*b]));
-        let place = |label: Label| match label {
-            Label::Attractor(id) => {
-                order.iter().position(|it| *it == id).map_or(Label::Unresolved, Label::Attractor)
-            }
-            other => other,
-        };
-        let labels = labels.into_iter().map(place).collect();
-        let attractors = order.iter().map(|id| known[*id].clone()).collect();
+        let (attractors, labels) = in_order(known, labels, |it| it.kind, Attractor::order);
         Self { grid, attractors, labels }
     }
 
     /// The share of all starts that have a label.
     #[must_use]
     pub fn fraction(&self, label: Label) -> f64 {
-        let count = self.labels.iter().filter(|it| **it == label).count();
-        count as f64 / self.labels.len() as f64
+        fraction(&self.labels, label)
     }
 
     /// The standard error of a share, as of independent starts.
     #[must_use]
     pub fn fraction_error(&self, label: Label) -> f64 {
-        let share = self.fraction(label);
-        (share * (1.0 - share) / self.labels.len() as f64).sqrt()
+        fraction_error(&self.labels, label)
     }
 }

@@ -20,7 +20,7 @@ mod block;
 mod catalog;
 mod cells;
 mod fractal;
-mod grid;
+pub(crate) mod grid;
 mod known;
 mod limits;
 mod recognition;
