@@ -10,6 +10,7 @@ mod write;
 
 use super::help;
 use super::shared::format::OutputFlags;
+use super::shared::horizon::horizon;
 use super::shared::long_work::{self, Bar};
 use super::shared::parse::{self, Typed};
 use super::shared::system_choice::SystemFlags;
@@ -17,7 +18,7 @@ use super::{DONE, OUT_OF_BOUNDS, note};
 use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::{self, BITS, LONGEST};
+use percuss::affine::{self, BITS};
 use percuss::{Proved, Solver, System};
 use progress::RunEnd;
 use rows::{Limits, Rows};
@@ -133,18 +134,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
 
 /// The limits of a run that begins at a time.
 fn limits(arguments: &Arguments, system: &System, time: f64) -> Result<Limits> {
-    let direction = if arguments.backward { -1.0 } else { 1.0 };
-    let ahead = |until: f64| direction * (until - time);
-    let until = match &arguments.until {
-        Some(until) if ahead(until.value) >= 0.0 && until.value.is_finite() => until.value,
-        Some(until) => {
-            let side = if arguments.backward { "before" } else { "after" };
-            bail!(
-                "--until {until} is not accepted: a finite time at or {side} the start at {time} is"
-            );
-        }
-        None => time + direction * LONGEST * system.time_scale,
-    };
+    let until = horizon(arguments.until.as_ref(), system, time, arguments.backward)?;
     let usual = arguments.events.is_none().then_some(USUAL_MAX_EVENTS);
     Ok(Limits { until, events: arguments.events, most: arguments.max_events.or(usual) })
 }

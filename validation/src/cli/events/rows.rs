@@ -2,6 +2,7 @@
 
 use super::progress::{Passed, RunEnd};
 use crate::cli::shared::long_work::Bar;
+use crate::cli::shared::states::in_order;
 use anyhow::Result;
 use percuss::{Event, Proved, Run, Solver, System};
 use serde::Serialize;
@@ -143,12 +144,4 @@ impl<'a> Rows<'a> {
         let cells = event.state().iter().map(|it| it.to_digits(self.digits));
         self.system.states.iter().cloned().zip(cells).collect()
     }
-}
-
-/// Writes the states in the order of the file.
-pub(super) fn in_order<S: serde::Serializer>(
-    state: &[(String, String)],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(state.iter().map(|(name, cell)| (name, cell)))
 }

@@ -1,7 +1,8 @@
 //! The rows of `events --samples K`: the state at equal steps of the time, not at events.
 
 use super::progress::{Passed, RunEnd};
-use super::rows::{Rows, in_order};
+use super::rows::Rows;
+use crate::cli::shared::states::in_order;
 use anyhow::Result;
 use percuss::{Event, Kind, Proved};
 use serde::Serialize;

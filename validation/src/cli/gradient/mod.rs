@@ -6,13 +6,13 @@ mod write;
 
 use super::help;
 use super::shared::format::OutputFlags;
+use super::shared::horizon::horizon;
 use super::shared::parse::{self, Typed};
 use super::shared::system_choice::SystemFlags;
 use super::{DONE, OUT_OF_BOUNDS, note};
 use anyhow::{Context, Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::LONGEST;
-use percuss::{Proved, Solver, System};
+use percuss::{Proved, Solver};
 use rows::{Rows, RunEnd};
 use std::path::PathBuf;
 
@@ -62,7 +62,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let refused = || format!("--wrt {}", arguments.wrt);
     let digits = if arguments.digits.as_deref() == Some("25") { 25 } else { 17 };
     let run = solver.run().digits(digits).gradients(&names).with_context(refused)?;
-    let events = run.until(until(arguments, &system)?)?;
+    let start = system.start()?.time.to_f64();
+    let events = run.until(horizon(arguments.until.as_ref(), &system, start, false)?)?;
     let rows = Rows { system: &system, names: &names, digits, limit: arguments.events };
     let mut end = RunEnd::default();
     arguments.output.destination().write(|out| {
@@ -87,18 +88,4 @@ fn names(wrt: &str) -> Result<Vec<String>> {
         bail!("--wrt {wrt}: {} is there twice: {accepted}, each once", twice.1);
     }
     Ok(names)
-}
-
-/// The time at which the run ends.
-fn until(arguments: &Arguments, system: &System) -> Result<f64> {
-    let start = system.start()?.time.to_f64();
-    match &arguments.until {
-        Some(until) if until.value >= start && until.value.is_finite() => Ok(until.value),
-        Some(until) => {
-            bail!(
-                "--until {until} is not accepted: a finite time at or after the start at {start} is"
-            )
-        }
-        None => Ok(start + LONGEST * system.time_scale),
-    }
 }

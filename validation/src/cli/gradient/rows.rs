@@ -2,9 +2,10 @@
 
 use crate::cli::shared::no_progress::LastTurns;
 use crate::cli::shared::run_ending::RunEnding;
+use crate::cli::shared::states::in_order;
 use anyhow::Result;
 use percuss::{Event, Events, Gradient, Kind, NoGradient, Proved, System};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 /// The system, the names and the digits of the derivatives.
 pub(super) struct Rows<'a> {
@@ -132,12 +133,4 @@ fn by_side<'e>(
         }
         None => vec![("", "", event.gradient(name))],
     }
-}
-
-/// Writes the states in the order of the file.
-fn in_order<S: Serializer>(
-    state: &[(&str, Option<String>)],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(state.iter().map(|(name, cell)| (name, cell)))
 }

@@ -4,6 +4,7 @@
 pub(super) mod compact;
 pub(super) mod exit_codes;
 pub(super) mod format;
+pub(super) mod horizon;
 pub(super) mod judged;
 pub(super) mod list;
 pub(super) mod long_work;
@@ -17,5 +18,6 @@ pub(super) mod progress;
 pub(super) mod reports;
 pub(super) mod run_ending;
 pub(super) mod section;
+pub(super) mod states;
 pub(super) mod system_choice;
 pub(super) mod terminal;
