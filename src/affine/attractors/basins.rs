@@ -10,6 +10,7 @@ use crate::affine::model::system::{StartPoint, System};
 use crate::affine::returns::map::SectionMap;
 use crate::affine::run::place::Place;
 use crate::affine::solver::Solver;
+use crate::dynamics::attractor::thresholds::LATTICE;
 use crate::dynamics::attractor::{Label, SearchLimits, grid};
 use std::collections::BTreeSet;
 
@@ -39,10 +40,6 @@ pub struct ReturnBasins {
     /// Some of the starts that were not recognised, described.
     pub unresolved: Vec<UnresolvedReturn>,
 }
-
-/// Attractors are first looked for from a grid of so many by so many starts, whatever grid is asked
-/// for: so they do not depend on it.
-const LATTICE: u32 = 16;
 
 impl Plane {
     /// The centres of the columns, or with 1 of the rows.

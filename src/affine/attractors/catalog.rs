@@ -5,6 +5,7 @@ use super::recognition::Recognizer;
 use super::search::{AttractorSearch, Settled};
 use super::space::{Space, Stop};
 use crate::affine::run::place::Place;
+use crate::dynamics::attractor::thresholds::{BLOCK, EXTENSIONS, LARGEST_BATCH};
 use crate::dynamics::attractor::{Label, SearchLimits};
 use crate::dynamics::parallel;
 
@@ -14,13 +15,6 @@ pub struct AttractorCatalog<'a> {
     pub limits: SearchLimits,
     pub known: Vec<KnownAttractor>,
 }
-
-/// Starts looked at in one go: what is kept of each until then is ten times its label.
-const BLOCK: usize = 1 << 14;
-/// Most starts that are settled between two looks at what has been found.
-const LARGEST_BATCH: usize = 64;
-/// The number of times that a transient is doubled before a start is given up.
-pub const EXTENSIONS: u32 = 3;
 
 /// A start by its number, and where its motion is.
 type Open = (usize, Place<f64>);

@@ -2,15 +2,8 @@
 
 use super::space::Spot;
 use crate::affine::returns::shooting::MOST;
+use crate::dynamics::attractor::thresholds::PER_EXTENT;
 use std::collections::HashSet;
-
-/// Cells along the largest extent. An attractor of dimension 1.3 then fills about
-/// [`PER_EXTENT`]^1.3 = 1400 of them, each visited many times by a run of [`REFERENCE`] returns.
-const PER_EXTENT: f64 = 256.0;
-/// Returns of the run that fills the cells.
-pub const REFERENCE: u64 = 1 << 17;
-/// A motion is on the attractor when so many returns in a row lie in its cells.
-pub const RECURRENCES: u32 = 48;
 
 /// A set of cells, each by its mode and its place along each co-ordinate.
 #[derive(Clone, Debug)]

@@ -5,6 +5,7 @@ use super::cells::CellSet;
 use super::space::{Space, Spot};
 use super::trap::Trap;
 use crate::affine::returns::walk::Return;
+use crate::dynamics::attractor::thresholds::SAME;
 
 /// An attractor and what a motion near it is recognised by.
 #[derive(Clone, Debug)]
@@ -26,9 +27,6 @@ pub enum Evidence {
     /// The state at which a motion has come to rest.
     Rest,
 }
-
-/// Two runs are on one attractor when this share of one lies in the cells of the other.
-const SAME: f64 = 0.5;
 
 /// States of rest that differ by less, beside 1 and their size, are one: so much is left of what
 /// decays while a return is waited for.

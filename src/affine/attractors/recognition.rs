@@ -1,12 +1,9 @@
 //! The recognition of a motion that approaches a known attractor.
 
-use super::cells::RECURRENCES;
 use super::known::{Evidence, KnownAttractor};
 use super::space::{Space, Spot};
 use super::trap::Trap;
-
-/// How many turns in a row have to bring a motion in a trap closer.
-const TURNS: u32 = 3;
+use crate::dynamics::attractor::thresholds::{CLOSER_TURNS, RECURRENCES};
 
 /// What one motion has met of the known attractors.
 pub struct Recognizer<'a> {
@@ -39,7 +36,7 @@ impl<'a> Recognizer<'a> {
             let size = entered.trap.size(self.space, spot);
             let closer = size < entered.size || entered.trap.is_at_rest(size);
             entered.turns += 1;
-            if closer && entered.turns >= TURNS {
+            if closer && entered.turns >= CLOSER_TURNS {
                 return Some(entered.known);
             }
             (entered.size, entered.due) = (size, n + self.known[entered.known].period());

@@ -1,6 +1,6 @@
 //! What a motion settles on that approaches no attractor known so far.
 
-use super::cells::{CellSet, REFERENCE};
+use super::cells::CellSet;
 use super::known::{Evidence, KnownAttractor};
 use super::recognition::Recognizer;
 use super::space::{Space, Spot, Stop};
@@ -8,33 +8,14 @@ use super::trap::Trap;
 use super::{ERRORS, POINTS, ReturnAttractor};
 use crate::affine::returns::exponents::Exponents;
 use crate::affine::run::place::Place;
+use crate::dynamics::attractor::thresholds::{
+    CLOSE, DECISION, GLANCE, LATE_LOOKS, MOST_ATTRACTORS, NEUTRAL, OUTLASTING, PAIRS, REFERENCE,
+    SHORT, TURNS_INTO_TRAP,
+};
 use crate::dynamics::attractor::{AttractorKind, Label, SearchLimits};
 
-/// The longest period that is looked for at once: a longer one only where a motion has nearly no
-/// other place to go, so that ordinary starts do not pay for it.
-const SHORT: u32 = 128;
-/// Returns that repeat this closely (relative to their size) are handed to Newton's method.
-const CLOSE: f64 = 1e-3;
-/// The least number of pairs of returns that must repeat.
-const PAIRS: usize = 8;
-/// Turns within which a motion must enter a trap of the orbit that it seems to follow: one that
-/// loses 1 % of its distance a turn loses 1e-8 of it in so many.
-const TURNS: u64 = 2000;
-/// Returns of the first look at the exponents, and of the one that decides.
-const GLANCE: u64 = 512;
-const DECISION: u64 = 1 << 14;
 /// Returns in which small changes find their directions before exponents are taken.
 const SETTLING: u64 = 64;
-/// How often a motion of no kind is looked at again, [`DECISION`] later each time.
-const LATE_LOOKS: u32 = 8;
-/// Returns after which chaos that is known to end has to have ended.
-const OUTLASTING: u64 = 8 * REFERENCE;
-/// A largest exponent that is no larger is taken for zero.
-const NEUTRAL: f64 = 1e-3;
-
-/// With this number of attractors known, only orbits are added: nearly without damping every start
-/// has its own invariant curve.
-const MOST: usize = 64;
 
 /// What a motion has settled on.
 pub enum Settled {
@@ -94,7 +75,7 @@ impl AttractorSearch<'_> {
         }
         let Some([exponent, error]) = self.largest_exponent(from, GLANCE) else { return Ok(None) };
         // What clearly contracts is an orbit on the way, or a long one.
-        let full = self.known.len() >= MOST;
+        let full = self.known.len() >= MOST_ATTRACTORS;
         match (exponent < -ERRORS * error.max(NEUTRAL), full) {
             (true, _) if last => self.orbit_from(from, self.limits.max_period),
             (false, false) => self.reference(from).map(Some),
@@ -147,7 +128,7 @@ impl AttractorSearch<'_> {
         if !orbit.is_stable() {
             return Ok(None);
         }
-        let turns = TURNS * orbit.period() as u64;
+        let turns = TURNS_INTO_TRAP * orbit.period() as u64;
         let own: Vec<Spot> = places.iter().map(|it| space.spot_of(it)).collect();
         if self.known.iter().any(|it| it.is_orbit(space, own.len() as u64, &own)) {
             let place = self.arrival(last, self.known, turns)?;

@@ -13,6 +13,9 @@ use super::space::{Space, Spot};
 use crate::affine::returns::multipliers::orthonormal;
 use crate::affine::returns::shooting::{Change, Derivative, MOST, ReturnMap, identity};
 use crate::affine::run::place::Place;
+use crate::dynamics::attractor::thresholds::{
+    AT_REST, DIRECTIONS, DOUBLINGS, HALVINGS, LARGEST_RADIUS, RESTING, RESTING_TURNS, SHELLS, TRAPS,
+};
 use crate::dynamics::linear::{apply, dot, product};
 
 /// An ellipsoid about one point of an orbit.
@@ -25,26 +28,8 @@ pub struct Trap {
     rest: f64,
 }
 
-/// Radii that are tried, largest first: how far a trap may reach in any direction. In a larger one
-/// the net would be too coarse for a tongue of another basin.
-const LARGEST: f64 = 0.25;
-const HALVINGS: i32 = 28;
-/// Points of the net on each of its shells, in three dimensions and for each further one.
-const DIRECTIONS: usize = 48;
+/// Points of the net on each of its shells for each dimension beyond three.
 const MORE_DIRECTIONS: usize = 16;
-/// The shells, as shares of the radius: a corner of the map inside must not stay unseen.
-const SHELLS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
-/// About how many points of an orbit get a trap at most.
-const TRAPS: usize = 12;
-/// A motion is at rest on an orbit when the square of its distance is so small a share of the
-/// trap's radius.
-const AT_REST: f64 = 1e-12;
-/// Turns over which is measured how far rounding moves a motion on the orbit.
-const RESTING_TURNS: u64 = 8;
-/// How many times that distance a motion may be away and still at rest.
-const RESTING: f64 = 4.0;
-/// The sum S is doubled in length so often: multipliers up to 1 - 1e-8 are summed up.
-const DOUBLINGS: usize = 32;
 /// Changes that are smaller, beside the largest, are roundings of it.
 const SMALLEST: f64 = 1e-12;
 
@@ -66,7 +51,7 @@ impl Trap {
         let unit = Self { centre: space.spot_of(place), metric, radius: 1.0, rest: 0.0 };
         let rest = unit.rest_of(space, place, period);
         let attempt = |halving: i32| {
-            let radius = LARGEST * 0.5_f64.powi(halving);
+            let radius = LARGEST_RADIUS * 0.5_f64.powi(halving);
             let trap = Self { radius, rest, ..unit.clone() };
             let returns =
                 |shell: &f64| trap.comes_back(space, place, period, &net, *shell, shrinks);
@@ -236,7 +221,9 @@ fn directions(dimension: usize) -> Vec<Vec<f64>> {
         let size = numbers.iter().map(|it| it * it).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
         numbers.into_iter().map(|it| it / size).collect()
     };
-    (0..DIRECTIONS + MORE_DIRECTIONS * dimension.saturating_sub(3)).map(direction).collect()
+    (0..DIRECTIONS as usize + MORE_DIRECTIONS * dimension.saturating_sub(3))
+        .map(direction)
+        .collect()
 }
 
 /// The root above 1 of x^(d+1) = x + 1.

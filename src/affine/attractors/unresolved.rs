@@ -1,16 +1,12 @@
 //! Starts that are not recognised, described: what a reader needs to judge why.
 
-use super::catalog::{AttractorCatalog, EXTENSIONS};
+use super::catalog::AttractorCatalog;
 use super::search::repeats;
 use super::space::Stop;
 use crate::affine::returns::walk::Return;
 use crate::affine::run::place::Place;
 use crate::dynamics::attractor::Label;
-
-/// Most starts that are described.
-const EXAMPLES: usize = 3;
-/// Returns over which the exponent is taken.
-const RETURNS: u64 = 1 << 12;
+use crate::dynamics::attractor::thresholds::{EXAMPLE_RETURNS, EXAMPLES, EXTENSIONS};
 
 /// A start that was not recognised, and its motion after the last extension of its transient.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,12 +54,12 @@ fn described_further(
     let AttractorCatalog { space, limits, .. } = catalog;
     let followed = (0..=EXTENSIONS).map(|it| limits.transient << it).sum();
     let late = space.follow(start, followed, &mut |_, _, _| None)?;
-    if let Ok(found) = space.map.exponents(&late, 0, RETURNS, &mut |_| ()) {
+    if let Ok(found) = space.map.exponents(&late, 0, EXAMPLE_RETURNS, &mut |_| ()) {
         told.lyapunov_per_return = found.per_return.first().copied().unwrap_or(f64::NAN);
     }
     let mut spots = Vec::new();
-    space.follow(&late, RETURNS + limits.strobes(), &mut |n, _, spot| {
-        if n >= RETURNS {
+    space.follow(&late, EXAMPLE_RETURNS + limits.strobes(), &mut |n, _, spot| {
+        if n >= EXAMPLE_RETURNS {
             spots.push(spot.clone());
         }
         None

@@ -9,12 +9,9 @@ use super::grid::{Basins, Grid};
 use super::known::{KnownAttractor, Label};
 use super::limits::SearchLimits;
 use super::settle::LONG_RUN;
+use super::thresholds::LATTICE;
 use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use std::ops::Range;
-
-/// Attractors are first looked for from a grid of so many by so many starts, whatever grid is asked
-/// for: so they do not depend on it.
-const LATTICE: u32 = 16;
 
 /// A block has as many whole rows as hold this number of starts: enough to make the search for
 /// attractors that precedes each block a small part of the work, which is 256 starts.

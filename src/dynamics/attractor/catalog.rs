@@ -4,6 +4,7 @@ use super::known::{KnownAttractor, Label};
 use super::limits::SearchLimits;
 use super::recognition::Recognition;
 use super::settle::{AttractorSearch, Settled};
+use super::thresholds::{BLOCK, EXTENSIONS, LARGEST_BATCH};
 use super::{Attractor, horizon};
 use crate::dynamics::ensemble::{self, Member};
 use crate::dynamics::parallel;
@@ -17,13 +18,6 @@ pub struct AttractorCatalog {
     limits: SearchLimits,
     known: Vec<KnownAttractor>,
 }
-
-/// Starts looked at in one go: what is kept of each until then is ten times its label.
-const BLOCK: usize = 1 << 14;
-/// Most starts that are settled between two looks at what has been found.
-const LARGEST_BATCH: usize = 64;
-/// How often a transient is doubled before a start is given up.
-pub(super) const EXTENSIONS: u32 = 3;
 
 impl AttractorCatalog {
     /// A catalog that has no attractor yet.

@@ -1,16 +1,9 @@
 //! What an attractor that is no orbit occupies: small cells of (p, y, q) that a long run has
 //! visited.
 
+use super::thresholds::PER_EXTENT;
 use crate::dynamics::strobe::StrobePoint;
 use std::collections::HashSet;
-
-/// Cells along the largest extent. An attractor of dimension 1.3 then fills about
-/// [`PER_EXTENT`]^1.3 = 1400 of them, each visited many times by a run of [`REFERENCE`] strobes.
-const PER_EXTENT: f64 = 256.0;
-/// Strobes of the run that fills the cells.
-pub(super) const REFERENCE: u64 = 1 << 17;
-/// A motion is on the attractor when so many strobes in a row lie in its cells.
-pub(super) const RECURRENCES: u32 = 48;
 
 /// A set of cells.
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 
 use super::Attractor;
 use super::cells::CellSet;
+use super::thresholds::SAME;
 use super::trap::Trap;
 use crate::dynamics::orbit::Orbit;
 use crate::dynamics::strobe::StrobePoint;
@@ -56,9 +57,6 @@ pub(super) enum Evidence {
     Traps(Vec<Trap>),
     Cells(CellSet),
 }
-
-/// Two runs are on one attractor when this share of one lies in the cells of the other.
-const SAME: f64 = 0.5;
 
 impl KnownAttractor {
     /// Whether both are the same attractor.

@@ -25,6 +25,7 @@ mod known;
 mod limits;
 mod recognition;
 mod settle;
+pub(crate) mod thresholds;
 mod trap;
 mod unresolved;
 

@@ -1,16 +1,13 @@
 //! The recognition of a motion that approaches a known attractor.
 
-use super::cells::RECURRENCES;
 use super::known::{Evidence, KnownAttractor, Label};
+use super::thresholds::{CLOSER_TURNS, RECURRENCES};
 use super::trap::Trap;
 use crate::dynamics::ensemble::Watcher;
 use crate::dynamics::strobe::StrobePoint;
 use crate::model::entry::Entry;
 use crate::run::exit::Endless;
 use std::ops::ControlFlow;
-
-/// How many turns in a row have to bring a motion in a trap closer.
-const TURNS: u32 = 3;
 
 /// Watches for what is known.
 pub(super) struct Recognition<'a> {
@@ -110,7 +107,7 @@ impl<'a> Recognizer<'a> {
             let size = entered.trap.size(point);
             let closer = size < entered.size || entered.trap.is_at_rest(size);
             entered.turns += 1;
-            if closer && entered.turns >= TURNS {
+            if closer && entered.turns >= CLOSER_TURNS {
                 return Some(entered.known);
             }
             (entered.size, entered.due) = (size, n + self.known[entered.known].period());

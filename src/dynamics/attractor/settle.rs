@@ -1,9 +1,13 @@
 //! What a motion settles on that approaches no attractor known so far.
 
-use super::cells::{CellSet, REFERENCE};
+use super::cells::CellSet;
 use super::known::{Evidence, KnownAttractor, Label};
 use super::limits::SearchLimits;
 use super::recognition::{Recognizer, escapes};
+use super::thresholds::{
+    CLOSE, DECISION, GLANCE, LATE_LOOKS, MOST_ATTRACTORS, NEUTRAL, OUTLASTING, PAIRS, REFERENCE,
+    SHORT, TURNS_INTO_TRAP,
+};
 use super::trap::Trap;
 use super::{Attractor, AttractorKind, ERRORS, horizon};
 use crate::dynamics::lyapunov::Spectrum;
@@ -12,31 +16,8 @@ use crate::dynamics::section::Section;
 use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use crate::model::entry::Entry;
 
-/// The longest period that is looked for at once: a longer one only where a motion has nearly no
-/// other place to go, so that ordinary starts do not pay for it.
-const SHORT: u32 = 128;
-/// Strobes that repeat this closely (relative to their size) are handed to Newton's method.
-const CLOSE: f64 = 1e-3;
-/// The least number of pairs of strobes that must repeat.
-const PAIRS: usize = 8;
-/// Turns within which a motion must enter a trap of the orbit that it seems to follow: one that
-/// loses 1 % of its distance a turn loses 1e-8 of it in so many.
-const TURNS: u64 = 2000;
-/// Forcing periods of the first look at the exponents, and of the one that decides.
-const GLANCE: u64 = 512;
-const DECISION: u64 = 1 << 14;
 /// Forcing periods of all runs that decide about an attractor that is no orbit.
 pub(super) const LONG_RUN: u64 = GLANCE + REFERENCE + DECISION;
-/// How often a motion of no kind is looked at again, [`DECISION`] later each time.
-const LATE_LOOKS: u32 = 8;
-/// Strobes after which chaos that is known to end has to have ended.
-const OUTLASTING: u64 = 8 * REFERENCE;
-/// A largest exponent, and a contraction, that are no larger are taken for zero.
-const NEUTRAL: f64 = 1e-3;
-
-/// With this number of attractors known, only orbits are added: nearly without damping every start
-/// has its own invariant curve.
-const MOST: usize = 64;
 
 /// What a motion has settled on.
 pub(super) enum Settled {
@@ -75,7 +56,7 @@ impl AttractorSearch<'_> {
         }
         let glance = self.spectrum(from, GLANCE);
         // What clearly contracts is an orbit on the way, or a long one.
-        let full = self.known.len() >= MOST;
+        let full = self.known.len() >= MOST_ATTRACTORS;
         let contracts =
             glance.exponents_per_period[0] < -ERRORS * glance.standard_error[0].max(NEUTRAL);
         match (contracts, full) {
@@ -127,14 +108,15 @@ impl AttractorSearch<'_> {
             return None;
         }
         if self.known.iter().any(|known| known.is_orbit(&orbit)) {
-            let place = self.arrival(*last, self.known, TURNS * u64::from(orbit.period()))?;
+            let place =
+                self.arrival(*last, self.known, TURNS_INTO_TRAP * u64::from(orbit.period()))?;
             return Some(Settled::Label(Label::Attractor(place)));
         }
         let traps = Trap::all(self.map, &orbit);
         let period = u64::from(orbit.period());
         let attractor = Attractor::periodic(self.map, orbit);
         let new = KnownAttractor { attractor, evidence: Evidence::Traps(traps), transient: None };
-        self.arrival(*last, std::slice::from_ref(&new), TURNS * period)?;
+        self.arrival(*last, std::slice::from_ref(&new), TURNS_INTO_TRAP * period)?;
         Some(Settled::New(Box::new(new)))
     }
 

@@ -8,6 +8,9 @@
 //!
 //! About a strobe on the slider only motions that are on it too are taken: there p and q are one.
 
+use super::thresholds::{
+    AT_REST, DIRECTIONS, DOUBLINGS, HALVINGS, LARGEST_RADIUS, RESTING, RESTING_TURNS, SHELLS, TRAPS,
+};
 use crate::dynamics::linear::{IDENTITY, apply, dot, product};
 use crate::dynamics::orbit::Orbit;
 use crate::dynamics::section::Section;
@@ -29,28 +32,6 @@ pub(super) struct Trap {
 
 /// p = q + g to within this share of its terms: some roundings.
 const ON_SLIDER: f64 = 1e-12;
-
-/// Radii that are tried, largest first: how far a trap may reach in any direction. In a larger one
-/// the net would be too coarse for a tongue of another basin.
-const LARGEST: f64 = 0.25;
-const HALVINGS: i32 = 28;
-/// Points of the net on each of its shells.
-const DIRECTIONS: u32 = 48;
-/// The shells, as shares of the radius: a corner of the map inside must not stay unseen.
-const SHELLS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
-/// About how many strobes of an orbit get a trap at most.
-const TRAPS: usize = 12;
-/// A motion is at rest on an orbit when the square of its distance is so small a share of the
-/// trap's radius.
-const AT_REST: f64 = 1e-12;
-/// Turns over which is measured how far rounding moves a motion on the orbit. Of an orbit of
-/// hundreds of periods that can be 1e-11, which in a trap of 1e-9 next to a graze is more than that
-/// share.
-const RESTING_TURNS: u64 = 8;
-/// How many times that distance a motion may be away and still at rest.
-const RESTING: f64 = 4.0;
-/// The sum S is doubled in length so often: multipliers up to 1 - 1e-8 are summed up.
-const DOUBLINGS: usize = 32;
 
 impl Trap {
     /// Traps about some strobes of a stable orbit; none where no net comes back.
@@ -82,7 +63,7 @@ impl Trap {
         let unit = Self { centre: entry.point(), metric, radius: 1.0, rest: 0.0, slider };
         let rest = unit.rest_of(map, period);
         let attempt = |halving: i32| {
-            let radius = LARGEST * 0.5_f64.powi(halving);
+            let radius = LARGEST_RADIUS * 0.5_f64.powi(halving);
             let trap = Self { radius, rest, ..unit };
             let returns = |shell: &f64| trap.shell_returns(map, period, &upper, *shell, shrinks);
             SHELLS.iter().all(returns).then_some(trap)

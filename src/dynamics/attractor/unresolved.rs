@@ -1,20 +1,15 @@
 //! Starts that are not recognised, described: what a reader needs to judge why.
 
-use super::catalog::EXTENSIONS;
 use super::grid::Basins;
 use super::horizon;
 use super::known::Label;
 use super::limits::SearchLimits;
 use super::settle::repeats;
+use super::thresholds::{EXAMPLE_RETURNS, EXAMPLES, EXTENSIONS};
 use crate::dynamics::lyapunov::Spectrum;
 use crate::dynamics::section::Section;
 use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use crate::model::entry::Entry;
-
-/// Most starts that are described.
-const EXAMPLES: usize = 3;
-/// Forcing periods over which the exponent is taken.
-const PERIODS: u64 = 1 << 12;
 
 /// A start that was not recognised, and its motion after the last extension of its transient.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,9 +51,14 @@ fn described(map: &StrobeMap, limits: SearchLimits, point: StrobePoint) -> Unres
     let Some(late) = map.entry(point).ok().and_then(|entry| after(map, entry, followed)) else {
         return start;
     };
-    let spectrum = Spectrum::within(map.model(), late, PERIODS, horizon(&late.instant, PERIODS));
+    let spectrum = Spectrum::within(
+        map.model(),
+        late,
+        EXAMPLE_RETURNS,
+        horizon(&late.instant, EXAMPLE_RETURNS),
+    );
     start.lyapunov_per_period = spectrum.exponents_per_period[0];
-    let settled = after(map, late, PERIODS);
+    let settled = after(map, late, EXAMPLE_RETURNS);
     let strobes = settled.into_iter().flat_map(|it| map.strobes(it, limits.strobes() - 1));
     let points: Vec<StrobePoint> = strobes.map(|strobe| strobe.point()).collect();
     start.recurrence = repeats(&points, limits.max_period as usize);
