@@ -4,6 +4,7 @@ use crate::exact;
 use percuss_validation::case::defaults;
 use percuss_validation::integrators::select;
 use percuss_validation::report::{EventMark, EventPicture, MismatchKind, View, event_pictures};
+use percuss_validation::suite::first_wrong::first_wrong_events;
 use percuss_validation::suite::{self, Suite};
 use regex::Regex;
 
@@ -13,7 +14,7 @@ fn pictures(case: &str, engine: &str) -> Vec<EventPicture> {
     let engines = select(&[engine]).expect("an engine");
     let defaults = defaults().expect("bounds");
     let rows = suite::run(&cases, &engines, &Suite::Quick.into(), &defaults, &|| ());
-    event_pictures(&cases, &rows)
+    event_pictures(&first_wrong_events(&cases, &rows))
 }
 
 /// The value at the instant next to `t`.
@@ -79,7 +80,7 @@ fn a_wrong_event_of_another_system_is_shown_alike() {
     let engines = select(&[Regex::new("^diffsol-tsit45$").expect("a pattern")]).expect("an engine");
     let defaults = defaults().expect("bounds");
     let rows = suite::run(&cases, &engines, &Suite::Quick.into(), &defaults, &|| ());
-    let all = event_pictures(&cases, &rows);
+    let all = event_pictures(&first_wrong_events(&cases, &rows));
     let picture = all.first().expect("it misses an event");
     assert_eq!(picture.modes, ["on", "off"]);
     assert!(picture.guard.starts_with("guard of "), "{}", picture.guard);
@@ -99,4 +100,33 @@ fn a_wrong_event_of_another_system_is_shown_alike() {
     assert!(at(close, &side.values, 0.0).abs() <= 0.1 * range, "{range}");
     assert_eq!(close.engine.values.len(), close.truth.values.len());
     assert!(!picture.views[0].steps.is_empty() && !picture.views[0].looks.is_empty());
+}
+
+/// The curve of an answer that cannot be made again is the exact continuation of its own records:
+/// beside the same run watched it is off by the error of single steps, which is within a thousand
+/// tolerances of the guard's size on a period.
+#[test]
+fn an_answer_of_a_program_is_shown_by_its_records() {
+    let cases = exact::prepared_systems(|name| name == "buck-dense-output");
+    let engines = select(&[Regex::new("^diffsol-tsit45$").expect("a pattern")]).expect("an engine");
+    let defaults = defaults().expect("bounds");
+    let mut rows = suite::run(&cases, &engines, &Suite::Quick.into(), &defaults, &|| ());
+    let watched = event_pictures(&first_wrong_events(&cases, &rows));
+    for row in &mut rows {
+        row.engine = "a-program";
+    }
+    let told = event_pictures(&first_wrong_events(&cases, &rows));
+    assert!(!told.is_empty() && told.len() == watched.len());
+    for (told, watched) in told.iter().zip(&watched) {
+        let tolerance = told.tolerance.expect("an adaptive method");
+        assert_eq!((&told.title, told.centre), (&watched.title, watched.centre));
+        for (told, watched) in told.views.iter().zip(&watched.views) {
+            assert!(told.steps.is_empty() && told.looks.is_empty());
+            assert_eq!(told.engine.values.len(), watched.engine.values.len());
+            let size = largest(watched.engine.values.iter().map(|value| value.abs()));
+            let pairs = told.engine.values.iter().zip(&watched.engine.values);
+            let apart = largest(pairs.map(|(one, other)| (one - other).abs()));
+            assert!(apart <= 1e3 * tolerance * size.max(1.0), "{tolerance:e}: {apart:e} of {size}");
+        }
+    }
 }

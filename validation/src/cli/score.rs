@@ -9,6 +9,7 @@ use super::{note, say};
 use crate::engine::{Accuracy, Class, REFERENCE, Stepping, SteppingKind};
 use crate::number::shortest;
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
+use crate::suite::first_wrong::first_wrong_events;
 use crate::suite::{self, PreparedCase, Scored, Status, Suite};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
@@ -156,7 +157,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     evidence.replayed.clone_from(&cases.replayed);
     evidence.folders = [arguments.flags(), judged.folders()].concat();
     if judged.out.is_some() {
-        evidence.events = pool.install(|| event_pictures(all, &rows));
+        evidence.events = pool.install(|| event_pictures(&first_wrong_events(all, &rows)));
     }
     let report = Report::new(SUITE, &[&arguments.engine("", stepping)], &rows);
     let asked = |it: &RowPlace<'_>| {

@@ -12,6 +12,7 @@ use crate::integrators;
 use crate::integrators::WrongEngine;
 use crate::power::{self, Finding, Standard};
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
+use crate::suite::first_wrong::first_wrong_events;
 use crate::suite::{self, Scored, Suite, SuiteScope};
 use anyhow::{Result, bail};
 use clap::Args;
@@ -100,7 +101,7 @@ fn evidence(
     let embedded = judged.chosen.cases.is_none();
     let evidence = ReportEvidence::gather(&cases.all, rows, findings, embedded);
     let events = match judged.out {
-        Some(_) => event_pictures(&cases.all, rows),
+        Some(_) => event_pictures(&first_wrong_events(&cases.all, rows)),
         None => evidence.events,
     };
     let (folders, replayed) = (judged.folders(), cases.replayed.clone());

@@ -1,5 +1,6 @@
 //! Runs the matrix of cases, engines and settings, and the probes beyond it.
 
+pub mod first_wrong;
 mod matrix;
 mod prepared;
 mod probes;

@@ -1,17 +1,15 @@
 //! Pictures of the first missed or spurious event of a row: the guard against time around it, as it
 //! truly is and as the engine had it, with the engine's steps and what its root finder saw.
 //!
-//! The row's run is made again and watched around the event. The truth is the exact solver's run,
-//! made again in 106 bits. Its parts are in [`scene`]; [`mismatch`] finds the event and draws it.
+//! The suite observes truth and engine there ([`crate::suite::first_wrong`]); [`picture`] makes
+//! the views of it from the parts of [`scene`].
 
-mod choice;
 mod draw;
-mod mismatch;
-mod scales;
+mod picture;
 mod scene;
 
-pub use choice::event_pictures;
-pub use mismatch::MismatchKind;
+pub use crate::suite::first_wrong::MismatchKind;
+pub use picture::event_pictures;
 
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! The true run and the engine's run in the views of one wrong event.
 
-use super::scales::Scales;
 use super::{EventMark, View, ViewTrajectory};
+use crate::suite::first_wrong::view_instants;
 
 /// Marks of steps and looks nearer to each other than this share of a view are shown as one.
 const APART: f64 = 1.0 / 120.0;
@@ -62,7 +62,7 @@ impl Scene {
         ViewTrajectory {
             phase,
             events: inside.map(mark).collect(),
-            values: Scales::instants([from, to]).filter_map(known).collect(),
+            values: view_instants([from, to]).filter_map(known).collect(),
         }
     }
 

@@ -124,6 +124,12 @@ impl Motion {
         self.weights(point).iter().zip(row.iter()).map(|(weight, it)| weight * it.abs()).sum()
     }
 
+    /// The states after a duration in a mode.
+    pub(super) fn flow(&self, mode: usize, elapsed: f64, state: &[f64], duration: f64) -> Vec<f64> {
+        let after = (&self.modes[mode] * duration).exp() * self.point(elapsed, state);
+        after.iter().take(state.len()).copied().collect()
+    }
+
     /// A segment that begins in a state.
     pub(super) fn segment(&self, mode: usize, elapsed: f64, state: &[f64], length: f64) -> Segment {
         let part = (&self.modes[mode] * (length / f64::from(PARTS))).exp();

@@ -1,7 +1,7 @@
 //! The stretches of time that are shown: from some steps of the engine down to the event itself.
 
 /// Instants of a view at which both curves are known.
-pub(super) const INSTANTS: usize = 121;
+const INSTANTS: usize = 121;
 
 /// Half the widest view: so many steps of the engine, as far as that is between these shares of a
 /// forcing period.
@@ -42,7 +42,7 @@ impl Scales {
 
     /// The instants of all views.
     pub(super) fn all_instants(&self) -> Vec<f64> {
-        let mut instants: Vec<f64> = self.spans.iter().copied().flat_map(Self::instants).collect();
+        let mut instants: Vec<f64> = self.spans.iter().copied().flat_map(view_instants).collect();
         instants.sort_by(f64::total_cmp);
         instants.dedup();
         instants
@@ -52,13 +52,12 @@ impl Scales {
     pub(super) fn window(&self) -> [f64; 2] {
         self.spans.first().copied().unwrap_or([self.centre; 2])
     }
+}
 
-    /// The instants of a view.
-    pub(super) fn instants([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
-        let share = |k: usize| k as f64 / (INSTANTS - 1) as f64;
-        (0..INSTANTS)
-            .map(move |k| if k + 1 == INSTANTS { to } else { from + (to - from) * share(k) })
-    }
+/// The instants of a view, times since the start, both ends among them.
+pub fn view_instants([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
+    let share = |k: usize| k as f64 / (INSTANTS - 1) as f64;
+    (0..INSTANTS).map(move |k| if k + 1 == INSTANTS { to } else { from + (to - from) * share(k) })
 }
 
 /// Halves of the views, each as much wider than the next.
@@ -86,7 +85,7 @@ mod tests {
 
     #[test]
     fn a_view_reaches_from_end_to_end() {
-        let instants: Vec<f64> = Scales::instants([1.0, 1.3]).collect();
+        let instants: Vec<f64> = view_instants([1.0, 1.3]).collect();
         assert_eq!((instants.len(), instants[0], instants[INSTANTS - 1]), (INSTANTS, 1.0, 1.3));
         assert!(instants.is_sorted());
     }
