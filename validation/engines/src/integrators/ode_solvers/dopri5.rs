@@ -116,6 +116,8 @@ where
     output: ContinuousOutputModel<f64, OVector<f64, D>>,
     pub(in crate::integrators) begin: f64,
     pub(in crate::integrators) ends: Vec<f64>,
+    /// The states at the ends.
+    states: Vec<OVector<f64, D>>,
     pub(in crate::integrators) end: E::State,
 }
 
@@ -183,11 +185,11 @@ where
         let stats =
             solver.integrate_with_continuous_output_model(&mut output).map_err(Failure::new)?;
         self.meter.steps(stats.accepted_steps.into());
-        let end = solver.y_out().last().ok_or_else(|| Failure::new("took no step"))?;
-        let ends = solver.x_out().clone();
+        let (ends, states) = (solver.x_out().clone(), solver.y_out().clone());
+        let end = states.last().ok_or_else(|| Failure::new("took no step"))?;
         self.step = ends.windows(2).last().map_or(0.0, |pair| pair[1] - pair[0]);
         let end = plain(equations, end);
-        Ok(DenseStretch { equations: *equations, output, begin: from.t, ends, end })
+        Ok(DenseStretch { equations: *equations, output, begin: from.t, ends, states, end })
     }
 
     /// The first instant of a stretch at which a guard has risen to zero.
@@ -201,8 +203,9 @@ where
         let counted = &mut sampler.counted;
         let mut state_at = |t: f64| stretch.at(t);
         let mut left = search.look(from.t, &from.state);
-        for end in stretch.ends.iter().copied().filter(|end| *end > stretch.begin) {
-            let right = search.look_at(end, &mut state_at)?;
+        let ends = stretch.ends.iter().zip(&stretch.states);
+        for (end, state) in ends.filter(|(end, _)| **end > stretch.begin) {
+            let right = search.look(*end, &plain(&stretch.equations, state));
             let found = search.between(&left, &right, &mut state_at, counted)?;
             if found.is_some() {
                 return Ok(found);

@@ -68,12 +68,12 @@ impl LocalJudge {
         outcome.events.iter().take_while(|it| is_judged(it.elapsed)).count()
     }
 
-    /// The states at instants since the start, ascending, by the exact flow from the last record of
-    /// an answer that is not later, in f64.
+    /// The states at instants since the start, by the exact flow from the last record of an answer
+    /// before each, in f64. The instant of a record has the state before it, as samples have.
     #[must_use]
     pub fn continued(&self, task: &Task, outcome: &Outcome, instants: &[f64]) -> Vec<Vec<f64>> {
         let state = |t: &f64| {
-            let records = outcome.events.partition_point(|event| event.elapsed <= *t);
+            let records = outcome.events.partition_point(|event| event.elapsed < *t);
             let last = records.checked_sub(1).map(|n| &outcome.events[n]);
             let (mode, elapsed, state) = last.map_or((task.mode, 0.0, &task.state[..]), |event| {
                 (event.mode, event.elapsed, &event.state[..])
