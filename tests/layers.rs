@@ -95,7 +95,17 @@ const PACKAGES: [Package; 8] = [
     },
     Package {
         sources: "validation/harness/src",
-        rooms: &["arrays", "provenance", "truth", "score", "suite", "power", "bench", "reproduce"],
+        rooms: &[
+            "arrays",
+            "provenance",
+            "truth",
+            "gradients",
+            "score",
+            "suite",
+            "power",
+            "bench",
+            "reproduce",
+        ],
         least_uses: 150,
     },
     Package {

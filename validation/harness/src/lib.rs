@@ -7,6 +7,7 @@ use percuss_pictures as picture;
 
 pub mod arrays;
 pub mod bench;
+pub mod gradients;
 pub mod power;
 pub mod provenance;
 pub mod reproduce;

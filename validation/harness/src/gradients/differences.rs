@@ -1,0 +1,144 @@
+//! Difference quotients over steps of a name, by runs with the same events.
+
+use super::linear::Linear;
+use super::path::{Stop, Stretch};
+use super::walk::{Along, Rows};
+use nalgebra::DVector;
+
+/// The most steps of Newton's method to an event.
+const MOST_STEPS: usize = 50;
+/// An event's time is found where a step is smaller than this share of the stretch.
+const FOUND: f64 = 1e-15;
+/// The step by which second and third derivatives are taken, as a share of the name's value: the
+/// rounding of a third derivative is then some 1e-16/1e-9.
+const SHARE: f64 = 1e-3;
+
+/// Runs for other values of a name. The system is followed to first order in its coefficients, as
+/// `export` gives it.
+pub(super) struct Quotients<'a> {
+    along: Along<'a>,
+    size: f64,
+}
+
+/// The values of an answer that are compared, each divided by its unit.
+pub(super) type Weighed = Vec<f64>;
+
+impl<'a> Quotients<'a> {
+    pub(super) fn new(along: Along<'a>, size: f64) -> Self {
+        Self { along, size }
+    }
+
+    /// The difference quotient over a step.
+    pub(super) fn quotient(&self, step: f64, central: bool) -> Option<Rows> {
+        let above = self.values(step)?;
+        let (below, width) =
+            if central { (self.values(-step)?, 2.0 * step) } else { (self.values(0.0)?, step) };
+        Some(combined(&[(1.0 / width, &above), (-1.0 / width, &below)]))
+    }
+
+    /// The step over which differences give what was answered, if there is one. `weigh` takes the
+    /// cells that are compared, each divided by its unit, and `error` is what was answered less the
+    /// truth.
+    pub(super) fn step(
+        &self,
+        truth: &Rows,
+        error: &Weighed,
+        weigh: impl Fn(&Rows) -> Weighed,
+    ) -> Option<(f64, bool)> {
+        let h = SHARE * self.size;
+        let [above, at, below] = [self.values(h)?, self.values(0.0)?, self.values(-h)?];
+        let second =
+            combined(&[(1.0 / (h * h), &above), (-2.0 / (h * h), &at), (1.0 / (h * h), &below)]);
+        let central = combined(&[(0.5 / h, &above), (-0.5 / h, &below), (-1.0, truth)]);
+        let of_one_side = 2.0 * share(error, &weigh(&second));
+        let of_both = share(error, &weigh(&central)).max(0.0).sqrt() * h;
+        [(of_one_side, false), (of_both, true)]
+            .into_iter()
+            .find_map(|(step, central)| self.refined(step, central, truth, error, &weigh))
+    }
+
+    /// A step near this one whose differences leave a tenth of the error at most.
+    fn refined(
+        &self,
+        mut step: f64,
+        central: bool,
+        truth: &Rows,
+        error: &Weighed,
+        weigh: &impl Fn(&Rows) -> Weighed,
+    ) -> Option<(f64, bool)> {
+        for _ in 0..4 {
+            if !(step.is_finite() && step.abs() > 0.0) {
+                return None;
+            }
+            let quotient = self.quotient(step, central)?;
+            let found = weigh(&combined(&[(1.0, &quotient), (-1.0, truth)]));
+            let rest: f64 = found.iter().zip(error).map(|(a, b)| (a - b) * (a - b)).sum();
+            let all: f64 = error.iter().map(|it| it * it).sum();
+            if rest <= 0.01 * all {
+                return Some((step, central));
+            }
+            let more = share(error, &found).max(0.0);
+            step *= if central { more.sqrt() } else { more };
+        }
+        None
+    }
+
+    /// Times and states of the events for another value of the name.
+    fn values(&self, step: f64) -> Option<Rows> {
+        let linear = self.along.linear.moved(self.along.rates, step);
+        let (mut z, mut time) = (linear.start.clone(), 0.0);
+        let mut rows = vec![self.cells(0.0, &z)];
+        let last: f64 = self.along.path.iter().map(|it| it.elapsed).sum();
+        for stretch in self.along.path {
+            let elapsed = match stretch.stop {
+                Stop::End => last - time,
+                _ if stretch.at_entry => 0.0,
+                Stop::Until(guard) | Stop::Watch(guard) => crossing(&linear, stretch, guard, &z)?,
+            };
+            z = (&linear.modes[stretch.mode].matrix * elapsed).exp() * z;
+            time += elapsed;
+            if let Stop::Until(until) = stretch.stop {
+                z = &linear.modes[stretch.mode].resets[until] * z;
+            }
+            rows.push(self.cells(if stretch.stop == Stop::End { 0.0 } else { time }, &z));
+        }
+        Some(rows)
+    }
+
+    fn cells(&self, time: f64, z: &DVector<f64>) -> Vec<f64> {
+        std::iter::once(time).chain(z.iter().take(self.along.states).copied()).collect()
+    }
+}
+
+/// The time from the entry to a guard's zero near that of the exact run.
+fn crossing(linear: &Linear, stretch: &Stretch, guard: usize, z: &DVector<f64>) -> Option<f64> {
+    let mode = &linear.modes[stretch.mode];
+    let guard = &mode.guards[guard];
+    let mut elapsed = stretch.elapsed;
+    for _ in 0..MOST_STEPS {
+        let there = (&mode.matrix * elapsed).exp() * z;
+        let rate = guard.dot(&(&mode.matrix * &there).transpose());
+        let step = guard.dot(&there.transpose()) / rate;
+        if !step.is_finite() {
+            return None;
+        }
+        elapsed -= step;
+        if step.abs() <= FOUND * stretch.elapsed.abs() {
+            break;
+        }
+    }
+    Some(elapsed)
+}
+
+/// The factor by which a direction comes closest to an error.
+fn share(error: &Weighed, direction: &Weighed) -> f64 {
+    let product: f64 = error.iter().zip(direction).map(|(a, b)| a * b).sum();
+    product / direction.iter().map(|it| it * it).sum::<f64>()
+}
+
+/// A sum of rows with factors.
+fn combined(terms: &[(f64, &Rows)]) -> Rows {
+    let Some((_, first)) = terms.first() else { return Vec::new() };
+    let cell = |n: usize, k: usize| terms.iter().map(|(factor, rows)| factor * rows[n][k]).sum();
+    (0..first.len()).map(|n| (0..first[n].len()).map(|k| cell(n, k)).collect()).collect()
+}
