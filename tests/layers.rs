@@ -143,7 +143,7 @@ const PACKAGES: [Package; 8] = [
 
 /// The rooms of `src/affine/`, each allowed to use those before it. What the folder exports comes
 /// from all of them.
-const AFFINE_ROOMS: [&str; 15] = [
+const AFFINE_ROOMS: [&str; 16] = [
     "model",
     "zeros",
     "arithmetic",
@@ -156,6 +156,7 @@ const AFFINE_ROOMS: [&str; 15] = [
     "gradient",
     "events",
     "returns",
+    "continuation",
     "attractors",
     "gallery",
     EXPORTS,

@@ -6,11 +6,12 @@
 //! the tests use it as it is.
 
 // The rooms, each of which uses only those before it: model, zeros, arithmetic, modal, closed_form,
-// guards, first_crossing, solver, run, gradient, events, returns, attractors; gallery is beside
-// them.
+// guards, first_crossing, solver, run, gradient, events, returns, continuation, attractors; gallery
+// is beside them.
 mod arithmetic;
 mod attractors;
 mod closed_form;
+mod continuation;
 pub(crate) mod events;
 mod first_crossing;
 pub mod gallery;
@@ -27,6 +28,7 @@ pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 pub use arithmetic::clock::Time;
 pub use attractors::{Plane, ReturnAttractor, ReturnBasins, UnresolvedReturn};
+pub use continuation::{ReturnBifurcation, ReturnBifurcationKind, ReturnBranch, ReturnFamily};
 pub use events::{BITS, LONGEST};
 pub use gradient::derivative::{Gradient, NoGradient};
 pub use gradient::walk::Walk;

@@ -2,6 +2,7 @@
 
 mod answers;
 mod attack;
+mod branches;
 mod brute;
 mod built;
 mod by_hand;

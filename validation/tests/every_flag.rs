@@ -63,9 +63,23 @@ const MISSING_FOLDER: &[&str] = &["/no/such/folder/file.json"];
 /// The steps of a sweep.
 const SWEEP: &[&str] = &["sweep run", "sweep status", "sweep merge"];
 
+/// A branch of a system.
+const BRANCH: [&str; 10] = [
+    "continue",
+    "buck-converter",
+    "--parameter",
+    "Vin",
+    "--from",
+    "24",
+    "--to",
+    "25",
+    "--period",
+    "1",
+];
+
 /// The verbs of the dynamics that take a SYSTEM.
 const OF_SYSTEMS: &[&str] =
-    &["poincare", "lyapunov", "bifurcation", "attractors", "basins", "orbit"];
+    &["poincare", "lyapunov", "bifurcation", "attractors", "basins", "orbit", "continue"];
 
 /// The verbs that a row is for (all where empty), a flag, values that are refused, and what the
 /// line says is accepted.
@@ -129,20 +143,20 @@ const ROWS: &[Row] = &[
     (&["poincare", "lyapunov", "bifurcation"], "--returns", INTEGERS, "1 to 1000000000"),
     (&["poincare", "lyapunov", "bifurcation"], "--returns", &["3"], "without SYSTEM"),
     (
-        &["lyapunov", "bifurcation", "attractors", "basins", "orbit"],
+        &["lyapunov", "bifurcation", "attractors", "basins", "orbit", "continue"],
         "--section",
         &["", "1,5", "-inf", "a@", "strobe:x"],
         "-1e15 to 1e15",
     ),
     (
-        &["lyapunov", "bifurcation", "attractors", "basins", "orbit"],
+        &["lyapunov", "bifurcation", "attractors", "basins", "orbit", "continue"],
         "--section",
         &["0.5", "impact"],
         "without SYSTEM",
     ),
     (&["attractors", "basins"], "--axes", &["", "x,v"], "without SYSTEM"),
-    (&["orbit"], "--transient", INTEGERS, "0 to 1000000000"),
-    (&["orbit"], "--transient", &["3"], "without SYSTEM"),
+    (&["orbit", "continue"], "--transient", INTEGERS, "0 to 1000000000"),
+    (&["orbit", "continue"], "--transient", &["3"], "without SYSTEM"),
     (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
     (&["simulate"], "--max-periods", INTEGERS, "1 to 1000000000"),
     (&["poincare", "lyapunov"], "--periods", INTEGERS, "1 to 1000000000"),
@@ -401,6 +415,10 @@ fn flags_without_effect() {
             vec!["orbit", "relay-feedback", "--section", "switch-up", "--period", "1", "--all"],
             &["--all", "SYSTEM"],
         ),
+        ([&BRANCH[..], &["--doubled"]].concat(), &["--doubled", "SYSTEM"]),
+        ([&BRANCH[..], &["--set", "Vin=1"]].concat(), &["--set Vin=1", "--parameter Vin"]),
+        ([&BRANCH[..], &["--xi", "1"]].concat(), &["--xi 1", "--set"]),
+        ([&BRANCH[..], &["--section", "tick"]].concat(), &["tick is no event", "clock"]),
         ([&diagram[..], &["--carry", "--reset"]].concat(), &["--carry", "--reset"]),
         (
             [&["attractors", "relay-feedback"], &grid[..], &["--p", "1"]].concat(),

@@ -4,7 +4,7 @@
 //! A motion escapes whose state passes [`FARTHEST`] at a return, and it may end before it has
 //! returned as often as was asked. It has no points then, and no value starts from where it went.
 
-use super::map::SectionMap;
+use super::map::{Carried, SectionMap};
 use super::section::Section;
 use super::walk::{NoReturn, Return};
 use crate::affine::model::error::SystemError;
@@ -187,28 +187,4 @@ impl ReturnDiagram {
 /// Whether a state has gone farther than any start.
 fn is_far(point: &Return<f64>) -> bool {
     point.state.iter().any(|it| it.is_nan() || it.abs() > FARTHEST)
-}
-
-/// The place of a return that a motion of another system may take up: a place at the earliest time
-/// with its forcing angle, and that time as a share of the forcing period.
-#[derive(Clone, Debug)]
-struct Carried {
-    place: Place<f64>,
-    share: f64,
-}
-
-impl SectionMap<'_, f64> {
-    /// The place of a return, for a system that differs in its parameters.
-    fn carried(&self, place: &Place<f64>) -> Carried {
-        let place = self.rebased(place);
-        let share = self.share_of_period(&place);
-        Carried { place, share }
-    }
-
-    /// The place in this map's system: mode and state stay, with what the model has made zero there
-    /// before, and so does the forcing angle.
-    fn taken_up(&self, carried: &Carried) -> Place<f64> {
-        let time = self.time_at_share(carried.share);
-        carried.place.moved_to(time, carried.place.state.clone())
-    }
 }

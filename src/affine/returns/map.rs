@@ -105,13 +105,13 @@ impl<'a, T: Number> SectionMap<'a, T> {
     }
 
     /// The time of a place as a share of the forcing period; 0 where nothing is forced.
-    pub(super) fn share_of_period(&self, place: &Place<T>) -> T {
+    fn share_of_period(&self, place: &Place<T>) -> T {
         self.period.map_or(T::zero(), |[period, _]| place.time.value() / period.high)
     }
 
     /// The time that is so large a share of the forcing period; at a strobe it is the first of its
     /// angle.
-    pub(super) fn time_at_share(&self, share: T) -> Time<T> {
+    fn time_at_share(&self, share: T) -> Time<T> {
         match (&self.section.returns, self.period) {
             (_, None) => Time { high: T::zero(), low: T::zero() },
             (Returning::Strobe(_), Some([_, first])) => first,
@@ -154,6 +154,30 @@ impl<'a, T: Number> SectionMap<'a, T> {
             }
             _ => returned.after(self.longest),
         }
+    }
+}
+
+/// The place of a return that a motion of another system may take up: a place at the earliest time
+/// with its forcing angle, and that time as a share of the forcing period.
+#[derive(Clone, Debug)]
+pub(in crate::affine) struct Carried {
+    place: Place<f64>,
+    share: f64,
+}
+
+impl SectionMap<'_, f64> {
+    /// The place of a return, for a system that differs in its parameters.
+    pub(in crate::affine) fn carried(&self, place: &Place<f64>) -> Carried {
+        let place = self.rebased(place);
+        let share = self.share_of_period(&place);
+        Carried { place, share }
+    }
+
+    /// The place in this map's system: mode and state stay, with what the model has made zero there
+    /// before, and so does the forcing angle.
+    pub(in crate::affine) fn taken_up(&self, carried: &Carried) -> Place<f64> {
+        let time = self.time_at_share(carried.share);
+        carried.place.moved_to(time, carried.place.state.clone())
     }
 }
 

@@ -6,11 +6,12 @@
 //! stability. [`exponents`] has the mean growth of small changes along any motion, and [`diagram`]
 //! the returns at many values of a parameter. Read them in this order.
 
+pub(in crate::affine) mod crossings;
 pub mod diagram;
 pub mod exponents;
 pub mod map;
 pub(in crate::affine) mod multipliers;
-mod newton;
+pub(in crate::affine) mod newton;
 pub mod orbit;
 pub mod passage;
 pub mod section;

@@ -50,7 +50,7 @@ fn damped<M: ReturnMap>(map: &M, shots: &ShotsOf<M>) -> Option<ShotsOf<M>> {
 }
 
 /// Newton's steps as long as they gain anything.
-fn polished<M: ReturnMap>(map: &M, start: ShotsOf<M>) -> ShotsOf<M> {
+pub fn polished<M: ReturnMap>(map: &M, start: ShotsOf<M>) -> ShotsOf<M> {
     let mut best = start.clone();
     let mut shots = start;
     let mut idle = 0;

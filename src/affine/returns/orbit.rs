@@ -117,7 +117,7 @@ impl SectionMap<'_, f64> {
     }
 
     /// The orbit that closed shots are.
-    fn of_shots(&self, shots: &Shots<Place<f64>, Way>) -> Option<Orbit> {
+    pub(in crate::affine) fn of_shots(&self, shots: &Shots<Place<f64>, Way>) -> Option<Orbit> {
         let ways = || shots.images.iter().map(|it| &it.way);
         let returns: Vec<_> = ways().map(|it| it.at_fixed_time.clone()).collect();
         let flow = || self.without_drifts(&self.rates(&shots.points[0]));
@@ -167,7 +167,7 @@ impl SectionMap<'_, f64> {
 /// The way of an orbit between two of its points.
 #[derive(Clone, Debug)]
 pub struct Way {
-    events: Vec<Guard>,
+    pub(in crate::affine) events: Vec<Guard>,
     at_fixed_time: Vec<Vec<f64>>,
     time: f64,
     is_decided: bool,

@@ -66,7 +66,7 @@ pub struct Shots<P, W> {
     pub points: Vec<P>,
     pub images: Vec<Image<P, W>>,
     /// Image of each point less the next point.
-    defects: Vec<Change>,
+    pub(in crate::affine) defects: Vec<Change>,
     /// The largest defect beside 1 and the point.
     pub residual: f64,
     /// Whether each image lies on the piece of the next point.

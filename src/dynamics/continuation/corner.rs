@@ -56,28 +56,9 @@ impl FamilyCurve {
 
     /// The last orbit of a point's piece along the curve, and how much further the corner may be.
     fn approached(&self, base: &ContinuationPoint, distance: f64) -> (ContinuationPoint, f64) {
-        let mut before = base.clone();
-        let mut rest = distance;
-        let mut advances = 0;
-        for _ in 0..HALVINGS {
-            if rest <= REACHED {
-                break;
-            }
-            match self.corrected(&before, 0.5 * rest).filter(|it| it.is_on_piece_of(&before)) {
-                // The length left is measured anew from each point: it may be more than was
-                // thought.
-                Some(next) => {
-                    before = next;
-                    advances += 1;
-                    rest *= if advances > 2 { 1.5 } else { 0.5 };
-                }
-                None => {
-                    advances = 0;
-                    rest *= 0.5;
-                }
-            }
-        }
-        (before, rest)
+        last_along(base, distance, REACHED, &|before, step| {
+            self.corrected(before, step).filter(|it| it.is_on_piece_of(before))
+        })
     }
 
     /// The curve a step beyond the corner at `before`. Its direction there is that of the other
@@ -121,4 +102,36 @@ impl FamilyCurve {
         let other = |probe: &ShootingIterate| !probe.is_on_piece_of(&from.iterate);
         probed.into_iter().flatten().flatten().filter(other).collect()
     }
+}
+
+/// The last point that steps along a curve reach from a base, and how much further the next may be
+/// that they do not: less than `reached`, unless the halvings run out. `step` has the point at a
+/// distance along another's tangent, if there is one.
+pub(crate) fn last_along<P: Clone>(
+    base: &P,
+    distance: f64,
+    reached: f64,
+    step: &dyn Fn(&P, f64) -> Option<P>,
+) -> (P, f64) {
+    let mut before = base.clone();
+    let mut rest = distance;
+    let mut advances = 0;
+    for _ in 0..HALVINGS {
+        if rest <= reached {
+            break;
+        }
+        match step(&before, 0.5 * rest) {
+            // The length left is measured anew from each point: it may be more than was thought.
+            Some(next) => {
+                before = next;
+                advances += 1;
+                rest *= if advances > 2 { 1.5 } else { 0.5 };
+            }
+            None => {
+                advances = 0;
+                rest *= 0.5;
+            }
+        }
+    }
+    (before, rest)
 }

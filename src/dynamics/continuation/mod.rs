@@ -32,12 +32,12 @@
 //! branch that runs into the flip of an orbit of half its period ends there: beyond, it would be
 //! the same orbits again.
 
-mod corner;
+pub(crate) mod corner;
 mod doubling;
 mod family;
 mod follow;
 mod halving;
-mod locate;
+pub(crate) mod locate;
 mod point;
 
 use super::orbit::{NoOrbit, Orbit, ShootingIterate};

@@ -382,6 +382,9 @@ Examples:
   percuss continue --xi 0.1 --parameter omega --from 1.6 --to 1.7 \\
       --period 5 --output fold.json
       one that turns back in a fold: exit code 1
+  percuss continue buck-converter --section clock --transient 200 \\
+      --parameter Vin --from 24 --to 25 --period 1 --output buck.json
+      a SYSTEM: where a converter's orbit doubles
 
 Words:
   branch          the orbits that one orbit becomes as the parameter
@@ -390,7 +393,9 @@ Words:
   flip            a multiplier passes -1: an orbit of twice the period
                   begins
   Neimark-Sacker  a pair of complex multipliers passes size 1
-  grazing         a phase of the orbit appears or vanishes
+  grazing         a phase of the orbit appears or vanishes; of a SYSTEM
+                  a guard is touched
+  corner          two guards of a SYSTEM are crossed at once
   multiplier      factor by which a small deviation from an orbit grows
                   in one turn; below 1 in size: stable";
 

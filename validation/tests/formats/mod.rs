@@ -300,6 +300,26 @@ fn orbit_of_a_system() {
 }
 
 #[test]
+fn branch_of_a_system() {
+    let stop = ["continue", "rigid-impact-oscillator", "--transient", "300", "--period", "1"];
+    let to_the_stop = ["--parameter", "A", "--from", "0.7", "--to", "0.8"];
+    let found = json_of(&[&stop[..], &to_the_stop].concat(), 0);
+    assert_valid("continue-system.schema.json", &found);
+    assert_eq!((&found["complete"], &found["period"]), (&true.into(), &1.into()));
+    let buck = ["continue", "buck-converter", "--section", "clock", "--transient", "200"];
+    let doubles = ["--parameter", "Vin", "--from", "24", "--to", "25", "--period", "1"];
+    let found = json_of(&[&buck[..], &doubles].concat(), 0);
+    assert_valid("continue-system.schema.json", &found);
+    assert_eq!(found["bifurcations"][0]["type"], "flip");
+    // Impacts that accumulate have no orbit.
+    let ball = ["continue", "bouncing-ball", "--section", "impact", "--transient", "90"];
+    let varied = ["--parameter", "g", "--from", "1", "--to", "2", "--period", "1"];
+    let none = json_of(&[&ball[..], &varied].concat(), 1);
+    assert_valid("continue-system.schema.json", &none);
+    assert_eq!(none["complete"], false);
+}
+
+#[test]
 fn exponents_of_a_system() {
     let of = |system: &str, section: &str| {
         let words = ["lyapunov", system, "--section", section, "--transient", "30", "--returns"];

@@ -3,6 +3,7 @@
 pub(super) mod find;
 pub(super) mod follow;
 pub(super) mod json;
+mod of_system;
 mod table;
 
 use clap::ValueEnum;

@@ -13,7 +13,7 @@ pub(super) struct BranchWork {
 
 impl BranchWork {
     pub(super) fn new(arguments: Arguments) -> Result<Self> {
-        arguments.model.check_varied(arguments.parameter)?;
+        arguments.check_of_oscillator()?;
         Ok(Self { arguments })
     }
 }

@@ -1,7 +1,7 @@
 //! `orbit SYSTEM`: a periodic orbit of a section's return map, from the start of a system.
 
+use super::super::of_system::{PointJson, guess, points};
 use super::{Arguments, OrbitFormat};
-use crate::cli::shared::section::tell_undecidable;
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::{DONE, OUT_OF_BOUNDS, note, say};
 use anyhow::{Result, bail};
@@ -27,12 +27,6 @@ struct OrbitJson<'a> {
     stable: Option<bool>,
     /// The smallest residual that was reached; null where there was none.
     residual: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct PointJson<'a> {
-    mode: &'a str,
-    state: &'a [f64],
 }
 
 /// Finds and writes the orbit.
@@ -71,15 +65,8 @@ pub(super) fn run(arguments: &Arguments, chosen: &ChosenSystem, format: OrbitFor
 
 /// The orbit that is reached from the return after the transient.
 fn found(map: &SectionMap<'_, f64>, arguments: &Arguments) -> Result<Result<Orbit, NoOrbit>> {
-    let mut returns = map.returns(map.system().start()?)?;
-    let transient = arguments.transient.unwrap_or(0);
-    let wanted = returns.by_ref().take(transient as usize + 1);
-    if let Some(why) = wanted.filter_map(Result::err).last() {
-        return Ok(Err(NoOrbit::NoReturn(why)));
-    }
-    let guess = returns.place();
-    tell_undecidable(returns.undecidable());
-    Ok(guess.map_err(NoOrbit::NoReturn).and_then(|it| map.orbit(&it, arguments.period)))
+    let guess = guess(map, arguments.transient)?;
+    Ok(guess.and_then(|it| map.orbit(&it, arguments.period)))
 }
 
 fn json<'a>(system: &'a System, found: &'a Result<Orbit, NoOrbit>) -> OrbitJson<'a> {
@@ -89,8 +76,6 @@ fn json<'a>(system: &'a System, found: &'a Result<Orbit, NoOrbit>) -> OrbitJson<
         Err(NoOrbit::Stalled(residual) | NoOrbit::NoDerivative(residual)) => Some(*residual),
         Err(_) => None,
     };
-    let points = orbit.iter().flat_map(|it| &it.points);
-    let point = points.map(|it| PointJson { mode: &system.modes[it.mode].name, state: &it.state });
     OrbitJson {
         schema: 1,
         percuss: env!("CARGO_PKG_VERSION"),
@@ -100,7 +85,7 @@ fn json<'a>(system: &'a System, found: &'a Result<Orbit, NoOrbit>) -> OrbitJson<
         converged: orbit.is_some(),
         period: orbit.map(Orbit::period),
         time: orbit.map(|it| it.time),
-        points: point.collect(),
+        points: orbit.map(|it| points(system, it)).unwrap_or_default(),
         events: orbit.map(|it| it.event_names(system)).unwrap_or_default(),
         multipliers: orbit.map(|it| it.multipliers.clone()).unwrap_or_default(),
         stable: orbit.map(Orbit::is_stable),

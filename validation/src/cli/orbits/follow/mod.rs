@@ -1,4 +1,6 @@
-//! `continue`: a branch of periodic orbits.
+//! `continue`: a branch of periodic orbits, of the impact oscillator or of a SYSTEM.
+
+mod of_system;
 
 use super::super::help;
 use super::Format;
@@ -8,9 +10,11 @@ use crate::case::Problem;
 use crate::cli::shared::format::OutputFlags;
 use crate::cli::shared::long_work;
 use crate::cli::shared::model::ModelFlags;
-use crate::cli::shared::parse::{self, Typed};
+use crate::cli::shared::parse::{self, MAX_PERIODS, Typed};
+use crate::cli::shared::section::{SectionFlags, without_system};
+use crate::cli::shared::system_choice::SystemChoice;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
-use anyhow::{Result, anyhow};
+use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use percuss::dynamics::continuation::{
     BifurcationKind, Branch, BranchEnding, Criticality, Doubling, Family,
@@ -22,25 +26,32 @@ use percuss::{InputError, Parameter};
 /// Follow a periodic orbit, stable or not, in a parameter, and locate its bifurcations
 ///
 /// Answers how far in a parameter an orbit exists, where it is stable, and what
-/// ends it.
+/// ends it; of a SYSTEM with the guard that is touched where its events change.
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_long_help = help::CONTINUE)]
 pub(crate) struct Arguments {
-    /// The parameter that varies: a, b, xi, omega, g or phi
-    #[arg(long, value_name = "NAME", value_parser = parse::parameter)]
-    pub(crate) parameter: Parameter,
+    #[command(flatten)]
+    system: SystemChoice,
+    /// What varies: a, b, xi, omega, g or phi; with SYSTEM a parameter of it
+    #[arg(long, value_name = "NAME")]
+    parameter: String,
     /// The parameter's first value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
     from: Typed<f64>,
     /// The parameter's last value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
     to: Typed<f64>,
-    /// Forcing periods of the orbit
+    /// Forcing periods of the orbit, with SYSTEM returns to the section
     #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true)]
     period: u32,
     /// Follows the branch of twice the period from the first flip too
     #[arg(long)]
     doubled: bool,
+    /// With SYSTEM: returns after which the motion from the start is the guess [default: 0]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
+    transient: Option<u64>,
+    #[command(flatten)]
+    section: SectionFlags,
     #[command(flatten)]
     output: OutputFlags<Format>,
     #[command(flatten)]
@@ -49,8 +60,11 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     arguments.output.format(Format::Json)?;
+    if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
+        return of_system::run(arguments, &chosen);
+    }
+    arguments.check_of_oscillator()?;
     family(arguments, &arguments.model)?;
-    arguments.model.check_varied(arguments.parameter)?;
     let bar = long_work::share_bar();
     let (followed, why) =
         followed(arguments, &arguments.model, Reporting::Told(&|share| bar.show_share(share)))?;
@@ -60,6 +74,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
         say(why);
     }
     Ok(if why.is_none() { DONE } else { OUT_OF_BOUNDS })
+}
+
+impl Arguments {
+    /// Refuses what does not fit the impact oscillator.
+    pub(crate) fn check_of_oscillator(&self) -> Result<()> {
+        self.section.refuse()?;
+        if let Some(transient) = self.transient {
+            bail!("{}", without_system("--transient", &transient));
+        }
+        self.model.check_varied(self.parameter_of_oscillator()?)
+    }
+
+    /// The parameter of the impact oscillator that varies.
+    fn parameter_of_oscillator(&self) -> Result<Parameter> {
+        let name = &self.parameter;
+        parse::parameter(name).map_err(|what| anyhow!("--parameter {name} is not accepted: {what}"))
+    }
 }
 
 /// Whether progress and notes are shown.
@@ -77,9 +108,8 @@ pub(crate) fn followed(
     model: &ModelFlags,
     seen: Reporting<'_>,
 ) -> Result<(Followed, Option<String>)> {
-    let Arguments {
-        parameter, from: Typed { value: from, .. }, to: Typed { value: to, .. }, ..
-    } = *arguments;
+    let Arguments { from: Typed { value: from, .. }, to: Typed { value: to, .. }, .. } = *arguments;
+    let parameter = arguments.parameter_of_oscillator()?;
     let (problem, guessed, family) = family(arguments, model)?;
     let branch = branch(arguments, &problem, guessed, &family, seen);
     let doubled = match &branch {
@@ -109,9 +139,10 @@ pub(crate) fn followed(
 
 /// The problem at the first value, whether a start was given, and the models that are passed.
 pub(crate) fn family(arguments: &Arguments, model: &ModelFlags) -> Result<(Problem, bool, Family)> {
-    let Arguments { parameter, from, to, .. } = arguments;
-    let (problem, guessed) = model.guess(Some((*parameter, "--from", from)))?;
-    let family = Family::new(*problem.model.parameters(), *parameter, problem.entry.instant);
+    let Arguments { from, to, .. } = arguments;
+    let parameter = arguments.parameter_of_oscillator()?;
+    let (problem, guessed) = model.guess(Some((parameter, "--from", from)))?;
+    let family = Family::new(*problem.model.parameters(), parameter, problem.entry.instant);
     family.map(to.value).map_err(|error| refused_end(to, &error))?;
     Ok((problem, guessed, family))
 }

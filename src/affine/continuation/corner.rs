@@ -1,0 +1,199 @@
+//! From one smooth piece of the map to the next.
+
+use super::super::returns::shooting::{ReturnMap, Shots};
+use super::curve::Curve;
+use super::family::OrbitShots;
+use super::point::{CurvePoint, are_on_one_piece};
+use crate::dynamics::continuation::corner::last_along;
+use core::cell::Cell;
+
+/// A corner: where the curve leaves a smooth piece, and where it goes on if it does.
+pub(super) struct Corner {
+    /// The last orbit of the piece that is left.
+    pub before: CurvePoint,
+    /// The first orbit of the piece beyond.
+    pub beyond: Option<CurvePoint>,
+    /// How far the parameter's value at the corner may be off.
+    pub error: f64,
+}
+
+/// Distance at which a corner counts as reached: some roundings of the points.
+const REACHED: f64 = 1e-14;
+/// Places beyond a corner lie within this many times the square root of the step: a touch moves an
+/// orbit by a root.
+const NEAR: f64 = 10.0;
+/// How far beyond the corner its other side is looked at and entered, nearest first.
+const BEYOND: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
+/// Relative error of a corner with which no nearer place beyond is looked for; none is said to be
+/// smaller, because a touch within the solver's rounding of its guard counts as none.
+const SHARP: f64 = 1e-11;
+/// The next piece ends within this share of the step at which it was found: one that ends further
+/// away has others between it and the corner.
+const AGREED: f64 = 0.1;
+/// Times once around after which a motion from an orbit next to a corner is looked at.
+const SETTLING: [u32; 2] = [1, 40];
+/// Steps along the curve by which such a motion begins aside of the orbit: on one of the two sides
+/// its mode holds there.
+const ASIDE: [f64; 2] = [8.0, -8.0];
+/// Times that a direction beyond a corner is taken again from a place nearer to it.
+const REFINED: usize = 4;
+
+impl Curve<'_> {
+    /// The corner between a point and a distance along its tangent at which the piece is another
+    /// one or no orbit is found.
+    ///
+    /// The corner's error is what the halving leaves, and how far off the corner is found from the
+    /// other side if it is, but at least what is looked for.
+    pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner {
+        let (before, rest) = self.approached(base, distance);
+        let least = SHARP * before.value.abs() + self.uncertainty(&before);
+        let own = rest * before.tangent.rate.abs();
+        let mut best = Corner { before, beyond: None, error: f64::INFINITY };
+        for step in BEYOND {
+            let before = &best.before;
+            let Some(beyond) = self.beyond(before, step) else { continue };
+            let apart = self.seen_from(&beyond, step, before).unwrap_or(0.0);
+            if apart > AGREED * step {
+                continue;
+            }
+            let error = own + apart;
+            if error < best.error || best.beyond.is_none() {
+                (best.beyond, best.error) = (Some(beyond), error);
+            }
+            if best.error <= SHARP * best.before.value.abs() {
+                break;
+            }
+        }
+        let error = if best.beyond.is_none() { own } else { best.error };
+        best.error = error.max(least);
+        best
+    }
+
+    /// How far off the corner is found from beyond; none where no orbit is found on the way there,
+    /// as where a derivative grows without bound.
+    fn seen_from(&self, beyond: &CurvePoint, step: f64, before: &CurvePoint) -> Option<f64> {
+        let is_lost = Cell::new(false);
+        let (after, rest) = last_along(&beyond.turned(), 2.0 * step, REACHED, &|from, step| {
+            let there = self.corrected(from, step);
+            is_lost.set(there.is_none());
+            there.filter(|it| it.is_on_piece_of(from))
+        });
+        let apart = (after.value - before.value).abs() + rest * after.tangent.rate.abs();
+        (!is_lost.get()).then_some(apart)
+    }
+
+    /// The last orbit of a point's piece along the curve, and how much further the corner may be.
+    fn approached(&self, base: &CurvePoint, distance: f64) -> (CurvePoint, f64) {
+        last_along(base, distance, REACHED, &|before, step| {
+            self.corrected(before, step).filter(|it| it.is_on_piece_of(before))
+        })
+    }
+
+    /// The curve a step beyond the corner at `before`. Its direction there is that of the other
+    /// piece's derivative; of the two ways along it one leads to an orbit of that piece.
+    fn beyond(&self, before: &CurvePoint, step: f64) -> Option<CurvePoint> {
+        let value = before.value + step * before.tangent.rate;
+        let mut bases = Vec::new();
+        for probe in self.probes(before, step) {
+            let slopes = self.family.slopes(value, &probe, self.unit.min(1.0));
+            let tangent = self.tangent(&probe, &slopes, &before.tangent);
+            let base =
+                self.on_piece_of(&probe, CurvePoint { slopes, tangent, ..before.clone() }, step);
+            bases.extend([self.refined(base.turned(), step), self.refined(base, step)]);
+        }
+        // The way forward first, of each probe.
+        bases.into_iter().rev().find_map(|base| {
+            let point = self.corrected(&base, step).filter(|it| !it.is_on_piece_of(before))?;
+            if !self.is_near(point.value, &point.shots, before, step) {
+                return None;
+            }
+            let mut point = self.point(point.value, point.shots, &point.tangent)?;
+            // Away from the corner, whichever way the bordering row has turned it.
+            if self.product(&point.tangent, &base.tangent, &before.shots) < 0.0 {
+                point.tangent = point.tangent.turned();
+            }
+            Some(point)
+        })
+    }
+
+    /// A base on the corner with the direction that the other piece has next to it. A derivative is
+    /// large where a guard is nearly touched, and so is the error of a direction that was taken
+    /// further away: its square root is the error of the next.
+    fn refined(&self, mut base: CurvePoint, step: f64) -> CurvePoint {
+        for _ in 0..REFINED {
+            let Some(shots) = self.shifted(&base, &base.tangent, step) else { break };
+            if are_on_one_piece(&shots, &base.shots) {
+                break;
+            }
+            let value = base.value + step * base.tangent.rate;
+            base.slopes = self.family.slopes(value, &shots, self.unit.min(1.0));
+            let tangent = self.tangent(&shots, &base.slopes, &base.tangent);
+            let is_back = self.product(&tangent, &base.tangent, &base.shots) < 0.0;
+            base.tangent = if is_back { tangent.turned() } else { tangent };
+        }
+        base
+    }
+
+    /// A base whose points lie on the pieces of shots that a step along its direction leads to: a
+    /// point that has another mode there begins where these do.
+    fn on_piece_of(&self, probe: &OrbitShots, mut base: CurvePoint, step: f64) -> CurvePoint {
+        let value = base.value + step * base.tangent.rate;
+        let points = self.family.at(value, |map| {
+            let pairs = probe.points.iter().zip(&base.shots.points).zip(&base.tangent.points);
+            let own = pairs.zip(&base.carried).map(|(((probe, from), change), own)| {
+                let back = map.moved(probe, &change.map(|it| -step * it), probe);
+                if probe.mode == from.mode { own.clone() } else { map.carried(&back) }
+            });
+            Some(own.collect())
+        });
+        base.carried = points.unwrap_or(base.carried);
+        base
+    }
+
+    /// The points of the motion at a value that begins aside of an orbit's first point, after so
+    /// many times once around: a motion takes each event where it comes, on whichever side of a
+    /// section.
+    fn settled(&self, from: &CurvePoint, value: f64, aside: f64, turns: u32) -> Option<OrbitShots> {
+        let period = u32::try_from(from.carried.len()).ok()?;
+        self.family.at(value, |map| {
+            let first = map.taken_up(&from.carried[0]);
+            let change = from.tangent.points[0].map(|it| aside * it);
+            let mut place = map.moved(&first, &change, &first);
+            for _ in 0..turns {
+                let along = Shots::along(map, &place, period).ok()?;
+                place = map.rebased(&along.images.last()?.point);
+            }
+            Shots::along(map, &place, period).ok()
+        })
+    }
+
+    /// Shots a step along the old direction that lie on another piece: as they are, with each point
+    /// replaced by the image of the one before, and those of motions that have gone on.
+    pub fn probes(&self, from: &CurvePoint, step: f64) -> Vec<OrbitShots> {
+        let value = from.value + step * from.tangent.rate;
+        let probe = self.shifted(from, &from.tangent, step);
+        let second = probe.as_ref().and_then(|probe| {
+            let mut images: Vec<_> = probe.images.iter().map(|it| it.point.clone()).collect();
+            images.rotate_right(1);
+            self.family.at(value, |map| {
+                let images = images.iter().map(|it| map.rebased(it)).collect();
+                Shots::of(map, images)
+            })
+        });
+        let starts = ASIDE.iter().flat_map(|aside| SETTLING.map(|turns| (aside * step, turns)));
+        let motions = starts.map(|(aside, turns)| self.settled(from, value, aside, turns));
+        let all = [probe, second].into_iter().chain(motions).flatten();
+        let others = all.filter(|it| !are_on_one_piece(it, &from.shots));
+        others.filter(|it| self.is_near(value, it, from, step)).collect()
+    }
+
+    /// Whether shots lie as near to an orbit as a step may lead.
+    fn is_near(&self, value: f64, shots: &OrbitShots, from: &CurvePoint, step: f64) -> bool {
+        let distance = self.family.at(value, |map| {
+            let pairs = shots.points.iter().zip(&from.carried);
+            let sizes = pairs.map(|(it, own)| map.size(it, &map.apart(&map.taken_up(own), it)));
+            Some(sizes.fold(0.0, f64::max))
+        });
+        distance.is_some_and(|it| it <= NEAR * libm::sqrt(step))
+    }
+}

@@ -1,0 +1,276 @@
+//! The curve of orbits in (points, parameter): its tangent, and the corrector.
+
+use super::super::returns::shooting::{Change, Derivative, MOST, ReturnMap, Shots, identity};
+use super::super::run::place::Place;
+use super::family::{OrbitShots, ReturnFamily};
+use super::point::{CurvePoint, Direction, are_on_one_piece};
+use crate::dynamics::linear::{apply, product, solve};
+
+/// The family, the parameter's unit of arc length, and those of the states.
+pub(super) struct Curve<'a> {
+    pub family: &'a ReturnFamily<'a>,
+    pub unit: f64,
+    scales: Change,
+}
+
+/// Newton's iterations of a corrector: more, and the step was too long.
+const ITERATIONS: usize = 10;
+
+/// The least change of the parameter, in units, from which its derivative is learned.
+const LEARNED: f64 = 1e-6;
+
+const BORDERED: usize = MOST + 1;
+
+/// The bordered system: orbits next to shots, and a direction.
+struct Bordered {
+    matrix: [[f64; BORDERED]; BORDERED],
+    offset: Change,
+}
+
+/// The recurrence from the first point once around: d -> `matrix` d + `offset`.
+struct Around {
+    matrix: Derivative,
+    offset: Change,
+}
+
+fn around(shots: &OrbitShots, added: &[Change]) -> Around {
+    let mut all = Around { matrix: identity(), offset: [0.0; MOST] };
+    for (image, added) in shots.images.iter().zip(added) {
+        all.matrix = product(&image.derivative, &all.matrix);
+        all.offset = sum(&apply(&image.derivative, &all.offset), added, 1.0);
+    }
+    all
+}
+
+/// The changes of all points that follow from that of the first.
+fn spread(shots: &OrbitShots, first: Change, added: &[Change]) -> Vec<Change> {
+    let mut changes = vec![first];
+    for (image, added) in shots.images.iter().zip(added).take(shots.points.len() - 1) {
+        let carried = apply(&image.derivative, &changes[changes.len() - 1]);
+        changes.push(sum(&carried, added, 1.0));
+    }
+    changes
+}
+
+fn sum(one: &Change, other: &Change, share: f64) -> Change {
+    std::array::from_fn(|n| one[n] + share * other[n])
+}
+
+impl<'a> Curve<'a> {
+    /// The curve of a family whose parameter is followed between two values.
+    pub fn new(family: &'a ReturnFamily<'a>, [from, to]: [f64; 2]) -> Option<Self> {
+        let scales = family.at(from, |map| {
+            let system = map.system();
+            let mut scales = [1.0; MOST];
+            let own = system.scales.iter().chain([&system.time_scale]);
+            scales.iter_mut().zip(own).for_each(|(it, own)| *it = *own);
+            Some(scales)
+        })?;
+        let unit = if from == to { 1.0 } else { (to - from).abs() };
+        Some(Self { family, unit, scales })
+    }
+
+    /// The first point of a branch, from an orbit's places, with the parameter's way.
+    pub fn first(&self, value: f64, places: Vec<Place<f64>>, way: f64) -> Option<CurvePoint> {
+        let points = vec![[0.0; MOST]; places.len()];
+        let along = Direction { points, rate: self.unit * way };
+        let shots = self.family.at(value, |map| Shots::of(map, places))?;
+        self.point(value, shots, &along)
+    }
+
+    /// The shots of a base's points at a distance along a direction.
+    pub fn shifted(
+        &self,
+        base: &CurvePoint,
+        along: &Direction,
+        distance: f64,
+    ) -> Option<OrbitShots> {
+        self.family.at(base.value + distance * along.rate, |map| {
+            let moved = base.carried.iter().zip(&along.points).map(|(point, change)| {
+                let place = map.taken_up(point);
+                map.moved(&place, &change.map(|it| it * distance), &place)
+            });
+            Shots::of(map, moved.collect())
+        })
+    }
+
+    /// The orbit at a distance along the tangent of `base`, with the parameter's derivative as the
+    /// corrector learned it.
+    pub fn corrected(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
+        let mut value = base.value + distance * base.tangent.rate;
+        let mut shots = self.shifted(base, &base.tangent, distance)?;
+        let mut slopes = base.slopes.clone();
+        let mut best: Option<(f64, OrbitShots, Vec<Change>)> = None;
+        for _ in 0..ITERATIONS {
+            let left = self.along(base, value, &shots)? - distance;
+            let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
+            let closed = in_place && shots.is_closed();
+            match &best {
+                Some((_, before, _)) if !closed || shots.residual >= before.residual => break,
+                None if !closed => {}
+                _ => best = Some((value, shots.clone(), slopes.clone())),
+            }
+            let bordered = self.bordered(&shots, &slopes, &base.tangent, &base.shots);
+            let mut right = [0.0; BORDERED];
+            (0..MOST).for_each(|n| right[n] = -bordered.offset[n] / self.scales[n]);
+            right[MOST] = -left;
+            let (first, step) = self.unscaled(&solve(bordered.matrix, right));
+            let added: Vec<Change> =
+                shots.defects.iter().zip(&slopes).map(|(a, b)| sum(a, b, step)).collect();
+            let changes = spread(&shots, first, &added);
+            let next = self.moved(value, &shots, &changes, step)?;
+            self.learn(&mut slopes, [value, step], [&shots, &next], &changes);
+            (value, shots) = (value + step, next);
+        }
+        let (value, shots, slopes) = best?;
+        self.point_with(value, shots, slopes, &base.tangent)
+    }
+
+    /// The shots at another value of the parameter, with these changes.
+    fn moved(
+        &self,
+        value: f64,
+        shots: &OrbitShots,
+        changes: &[Change],
+        step: f64,
+    ) -> Option<OrbitShots> {
+        let carried = self.family.carried(value, &shots.points)?;
+        let count = carried.len();
+        self.family.at(value + step, |map| {
+            let moved = carried.iter().zip(changes).enumerate().map(|(k, (point, change))| {
+                let piece = &shots.images[(k + count - 1) % count].point;
+                map.moved(&map.taken_up(point), change, piece)
+            });
+            Shots::of(map, moved.collect())
+        })
+    }
+
+    /// Makes the parameter's derivatives those that a step has shown.
+    fn learn(
+        &self,
+        slopes: &mut [Change],
+        [value, step]: [f64; 2],
+        [before, after]: [&OrbitShots; 2],
+        changes: &[Change],
+    ) {
+        if step.abs() < LEARNED * self.unit || !are_on_one_piece(before, after) {
+            return;
+        }
+        let images: Vec<Place<f64>> = before.images.iter().map(|it| it.point.clone()).collect();
+        let apart = self.family.carried(value, &images).and_then(|images| {
+            self.family.at(value + step, |map| {
+                let pairs = images.iter().zip(&after.images);
+                Some(pairs.map(|(a, b)| map.apart(&map.taken_up(a), &b.point)).collect::<Vec<_>>())
+            })
+        });
+        for (k, apart) in apart.into_iter().flatten().enumerate() {
+            let by_state = apply(&before.images[k].derivative, &changes[k]);
+            slopes[k] = std::array::from_fn(|n| (apart[n] - by_state[n]) / step);
+        }
+    }
+
+    /// A closed iterate with the curve's direction, which is that of `along` as far as there is a
+    /// choice.
+    pub fn point(&self, value: f64, shots: OrbitShots, along: &Direction) -> Option<CurvePoint> {
+        let slopes = self.family.slopes(value, &shots, self.unit.min(1.0));
+        self.point_with(value, shots, slopes, along)
+    }
+
+    fn point_with(
+        &self,
+        value: f64,
+        shots: OrbitShots,
+        slopes: Vec<Change>,
+        along: &Direction,
+    ) -> Option<CurvePoint> {
+        let tangent = self.tangent(&shots, &slopes, along);
+        let orbit = self.family.at(value, |map| map.of_shots(&shots))?;
+        let carried = self.family.carried(value, &shots.points)?;
+        Some(CurvePoint { value, shots, carried, slopes, tangent, orbit })
+    }
+
+    /// The curve's direction at shots.
+    pub fn tangent(&self, shots: &OrbitShots, slopes: &[Change], along: &Direction) -> Direction {
+        let bordered = self.bordered(shots, slopes, along, shots);
+        let mut right = [0.0; BORDERED];
+        right[MOST] = 1.0;
+        let (first, rate) = self.unscaled(&solve(bordered.matrix, right));
+        let added: Vec<Change> = slopes.iter().map(|it| it.map(|by| by * rate)).collect();
+        let mut tangent = Direction { points: spread(shots, first, &added), rate };
+        let length = self.product(&tangent, &tangent, shots).sqrt();
+        if length > 0.0 && length.is_finite() {
+            tangent.rate /= length;
+            tangent.points.iter_mut().flatten().for_each(|x| *x /= length);
+        }
+        tangent
+    }
+
+    /// A solution of the bordered system as a change of the first point and of the parameter.
+    fn unscaled(&self, solution: &[f64; BORDERED]) -> (Change, f64) {
+        let first = std::array::from_fn(|n| solution[n] * self.scales[n]);
+        (first, solution[MOST] * self.unit)
+    }
+
+    /// How far along the tangent of `base` shots lie.
+    fn along(&self, base: &CurvePoint, value: f64, shots: &OrbitShots) -> Option<f64> {
+        let moved = self
+            .family
+            .at(value, |map| Some(map.apart(&map.taken_up(&base.carried[0]), &shots.points[0])))?;
+        let moved = Direction { points: vec![moved], rate: value - base.value };
+        Some(self.product(&base.tangent, &moved, &base.shots))
+    }
+
+    /// The arc's inner product of two directions.
+    pub fn product(&self, a: &Direction, b: &Direction, at: &OrbitShots) -> f64 {
+        let pairs = a.points[0].iter().zip(&b.points[0]).zip(&self.scales);
+        let points: f64 = pairs.map(|((a, b), scale)| a / scale * (b / scale)).sum();
+        self.weight(at) * points + a.rate / self.unit * (b.rate / self.unit)
+    }
+
+    /// Points and parameter weigh alike when they change by their own size.
+    fn weight(&self, shots: &OrbitShots) -> f64 {
+        (1.0 + self.size(&shots.points[0])).powi(-2)
+    }
+
+    fn size(&self, point: &Place<f64>) -> f64 {
+        let sizes = point.state.iter().zip(&self.scales).map(|(it, by)| (it / by).abs());
+        sizes.fold(0.0, f64::max)
+    }
+
+    fn bordered(
+        &self,
+        shots: &OrbitShots,
+        slopes: &[Change],
+        along: &Direction,
+        weighed: &OrbitShots,
+    ) -> Bordered {
+        let Around { matrix: own, offset } = around(shots, &shots.defects);
+        let Around { offset: by_value, .. } = around(shots, slopes);
+        let (scales, weight) = (&self.scales, self.weight(weighed));
+        let mut matrix = [[0.0; BORDERED]; BORDERED];
+        for i in 0..MOST {
+            for j in 0..MOST {
+                matrix[i][j] = (own[i][j] - if i == j { 1.0 } else { 0.0 }) * scales[j] / scales[i];
+            }
+            matrix[i][MOST] = by_value[i] * self.unit / scales[i];
+            matrix[MOST][i] = weight * along.points[0][i] / scales[i];
+        }
+        matrix[MOST][MOST] = along.rate / self.unit;
+        Bordered { matrix, offset }
+    }
+
+    /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve.
+    pub fn uncertainty(&self, point: &CurvePoint) -> f64 {
+        let Bordered { matrix, .. } =
+            self.bordered(&point.shots, &point.slopes, &point.tangent, &point.shots);
+        let by_row = (0..MOST).map(|row| {
+            let mut right = [0.0; BORDERED];
+            right[row] = 1.0;
+            solve(matrix, right)[MOST].abs()
+        });
+        let largest = point.shots.points.iter().fold(1.0, |most, it| self.size(it).max(most));
+        let segments: usize = point.shots.images.iter().map(|it| it.segments).sum();
+        let rounding = f64::EPSILON * largest * segments as f64;
+        by_row.sum::<f64>() * self.unit * rounding + f64::EPSILON * point.value.abs()
+    }
+}

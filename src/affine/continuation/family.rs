@@ -1,0 +1,133 @@
+//! The return maps of one parameter's values, and how they change with it.
+
+use super::super::model::error::SystemError;
+use super::super::model::system::System;
+use super::super::returns::map::{Carried, SectionMap};
+use super::super::returns::orbit::Way;
+use super::super::returns::section::Section;
+use super::super::returns::shooting::{Change, MOST, ReturnMap, Shots};
+use super::super::run::place::Place;
+use super::super::solver::Solver;
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+/// Points that are to be an orbit.
+pub(super) type OrbitShots = Shots<Place<f64>, Way>;
+
+/// The return maps of a section, one for each value of a parameter.
+pub struct ReturnFamily<'a> {
+    section: Section,
+    longest: Option<f64>,
+    system: &'a dyn Fn(f64) -> Result<System, SystemError>,
+    /// The solvers that were made last, by their values' bits.
+    prepared: RefCell<VecDeque<(u64, Rc<Solver<f64>>)>>,
+}
+
+/// Solvers that are kept: a corrector goes back and forth between few values.
+const KEPT: usize = 8;
+
+/// Relative steps of the differences, longest first: the first balances truncation and rounding,
+/// the others are for neighbourhoods of a corner.
+const STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
+
+impl<'a> ReturnFamily<'a> {
+    /// The family of a section; `system` is the system at a value, and `longest` the longest time of
+    /// a return that is waited for, if not that of [`SectionMap::new`].
+    pub fn new(
+        section: Section,
+        longest: Option<f64>,
+        system: &'a dyn Fn(f64) -> Result<System, SystemError>,
+    ) -> Self {
+        Self { section, longest, system, prepared: RefCell::default() }
+    }
+
+    /// What the map at a value has; none where there is no such map.
+    pub(super) fn at<R>(
+        &self,
+        value: f64,
+        then: impl FnOnce(&SectionMap<'_, f64>) -> Option<R>,
+    ) -> Option<R> {
+        let solver = self.solver(value)?;
+        let map = SectionMap::new(&solver, &self.section).ok()?;
+        match self.longest {
+            Some(longest) => then(&map.within(longest)),
+            None => then(&map),
+        }
+    }
+
+    fn solver(&self, value: f64) -> Option<Rc<Solver<f64>>> {
+        let mut prepared = self.prepared.borrow_mut();
+        let bits = value.to_bits();
+        if let Some((_, solver)) = prepared.iter().find(|it| it.0 == bits) {
+            return Some(Rc::clone(solver));
+        }
+        let system = (self.system)(value).ok()?;
+        let solver = Rc::new(Solver::new(&system).ok()?);
+        prepared.truncate(KEPT - 1);
+        prepared.push_front((bits, Rc::clone(&solver)));
+        Some(solver)
+    }
+
+    /// The points of shots as places of any value's map.
+    pub(super) fn carried(&self, value: f64, points: &[Place<f64>]) -> Option<Vec<Carried>> {
+        self.at(value, |map| Some(points.iter().map(|it| map.carried(it)).collect()))
+    }
+
+    /// The derivatives of the images of all points by the parameter, by differences.
+    ///
+    /// They steer the corrector and give the tangent, nothing else: a point that is accepted
+    /// satisfies the map itself, and its multipliers are those of the exact derivative. Where a
+    /// corner is near, the difference is taken on the shots' own side of it.
+    pub(super) fn slopes(&self, value: f64, shots: &OrbitShots, scale: f64) -> Vec<Change> {
+        let Some(points) = self.carried(value, &shots.points) else {
+            return vec![[0.0; MOST]; shots.points.len()];
+        };
+        let points = points.iter().zip(0..);
+        points.map(|(point, k)| self.slope(value, shots, k, point, scale)).collect()
+    }
+
+    fn slope(
+        &self,
+        value: f64,
+        shots: &OrbitShots,
+        k: usize,
+        point: &Carried,
+        scale: f64,
+    ) -> Change {
+        let here = &shots.images[k];
+        // The image of the point at another value, less its image here, and whether it has the same
+        // events.
+        let beside = |step: f64| {
+            let carried = self.at(value + step, |map| {
+                let image = map.image(&map.taken_up(point)).ok()?;
+                let same =
+                    image.way.events == here.way.events && image.point.mode == here.point.mode;
+                Some((map.carried(&image.point), same))
+            });
+            let (image, same) = carried?;
+            self.at(value, |map| Some((map.apart(&here.point, &map.taken_up(&image)), same)))
+        };
+        let size = value.abs().max(scale);
+        let mut fallback = [0.0; MOST];
+        for step in STEPS.map(|relative| relative * size) {
+            let (up, down) = ((value + step) - value, value - (value - step));
+            let quotient = |a: Change, b: Change, span: f64| -> Change {
+                std::array::from_fn(|n| (a[n] - b[n]) / span)
+            };
+            let is_short = step <= 1.01 * STEPS[2] * size;
+            match (beside(up), beside(-down)) {
+                (Some((above, true)), Some((below, true))) => {
+                    return quotient(above, below, up + down);
+                }
+                (Some((above, true)), _) if is_short => return quotient(above, [0.0; MOST], up),
+                (_, Some((below, true))) if is_short => return quotient([0.0; MOST], below, down),
+                (Some((above, _)), Some((below, _))) => {
+                    fallback = quotient(above, below, up + down)
+                }
+                _ => {}
+            }
+        }
+        fallback
+    }
+}

@@ -1,0 +1,53 @@
+//! Where a branch ends because its orbits close after half their period.
+
+use super::super::returns::newton::solved;
+use super::super::returns::shooting::{Change, MOST, ReturnMap, Shots};
+use super::curve::Curve;
+use super::locate::Located;
+use super::point::{CurvePoint, Direction};
+use super::{ReturnBifurcation, ReturnBifurcationKind};
+
+/// Distances about the branch's end in which the half's flip is looked for.
+const AROUND: [f64; 8] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
+
+impl Curve<'_> {
+    /// The flip of an orbit of half the period that the curve runs into between two points. It goes
+    /// on beyond: as the same orbits, half a period later, so that the difference of their halves
+    /// changes sign.
+    pub fn halving(&self, point: &CurvePoint, next: &CurvePoint) -> Option<ReturnBifurcation> {
+        let (here, there) = (self.differences(point)?, self.differences(next)?);
+        let direction = |points| Direction { points, rate: 0.0 };
+        let [here_too, there] = [here.clone(), there].map(|it| direction(vec![it[0]]));
+        if self.product(&here_too, &there, &point.shots) >= 0.0 {
+            return None;
+        }
+        let half = point.shots.points.len() / 2;
+        let middle = self.family.at(point.value, |map| {
+            let points = point.carried[..half].iter().zip(&here).map(|(it, change)| {
+                let place = map.taken_up(it);
+                map.moved(&place, &change.map(|by| 0.5 * by), &place)
+            });
+            solved(map, Shots::of(map, points.collect())?).ok()
+        })?;
+        let along = Direction { points: vec![[0.0; MOST]; half], rate: self.unit };
+        let single = self.point(point.value, middle, &along)?;
+        let located = AROUND.iter().find_map(|distance| {
+            let start = self.corrected(&single, -distance)?;
+            self.located(&start, 2.0 * distance, &CurvePoint::flip)
+        })?;
+        let error = self.error(&located);
+        let Located { point: CurvePoint { value, orbit, .. }, .. } = located;
+        let kind = ReturnBifurcationKind::Flip;
+        Some(ReturnBifurcation { kind, value, error, event: None, turns: true, orbit })
+    }
+
+    /// The changes from points to those half a period later; none of an odd number of points.
+    fn differences(&self, point: &CurvePoint) -> Option<Vec<Change>> {
+        let points = &point.shots.points;
+        let (first, second) = points.split_at(points.len() / 2);
+        let changes = self.family.at(point.value, |map| {
+            Some(first.iter().zip(second).map(|(a, b)| map.apart(a, b)).collect())
+        });
+        changes.filter(|_| points.len().is_multiple_of(2))
+    }
+}

@@ -1,0 +1,166 @@
+//! What has happened to the events of an orbit at a corner of its branch.
+//!
+//! The words of the two sides, as they are cyclically, agree but for a part. Of the side that has
+//! the part's events, two orbits are looked at, one sixteen times as far from the corner as the
+//! other: the rate at which a guard is crossed that is touched at the corner grows with the root of
+//! the distance, or faster, and so does the time between two events that are at once there.
+
+use super::super::returns::crossings::Crossing;
+use super::super::returns::section::Guard;
+use super::ReturnBifurcationKind;
+use super::curve::Curve;
+use super::family::OrbitShots;
+use super::point::CurvePoint;
+
+/// What a corner is, and the event that it is about.
+pub(super) struct Meaning {
+    pub kind: ReturnBifurcationKind,
+    pub event: Guard,
+}
+
+/// The crossings of one side of a corner, near to it and far from it.
+type Sides = (Vec<Crossing>, Vec<Crossing>);
+
+/// Distances from a corner at which its events are looked at; the first that serve do.
+const DISTANCES: [[f64; 2]; 3] = [[1e-6, 1.6e-5], [1e-8, 1.6e-7], [1e-4, 1.6e-3]];
+
+/// A rate or a time that has grown by more vanishes at the corner: the root of sixteen is four.
+const GROWN: f64 = 2.0;
+
+/// The most letters of two words that are compared from wherever they begin.
+const MOST_LETTERS: usize = 200;
+
+/// The word from wherever it is least: an event that passes a section does not change it.
+pub(super) fn cyclic(word: &[Guard]) -> Vec<[usize; 3]> {
+    let letters: Vec<_> =
+        word.iter().map(|it| [it.mode, it.index, usize::from(it.is_watched)]).collect();
+    let turned = (0..letters.len()).map(|k| [&letters[k..], &letters[..k]].concat());
+    turned.min().unwrap_or_default()
+}
+
+impl Curve<'_> {
+    /// What the corner is at which `before` is the last orbit of its piece.
+    pub fn meaning(&self, before: &CurvePoint, beyond: Option<&CurvePoint>) -> Option<Meaning> {
+        let probe = || Some(self.events_of(self.probes(before, DISTANCES[0][0]).first()?));
+        let after = beyond.map(|it| it.orbit.events.clone()).or_else(probe)?;
+        let [lost, gained] = differing(&before.orbit.events, &after);
+        let is_beyond = lost.is_empty();
+        let changed = if is_beyond { &gained } else { &lost };
+        let first = *changed.first()?;
+        let plain = if is_beyond {
+            ReturnBifurcationKind::EventGained
+        } else {
+            ReturnBifurcationKind::EventLost
+        };
+        if changed.iter().chain(&gained).all(|it| it.is_watched) {
+            return Some(Meaning { kind: plain, event: first });
+        }
+        // Where orbits beyond have other events again, points that do not close tell as much.
+        let orbits = beyond.filter(|_| is_beyond).and_then(|it| self.orbits_beyond(before, it));
+        let sides = orbits.or_else(|| {
+            DISTANCES.iter().find_map(|distances| {
+                let [near, far] = distances.map(|it| self.side(before, is_beyond, it));
+                alike(near?, far?)
+            })
+        });
+        let (near, far) = sides.unwrap_or_default();
+        let touched = touched(&near, &far, changed);
+        let is_corner = !gained.is_empty() && !lost.is_empty() || are_at_once(&near, &far, changed);
+        Some(match touched {
+            Some(event) => Meaning { kind: ReturnBifurcationKind::Grazing, event },
+            None if is_corner => Meaning { kind: ReturnBifurcationKind::Corner, event: first },
+            None => Meaning { kind: plain, event: first },
+        })
+    }
+
+    fn events_of(&self, shots: &OrbitShots) -> Vec<Guard> {
+        shots.images.iter().flat_map(|it| it.way.events.iter().copied()).collect()
+    }
+
+    /// The crossings of the first orbit beyond, and of one sixteen times as far from the corner. The
+    /// distance is that at which a parabola would be whose top is the corner, or twice it.
+    fn orbits_beyond(&self, before: &CurvePoint, beyond: &CurvePoint) -> Option<Sides> {
+        let apart = ((beyond.value - before.value) / beyond.tangent.rate).abs();
+        let far = self.corrected(beyond, 15.0 * apart)?;
+        let near = self.crossings(beyond.value, &beyond.shots)?;
+        alike(near, self.crossings(far.value, &far.shots)?)
+    }
+
+    /// The crossings on one side at a distance from the corner: of the orbit before, or of points
+    /// beyond that need not close.
+    fn side(&self, before: &CurvePoint, is_beyond: bool, distance: f64) -> Option<Vec<Crossing>> {
+        if is_beyond {
+            let found = self.probes(before, distance).into_iter().next()?;
+            return self.crossings(before.value + distance * before.tangent.rate, &found);
+        }
+        let point = self.corrected(before, -distance)?;
+        self.crossings(point.value, &point.shots)
+    }
+
+    fn crossings(&self, value: f64, shots: &OrbitShots) -> Option<Vec<Crossing>> {
+        self.family.at(value, |map| {
+            let all: Option<Vec<_>> =
+                shots.points.iter().map(|it| map.crossings(it).ok()).collect();
+            Some(all?.concat())
+        })
+    }
+}
+
+/// The crossings near to a corner and far from it, if they are of the same events.
+fn alike(near: Vec<Crossing>, far: Vec<Crossing>) -> Option<Sides> {
+    let guards = |side: &[Crossing]| side.iter().map(|it| it.guard).collect::<Vec<_>>();
+    (guards(&near) == guards(&far)).then_some((near, far))
+}
+
+/// The event among those that have changed whose rate vanishes, the first of those that follow one
+/// another: a touch is followed by the end of what it has begun.
+fn touched(near: &[Crossing], far: &[Crossing], changed: &[Guard]) -> Option<Guard> {
+    let count = near.len();
+    let is_touched = |k: usize| {
+        let (one, other) = (&near[k], &far[k]);
+        changed.contains(&one.guard) && other.rate.abs() > GROWN * one.rate.abs()
+    };
+    let first = (0..count).find(|k| is_touched(*k) && !is_touched((k + count - 1) % count));
+    first.or_else(|| (0..count).find(|k| is_touched(*k))).map(|k| near[k].guard)
+}
+
+/// Whether an event that has changed is at once with the one before or after it.
+fn are_at_once(near: &[Crossing], far: &[Crossing], changed: &[Guard]) -> bool {
+    let pairs = near.windows(2).zip(far.windows(2));
+    pairs.into_iter().any(|(near, far)| {
+        let is_own = near.iter().any(|it| changed.contains(&it.guard));
+        let [near, far] = [near, far].map(|it| it[1].time - it[0].time);
+        is_own && far > GROWN * near
+    })
+}
+
+/// The parts in which two words differ, as they are cyclically: what the first has alone, and the
+/// second.
+fn differing(one: &[Guard], other: &[Guard]) -> [Vec<Guard>; 2] {
+    let turns = |word: &[Guard]| if word.len() > MOST_LETTERS { 1 } else { word.len().max(1) };
+    let mut best: Option<[Vec<Guard>; 2]> = None;
+    for k in 0..turns(one) {
+        let one = turned(one, k);
+        for n in 0..turns(other) {
+            let other = turned(other, n);
+            let same = |(a, b): &(&Guard, &Guard)| a == b;
+            let head = one.iter().zip(&other).take_while(same).count();
+            let left = one.len().min(other.len()) - head;
+            let tail = one.iter().rev().zip(other.iter().rev()).take(left).take_while(same).count();
+            let parts = [&one[head..one.len() - tail], &other[head..other.len() - tail]];
+            let length = parts[0].len() + parts[1].len();
+            if best.as_ref().is_none_or(|it| length < it[0].len() + it[1].len()) {
+                best = Some(parts.map(<[Guard]>::to_vec));
+            }
+        }
+    }
+    best.unwrap_or_default()
+}
+
+fn turned(word: &[Guard], by: usize) -> Vec<Guard> {
+    let mut word = word.to_vec();
+    if !word.is_empty() {
+        word.rotate_left(by);
+    }
+    word
+}

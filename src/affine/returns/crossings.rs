@@ -1,0 +1,53 @@
+//! The events of a motion on its way to the next return, with the rates at which guards are crossed.
+
+use super::map::SectionMap;
+use super::section::Guard;
+use super::walk::{NoReturn, Walk};
+use crate::affine::arithmetic::vector::dot;
+use crate::affine::run::place::Place;
+use crate::affine::run::variation::is_at_once;
+use crate::affine::solver::event::Event;
+
+/// An event of a motion.
+#[derive(Clone, Debug)]
+pub(in crate::affine) struct Crossing {
+    pub guard: Guard,
+    /// The time since the place from which the motion was followed.
+    pub time: f64,
+    /// The rate of the guard as it is crossed; infinite for an event at the entry of its mode.
+    pub rate: f64,
+}
+
+impl SectionMap<'_, f64> {
+    /// The events on the way from a place to the next return, that of the return too.
+    ///
+    /// # Errors
+    /// A motion that does not return.
+    pub(in crate::affine) fn crossings(
+        &self,
+        place: &Place<f64>,
+    ) -> Result<Vec<Crossing>, NoReturn> {
+        let mut walk = Walk::begin(self, place, false);
+        let mut crossings = Vec::new();
+        walk.next(&mut |from, to| {
+            if let Some(guard) = Guard::of(&to.what) {
+                let time = to.time.since(&place.time).value();
+                crossings.push(Crossing { guard, time, rate: self.rate_of(guard, from, to) });
+            }
+        })?;
+        Ok(crossings)
+    }
+
+    /// The rate of a guard just before the event that it is.
+    fn rate_of(&self, guard: Guard, from: &Event<f64>, to: &Event<f64>) -> f64 {
+        if is_at_once(from, to) {
+            return f64::INFINITY;
+        }
+        let solver = self.solver();
+        let own = &solver.modes[guard.mode];
+        let until = solver.system().modes[guard.mode].until.len();
+        let row = &own.rows[guard.index + if guard.is_watched { until } else { 0 }];
+        let rates = solver.rates(guard.mode, &to.time, &solver.state_at(from, &to.time));
+        dot(row, &rates, own.flow.dimension)
+    }
+}
