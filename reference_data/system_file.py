@@ -22,7 +22,7 @@ RESERVED = ("cos", "sin", "omega", "phi")
 ENDINGS = "end accumulation leaves-domain no-progress beyond-guard undecided".split()
 DIRECTIONS = ("rising", "falling", "both")
 FILE_KEYS = (
-    "schema name why trouble source states scales time_scale forcing parameters let mode start"
+    "schema name why trouble source states drift scales time_scale forcing parameters let mode start"
 )
 TROUBLE = """jump accumulation simultaneous sliding chatter clock start-on-guard many-guards
     stiffness graze double-crossing multiple-zero restart-on-zero side-of-root output-at-events
@@ -269,6 +269,25 @@ class Builder:
         name = event_name(table, f"watch of {mode}")
         return Event(name, self.guard(table["guard"]), True, direction)
 
+    def check_drift(self, modes: list, start: list) -> None:
+        """Refuses a drift on which something depends; a run's events ask nothing more of it."""
+        drift = self.table.get("drift", [])
+        rows = [row for row, _ in start]
+        for mode in modes:
+            rows += [mode.matrix] + [event.guard for event in mode.until + mode.watch]
+            rows += [row for event in mode.until for row, _ in event.successors]
+            rows += [event.reset - self.identity() for event in mode.until]
+        for name in drift:
+            if name not in self.states or drift.count(name) > 1:
+                raise Refused(f"drift: {name!r} is no state, or there twice")
+            n = self.states.index(name)
+            for row in rows:
+                if row is not None and any(row[i, n] != 0 for i in range(row.nrows())):
+                    raise Refused(f"drift: something depends on {name}")
+
+    def identity(self) -> fmpq_mat:
+        return self.matrix_of([self.unit(i) for i in range(self.size)])
+
     def mode(self, table: dict) -> Mode:
         only(table, "name equations until watch", "mode")
         name = named(table, "mode")
@@ -325,7 +344,9 @@ class Builder:
             for _, name in (s for event in mode.until for s in event.successors):
                 if name not in by_name:
                     raise Refused(f"mode {mode.name}: {name!r} is not a mode")
+        start = self.start_values(by_name)
+        self.check_drift(modes, start["modes"])
         return System(
             named(self.table, "the file"), self.states, self.forced, self.omega, self.phi,
-            self.parameters, self.scales(), self.time_scale(), by_name, self.start_values(by_name),
+            self.parameters, self.scales(), self.time_scale(), by_name, start,
         )  # fmt: skip

@@ -226,7 +226,8 @@ impl Cases {
                 .collect();
             let rows: Vec<Scored> = pairs.into_par_iter().with_max_len(1).map(row).collect();
             let mut evidence = ReportEvidence::gather(&self.all, &rows, &[], true);
-            evidence.events = event_pictures(&self.all, &rows);
+            let events = suite::first_wrong::first_wrong_events(&self.all, &rows);
+            evidence.events = event_pictures(&events);
             let mut seen = BTreeSet::new();
             let once = declared.iter().filter(|(it, _)| seen.insert(it.name));
             let engines: Vec<_> = once.map(|it| engine(it, "")).collect();

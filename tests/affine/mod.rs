@@ -9,6 +9,7 @@ mod by_hand;
 mod close_rates;
 mod decided;
 mod diagrams;
+mod drifts;
 mod enclosed;
 mod endings;
 mod files;

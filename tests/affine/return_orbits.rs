@@ -134,6 +134,7 @@ fn exponents_sum_to_the_contraction() {
 /// The oscillator without its drift, which grows and closes no orbit.
 fn without_drift(xi: &str, omega: &str) -> String {
     let text = OSCILLATOR
+        .replace("drift = [\"v\"]\n", "")
         .replace(", \"v\"]", "]")
         .replace(", \"v' = 0\"", "")
         .replace("    \"v' = y + (q - 1)/(2*xi)\",\n", "")

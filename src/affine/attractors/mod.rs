@@ -53,6 +53,25 @@ pub struct ReturnAttractor {
     pub lyapunov_per_return: f64,
     /// The standard error of the exponent; zero for an orbit.
     pub lyapunov_error: f64,
+    /// The mean change per return of each of the [drifts](crate::System::drifts), in their order;
+    /// none of an equilibrium.
+    pub drift_per_return: Vec<f64>,
+    /// The standard errors of these means; none of an orbit, whose drift is no mean over a run.
+    pub drift_standard_error: Vec<f64>,
+}
+
+/// Means over a run: those of the drifts with their standard errors, and the largest exponent, with
+/// its error, without those that are zero for any motion.
+#[derive(Clone, Debug)]
+struct RunMeans {
+    largest_exponent: [f64; 2],
+    drift: Vec<f64>,
+    drift_error: Vec<f64>,
+}
+
+impl RunMeans {
+    const UNKNOWN: Self =
+        Self { largest_exponent: [f64::NAN; 2], drift: Vec::new(), drift_error: Vec::new() };
 }
 
 /// Standard errors by which a positive exponent must differ from zero.
@@ -77,18 +96,23 @@ impl ReturnAttractor {
             points: orbit.points.clone(),
             lyapunov_per_return: libm::log(libm::hypot(re, im)) / orbit.period() as f64,
             lyapunov_error: 0.0,
+            drift_per_return: orbit.drift_per_return.clone(),
+            drift_standard_error: Vec::new(),
             orbit: Some(orbit),
         }
     }
 
-    /// An attractor that is no orbit, with the largest exponent and its error.
-    fn of_run(kind: AttractorKind, run: &[Return<f64>], [exponent, error]: [f64; 2]) -> Self {
+    /// An attractor that is no orbit, with the largest exponent and its error, and the drifts.
+    fn of_run(kind: AttractorKind, run: &[Return<f64>], means: RunMeans) -> Self {
+        let [exponent, error] = means.largest_exponent;
         Self {
             kind,
             orbit: None,
             points: run[run.len().saturating_sub(POINTS)..].to_vec(),
             lyapunov_per_return: exponent,
             lyapunov_error: error,
+            drift_per_return: means.drift,
+            drift_standard_error: means.drift_error,
         }
     }
 

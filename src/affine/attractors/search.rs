@@ -5,7 +5,7 @@ use super::known::{Evidence, KnownAttractor};
 use super::recognition::Recognizer;
 use super::space::{Space, Spot, Stop};
 use super::trap::Trap;
-use super::{ERRORS, POINTS, ReturnAttractor};
+use super::{ERRORS, POINTS, ReturnAttractor, RunMeans};
 use crate::affine::returns::exponents::Exponents;
 use crate::affine::run::place::Place;
 use crate::dynamics::attractor::thresholds::{
@@ -61,8 +61,8 @@ impl AttractorSearch<'_> {
                 if let Some(place) = known {
                     return Settled::Label(Label::Attractor(place));
                 }
-                let unknown = [f64::NAN; 2];
-                let rest = ReturnAttractor::of_run(AttractorKind::Equilibrium, &[point], unknown);
+                let (kind, means) = (AttractorKind::Equilibrium, RunMeans::UNKNOWN);
+                let rest = ReturnAttractor::of_run(kind, &[point], means);
                 Settled::New(Box::new(KnownAttractor::new(self.space, rest, Evidence::Rest)))
             }
         }
@@ -73,7 +73,8 @@ impl AttractorSearch<'_> {
         if let Some(orbit) = self.orbit_from(from, short)? {
             return Ok(Some(orbit));
         }
-        let Some([exponent, error]) = self.largest_exponent(from, GLANCE) else { return Ok(None) };
+        let Some(means) = self.means(from, GLANCE) else { return Ok(None) };
+        let [exponent, error] = means.largest_exponent;
         // What clearly contracts is an orbit on the way, or a long one.
         let full = self.known.len() >= MOST_ATTRACTORS;
         match (exponent < -ERRORS * error.max(NEUTRAL), full) {
@@ -93,15 +94,18 @@ impl AttractorSearch<'_> {
         self.orbit(&spots, &last)
     }
 
-    /// The motion's largest exponent over so many returns and its standard error, without those
-    /// that are zero for any motion: along the flow of a system that is not forced, and along
-    /// drifts.
-    fn largest_exponent(&self, from: &Place<f64>, returns: u64) -> Option<[f64; 2]> {
+    /// The means of the motion over so many returns. Exponents that are zero for any motion are
+    /// those along the flow of a system that is not forced, and along drifts.
+    fn means(&self, from: &Place<f64>, returns: u64) -> Option<RunMeans> {
         let map = self.space.map;
         let found = map.exponents(from, SETTLING, returns, &mut |_| ()).ok()?;
         let drifts = (0..map.system().states.len()).filter(|it| map.is_drift(*it)).count();
         let neutral = drifts + usize::from(map.system().forcing.is_none());
-        Some(largest_of(&found, neutral))
+        Some(RunMeans {
+            largest_exponent: largest_of(&found, neutral),
+            drift: found.drift_per_return,
+            drift_error: found.drift_standard_error,
+        })
     }
 
     /// The stable orbit that a motion reaches while its exponents are taken. Chaos may end then,
@@ -179,14 +183,14 @@ impl AttractorSearch<'_> {
             let place = self.arrival(&last, self.known, OUTLASTING)?;
             return Ok(Settled::Label(place.map_or(Label::Unresolved, Label::Attractor)));
         }
-        let exponent = self.largest_exponent(&last, DECISION).unwrap_or([f64::NAN; 2]);
-        let kind = kind_of(exponent, repeats(space, &spots, longest).is_some());
+        let means = self.means(&last, DECISION).unwrap_or(RunMeans::UNKNOWN);
+        let kind = kind_of(means.largest_exponent, repeats(space, &spots, longest).is_some());
         if kind == AttractorKind::Unidentified
             && let Some(settled) = self.late_orbit(&last)?
         {
             return Ok(settled.after(&spots, space.dimension));
         }
-        let attractor = ReturnAttractor::of_run(kind, &points, exponent);
+        let attractor = ReturnAttractor::of_run(kind, &points, means);
         let evidence = Evidence::Cells(CellSet::of(&spots, space.dimension));
         Ok(Settled::New(Box::new(KnownAttractor::new(space, attractor, evidence))))
     }

@@ -50,6 +50,7 @@ impl System {
             own.mode(mode)?;
         }
         self.check_start_modes()?;
+        self.check_drift()?;
         self.start.as_ref().map_or(Ok(()), |it| self.check_start(it))
     }
 

@@ -93,6 +93,7 @@ pub(super) struct Tables {
     #[serde(default)]
     pub source: String,
     pub states: Spanned<Vec<Spanned<String>>>,
+    pub drift: Option<Vec<Spanned<String>>>,
     pub scales: Option<Spanned<Vec<Spanned<Scalar>>>>,
     pub time_scale: Option<Spanned<Scalar>>,
     pub forcing: Option<ForcingTable>,

@@ -83,6 +83,9 @@ pub struct System {
     pub parameters: BTreeMap<String, f64>,
     /// The names of the states.
     pub states: Vec<String>,
+    /// The indices of the states that are said to be [drifts](Self::drifts), where the file says
+    /// which are.
+    pub drift: Option<Vec<usize>>,
     /// The size of each state, by which it is divided before any norm.
     pub scales: Vec<f64>,
     /// The unit by which times are divided before any comparison.

@@ -32,11 +32,15 @@ pub struct Exponents {
     pub per_return: Vec<f64>,
     /// Their standard errors, from the scatter of the batches; NaN beside minus infinity.
     pub standard_error: Vec<f64>,
+    /// The mean change per return of each of the [drifts](crate::System::drifts), in their order.
+    pub drift_per_return: Vec<f64>,
+    /// Their standard errors, from the same batches.
+    pub drift_standard_error: Vec<f64>,
     /// The mean time of a return.
     pub mean_return_time: f64,
     /// The number of batches.
     pub batches: u64,
-    /// Whether the exponents of the batches scatter about one value each.
+    /// Whether the exponents and the drifts of the batches scatter about one value each.
     pub stationarity: Stationarity,
     /// The number of choices that rounding left open.
     pub undecidable: u64,
@@ -50,9 +54,10 @@ impl Exponents {
     }
 }
 
-/// The growth so far of the frame's vectors, and the time.
+/// The growth so far of the frame's vectors, the drifts, and the time.
 struct Mark {
     growth: Vec<f64>,
+    drift: Vec<f64>,
     time: f64,
 }
 
@@ -74,17 +79,18 @@ impl SectionMap<'_, f64> {
         let mut walk = Walk::begin(self, place, false);
         let mut frame = Frame::of(self.solver());
         let mut marks: Vec<Mark> = Vec::new();
-        let mut passed = 0;
+        let (mut passed, mut drift) = (0, self.drift_of(&place.state));
         for k in 0..=batches.count() {
             while passed < settling + batches.end(k) {
                 let event = walk.next(&mut |from, to| frame.pass(from, to))?;
                 let time = event.time.value();
+                drift = self.drift_of(&event.state);
                 frame.settle(event);
                 frame.time = time;
                 passed += 1;
                 seen(passed);
             }
-            marks.push(frame.mark(place));
+            marks.push(frame.mark(place, &drift));
         }
         let undecidable = walk.undecidable();
         Ok(exponents(batches, returns.max(1), &marks, frame.columns(), undecidable))
@@ -101,12 +107,14 @@ fn exponents(
 ) -> Exponents {
     let states = marks.first().map_or(0, |it| it.growth.len());
     let mean = |n: usize| batches.means(marks, |a, b| b.growth[n] - a.growth[n]);
-    let means: Vec<Vec<f64>> = (0..left).map(mean).collect();
+    let mut means: Vec<Vec<f64>> = (0..left).map(mean).collect();
     let ends = [marks.first(), marks.last()];
     let [Some(first), Some(last)] = ends else {
         return Exponents {
             per_return: Vec::new(),
             standard_error: Vec::new(),
+            drift_per_return: Vec::new(),
+            drift_standard_error: Vec::new(),
             mean_return_time: f64::NAN,
             batches: 0,
             stationarity: Stationarity::Unknown,
@@ -118,9 +126,18 @@ fn exponents(
         (0..left).map(|n| (whole(n), standard_error(&means[n]))).collect();
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     all.resize(states, (f64::NEG_INFINITY, f64::NAN));
+    let drifts = 0..first.drift.len();
+    let mean = |n: usize| batches.means(marks, |a, b| b.drift[n] - a.drift[n]);
+    let drift_means: Vec<Vec<f64>> = drifts.clone().map(mean).collect();
+    let whole = |n: usize| (last.drift[n] - first.drift[n]) / returns as f64;
+    let drift_per_return = drifts.map(whole).collect();
+    let drift_standard_error = drift_means.iter().map(|it| standard_error(it)).collect();
+    means.extend(drift_means);
     Exponents {
         per_return: all.iter().map(|it| it.0).collect(),
         standard_error: all.iter().map(|it| it.1).collect(),
+        drift_per_return,
+        drift_standard_error,
         mean_return_time: (last.time - first.time) / returns as f64,
         batches: batches.count(),
         stationarity: batches.stationarity(&means),
@@ -147,9 +164,9 @@ impl<'a> Frame<'a> {
         self.variation.columns.len()
     }
 
-    fn mark(&self, start: &Place<f64>) -> Mark {
+    fn mark(&self, start: &Place<f64>, drift: &[f64]) -> Mark {
         let time = if self.time.is_nan() { start.time.value() } else { self.time };
-        Mark { growth: self.growth.clone(), time }
+        Mark { growth: self.growth.clone(), drift: drift.to_vec(), time }
     }
 
     /// Carries the frame from one event to the next one.

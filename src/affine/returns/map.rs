@@ -20,8 +20,8 @@ pub struct SectionMap<'a, T: Number> {
     longest: T,
     /// The forcing period, and the first time of the strobe's angle.
     period: Option<[Time<T>; 2]>,
-    /// Whether each state is a drift: orbits close without these.
-    drifts: Vec<bool>,
+    /// The drifts: orbits close without these.
+    drifts: Vec<usize>,
 }
 
 impl<'a, T: Number> SectionMap<'a, T> {
@@ -40,7 +40,6 @@ impl<'a, T: Number> SectionMap<'a, T> {
         let period = system.forcing.as_ref().map(|it| strobes(it, angle));
         let longest = T::exact(USUAL_LONGEST * system.time_scale);
         let drifts = system.drifts();
-        let drifts = (0..system.states.len()).map(|n| drifts.contains(&n)).collect();
         Ok(Self { solver, section: resolved, longest, period, drifts })
     }
 
@@ -73,7 +72,12 @@ impl<'a, T: Number> SectionMap<'a, T> {
     /// Whether a state is a [drift](System::drifts): orbits close without it.
     #[must_use]
     pub fn is_drift(&self, state: usize) -> bool {
-        self.drifts.get(state).copied().unwrap_or(false)
+        self.drifts.contains(&state)
+    }
+
+    /// The [drifts](System::drifts) of a state, in their order.
+    pub(in crate::affine) fn drift_of(&self, state: &[T]) -> Vec<T> {
+        self.drifts.iter().filter_map(|n| state.get(*n).copied()).collect()
     }
 
     /// The forcing period, of a forced system.

@@ -27,6 +27,8 @@ pub struct Orbit {
     /// as states without [drifts](System::drifts); zero for a direction that a section or a reset
     /// removes.
     pub multipliers: Vec<[f64; 2]>,
+    /// The mean change per return of each of the [drifts](System::drifts), in their order.
+    pub drift_per_return: Vec<f64>,
     /// The largest distance of an image to the next point, over 1 + |point|.
     pub residual: f64,
     /// Whether rounding left no order of events open: where it did, the multipliers may be those of
@@ -132,6 +134,7 @@ impl SectionMap<'_, f64> {
             time: ways().map(|it| it.time).sum(),
             events: ways().flat_map(|it| it.events.iter().copied()).collect(),
             multipliers: multipliers(&returns, flow.as_deref())?,
+            drift_per_return: mean_drift(ways(), shots.points.len()),
             residual: shots.residual,
             is_decided: ways().all(|it| it.is_decided),
         })
@@ -170,7 +173,16 @@ pub struct Way {
     pub(in crate::affine) events: Vec<Guard>,
     at_fixed_time: Vec<Vec<f64>>,
     time: f64,
+    /// The change of each drift.
+    drift: Vec<f64>,
     is_decided: bool,
+}
+
+/// The mean per return of the drifts' changes on the ways of an orbit.
+fn mean_drift<'w>(ways: impl Iterator<Item = &'w Way> + Clone, returns: usize) -> Vec<f64> {
+    let drifts = ways.clone().next().map_or(0, |it| it.drift.len());
+    let mean = |n: usize| ways.clone().map(|it| it.drift[n]).sum::<f64>() / returns as f64;
+    (0..drifts).map(mean).collect()
 }
 
 impl ReturnMap for SectionMap<'_, f64> {
@@ -187,6 +199,10 @@ impl ReturnMap for SectionMap<'_, f64> {
             events: passage.events.clone(),
             at_fixed_time: columns.collect(),
             time: passage.image.time.since(&point.time).value(),
+            drift: {
+                let [to, from] = [&passage.image, point].map(|it| self.drift_of(&it.state));
+                to.iter().zip(from).map(|(to, from)| to - from).collect()
+            },
             is_decided: passage.is_decided,
         };
         let derivative = self.derivative(point, &passage);

@@ -1,5 +1,6 @@
 //! From the tables of a file to a system.
 
+mod drift;
 mod mode;
 mod names;
 
@@ -54,6 +55,7 @@ fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
         source: tables.source.clone(),
         parameters: file.parameters.iter().filter_map(parameter).collect(),
         states: names.states.clone(),
+        drift: None,
         scales: names.scales()?,
         time_scale: names.time_scale(forcing.as_ref())?,
         forcing,
@@ -86,6 +88,10 @@ fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
             point.mode = system.mode_by_conditions(&point)?;
         }
         system.start = Some(point);
+    }
+    // The derivatives of coefficients say nothing of what depends on what.
+    if by.is_none() {
+        system.drift = drift::declared(file, &system)?;
     }
     Ok(system)
 }

@@ -90,6 +90,7 @@ pub struct SystemBuilder {
     source: String,
     trouble: Vec<String>,
     states: Vec<String>,
+    drift: Option<Vec<String>>,
     scales: Option<Vec<Expression>>,
     time_scale: Option<Expression>,
     forcing: Option<[Expression; 2]>,
@@ -155,6 +156,7 @@ impl System {
             source: String::new(),
             trouble: Vec::new(),
             states: Vec::new(),
+            drift: None,
             scales: None,
             time_scale: None,
             forcing: None,
@@ -181,6 +183,26 @@ impl SystemBuilder {
     /// ```
     pub fn states(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
         self.states = names.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// The states that are [drifts](System::drifts): without this call they are found.
+    ///
+    /// ```
+    /// # use percuss::System;
+    /// use percuss::system::ModeBuilder;
+    /// let going = ModeBuilder::new("going").equation("gone' = x").equation("x' = 1 - x");
+    /// let system = System::builder("walk").states(["gone", "x"]).mode(going);
+    /// let error = system.clone().drift(["x"]).build().unwrap_err();
+    /// assert_eq!(
+    ///     error.to_string(),
+    ///     "drift: x is no drift: mode \"going\", equation `gone' = x` depends on it"
+    /// );
+    /// assert_eq!(system.drift(["gone"]).build()?.drifts(), [0]);
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    pub fn drift(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        self.drift = Some(names.into_iter().map(Into::into).collect());
         self
     }
 

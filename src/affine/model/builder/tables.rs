@@ -26,6 +26,7 @@ pub(super) fn file(builder: SystemBuilder) -> Result<SystemFile, SystemError> {
     let system = format!("system {:?}", builder.name);
     let of_system = |items: &mut Items, it: Expression| items.at(&system, it.0);
     let states = builder.states.into_iter().map(|it| items.at("states", it)).collect();
+    let drift = builder.drift.map(|it| it.into_iter().map(|it| items.at("drift", it)).collect());
     let trouble = builder.trouble.into_iter().map(|it| items.at(&system, it)).collect();
     let scales = builder.scales.map(|scales| {
         let scales = scales.into_iter().map(|it| of_system(&mut items, it)).collect();
@@ -41,6 +42,7 @@ pub(super) fn file(builder: SystemBuilder) -> Result<SystemFile, SystemError> {
         states: items.at(&system, states),
         name: items.at(&system, builder.name),
         why: builder.why,
+        drift,
         trouble,
         source: builder.source,
         scales,

@@ -124,13 +124,6 @@ impl Case {
         if self.oscillator.is_some() { 1.0 } else { self.system.time_scale }
     }
 
-    /// The place of the state that drifts, if there is one: it is no part of a state's error.
-    #[must_use]
-    pub fn drift(&self) -> Option<usize> {
-        self.oscillator.as_ref()?;
-        self.system.states.iter().position(|state| state == "v")
-    }
-
     /// Time from the start to the horizon.
     #[must_use]
     pub fn span(&self) -> f64 {

@@ -40,6 +40,7 @@ pub fn percussive(parameters: &Parameters, angle: f64) -> System {
     System {
         name: "percussive-oscillator".to_owned(),
         states: ["p", "y", "q", "v"].map(str::to_owned).to_vec(),
+        drift: vec![3],
         scales: vec![1.0; STATES],
         time_scale: 1.0 / omega,
         omega,

@@ -31,6 +31,7 @@ fn table() -> System {
         time_scale: 0.8,
         omega: 1.25,
         phi: 0.0,
+        drift: Vec::new(),
         modes: vec![
             mode("flight", [0.0, 0.0], -1.0, impact),
             mode("stuck", [-1.5625, 0.0], 0.0, detach),

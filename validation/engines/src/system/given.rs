@@ -18,6 +18,7 @@ impl From<&affine::System> for System {
         Self {
             name: exact.name.clone(),
             states: exact.states.clone(),
+            drift: exact.drifts(),
             scales: exact.scales.clone(),
             time_scale: exact.time_scale,
             omega,

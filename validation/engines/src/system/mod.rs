@@ -29,6 +29,9 @@ pub struct System {
     pub name: String,
     /// The names of the states.
     pub states: Vec<String>,
+    /// The places of the states that only add up what the others do, on which nothing depends: they
+    /// are no part of a state's error.
+    pub drift: Vec<usize>,
     /// The scale of each state, by which it is divided before any norm.
     pub scales: Vec<f64>,
     /// The time scale, by which times are divided before any comparison.

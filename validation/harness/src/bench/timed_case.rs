@@ -170,11 +170,11 @@ impl TimedCase {
         let reached = truth.ended == Ending::Horizon;
         let end = reached.then(|| rule.state_error(&truth.end, &answer.end));
         let times = rows().map(|(row, it)| rule.time_error(row.elapsed, it.elapsed));
-        let drift = rule.drift.map(|_| rule.drift_error(&truth.end, &answer.end));
+        let drift = rule.drift_error(&truth.end, &answer.end);
         Score {
             state_error: worst(states.chain(end)),
             event_time_error: worst(times.map(|error| error / rule.time_scale)),
-            drift_error: drift.unwrap_or(0.0),
+            drift_error: if rule.drift.is_empty() { 0.0 } else { drift },
         }
     }
 }

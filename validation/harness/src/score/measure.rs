@@ -181,16 +181,16 @@ impl MeasuredRun<'_> {
 
     /// A drift that begins too late by dt lacks v' dt; NaN where nothing drifts.
     fn drift_by_times(&self) -> f64 {
-        let Some(drift) = self.by.rule.drift else { return f64::NAN };
         let system = self.by.task.system.system();
         let truth = self.by.truth;
-        let lost = |(n, time, own): (usize, TwoWord, f64)| {
+        let lost = |drift: usize, (n, time, own): (usize, TwoWord, f64)| {
             let Some(row) = truth.events.get(n) else { return 0.0 };
             let before = n.checked_sub(1).map_or(truth.start.mode, |it| truth.events[it].mode);
             let [before, after] = [before, row.mode].map(|it| rate(system, (it, drift), row));
             (after - before) * TwoWord::new(own).minus(time).value()
         };
-        self.times().map(lost).sum::<f64>().abs()
+        let rule = &self.by.rule;
+        rule.of_drifts(|k| self.times().map(|it| lost(k, it)).sum::<f64>().abs() / rule.scales[k])
     }
 }
 

@@ -244,10 +244,10 @@ impl RestartTest {
         });
         let states = truth.end.state.iter().zip(outcome.end.iter()).zip(&rule.scales);
         let absolute = states.map(|((truth, own), scale)| off(*truth, *own) / scale);
-        let drift = rule.drift.map(|k| rule.units(&truth.end, k, outcome.end[k]) / unit);
+        let drift = |k: usize| rule.units(&truth.end, k, outcome.end[k]) / unit;
         RestartError {
             units: rule.state_units(&truth.end, &outcome.end) / unit,
-            drift_units: drift.unwrap_or(f64::NAN),
+            drift_units: rule.of_drifts(drift),
             time_units: if same_modes { worst(late) } else { f64::NAN },
             absolute: worst(absolute),
             same_modes,

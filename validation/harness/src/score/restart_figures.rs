@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 pub struct RestartError {
     /// The largest error of the state in units of error x (1 + |value|) x growth.
     pub units: f64,
-    /// The error of the drift v, in the units of `units`; NaN in other systems than the oscillator.
+    /// The error of what drifts, in the units of `units`; NaN in a system where nothing does.
     pub drift_units: f64,
     /// The largest error of an event's time, in the units of `units`; NaN where the sequence of
     /// modes is not the truth's.
@@ -36,7 +36,7 @@ pub struct Restart {
     pub wrong_sequences: usize,
     /// Errors at the end in units of error x (1 + |value|) x growth.
     pub units: Spread,
-    /// The errors of the drift alone, in units; NaN in other systems than the oscillator.
+    /// The errors of what drifts alone, in units; NaN in a system where nothing does.
     pub drift_units: Spread,
     /// The errors of event times, over the runs with the right modes, in units.
     pub time_units: Spread,

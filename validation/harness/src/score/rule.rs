@@ -25,8 +25,8 @@ pub struct ErrorRule {
     pub scales: Vec<f64>,
     /// The scale of times.
     pub time_scale: f64,
-    /// The state that drifts, which is no part of the state's error.
-    pub drift: Option<usize>,
+    /// The states that drift, which are no part of the state's error.
+    pub drift: Vec<usize>,
 }
 
 impl ErrorRule {
@@ -35,21 +35,26 @@ impl ErrorRule {
     pub fn of(case: &Case, system: &System) -> Self {
         let beside = if case.oscillator.is_some() { Beside::Value } else { Beside::Largest };
         let (scales, time_scale) = (system.scales.clone(), case.unit_of_time());
-        Self { beside, scales, time_scale, drift: case.drift() }
+        Self { beside, scales, time_scale, drift: system.drift.clone() }
     }
 
     /// The largest error of a state, over its scale.
     #[must_use]
     pub fn state_error(&self, row: &TruthRow, state: &[f64]) -> f64 {
         let states = row.state.iter().zip(state).zip(&self.scales).enumerate();
-        let states = states.filter(|(k, _)| Some(*k) != self.drift);
+        let states = states.filter(|(k, _)| !self.drift.contains(k));
         worst(states.map(|(_, ((truth, own), scale))| off(*truth, *own) / scale))
     }
 
-    /// The error of the state that drifts; NaN where there is none.
+    /// The largest error of a state that drifts, over its scale; NaN where there is none.
     #[must_use]
     pub fn drift_error(&self, row: &TruthRow, state: &[f64]) -> f64 {
-        self.drift.map_or(f64::NAN, |k| off(row.state[k], state[k]))
+        self.of_drifts(|k| off(row.state[k], state[k]) / self.scales[k])
+    }
+
+    /// The largest of a number for each state that drifts; NaN where there is none.
+    pub(super) fn of_drifts(&self, of: impl Fn(usize) -> f64) -> f64 {
+        if self.drift.is_empty() { f64::NAN } else { worst(self.drift.iter().map(|k| of(*k))) }
     }
 
     /// The error of an event's time.
@@ -96,14 +101,14 @@ impl ErrorRule {
             Beside::Largest => row.size,
         };
         let part = |k: usize| guard[k].abs() * self.scales[k] * row.growth[k] * (1.0 + size(k));
-        let states = (0..row.state.len()).filter(|k| Some(*k) != self.drift);
+        let states = (0..row.state.len()).filter(|k| !self.drift.contains(k));
         states.map(part).fold(0.0, f64::max)
     }
 
     /// The largest growth of a state, at least one.
     #[must_use]
     pub fn largest_growth(&self, row: &TruthRow) -> f64 {
-        let growth = row.growth.iter().enumerate().filter(|(k, _)| Some(*k) != self.drift);
+        let growth = row.growth.iter().enumerate().filter(|(k, _)| !self.drift.contains(k));
         growth.fold(1.0_f64, |most, (_, growth)| most.max(*growth))
     }
 }

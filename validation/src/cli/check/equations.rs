@@ -33,6 +33,12 @@ impl Equations<'_> {
             _ => format!("{name} (scale {})", shortest(*scale)),
         });
         line("states", states.collect::<Vec<_>>().join(", "));
+        let drifts = system.drifts();
+        if !drifts.is_empty() {
+            let found = if system.drift.is_some() { "" } else { " (found: nothing depends on it)" };
+            let names = drifts.iter().map(|it| [&system.states[*it], found].concat());
+            line("drift", names.collect::<Vec<_>>().join(", "));
+        }
         line("time scale", shortest(system.time_scale));
         if let Some(forcing) = &system.forcing {
             let (omega, phi) = (number(&forcing.omega), number(&forcing.phi));

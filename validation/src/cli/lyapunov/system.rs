@@ -2,6 +2,7 @@
 
 use super::{Arguments, stationary};
 use crate::cli::note;
+use crate::cli::shared::drift;
 use crate::cli::shared::long_work;
 use crate::cli::shared::section::{RARELY, tell_no_return, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
@@ -28,6 +29,8 @@ struct Json<'a> {
     batches: u64,
     /// Null where too few batches tell.
     stationary: Option<bool>,
+    drift_per_return: BTreeMap<&'a str, f64>,
+    drift_standard_error: BTreeMap<&'a str, f64>,
 }
 
 /// Writes the exponents; whether the motion was decided to its end.
@@ -89,6 +92,9 @@ fn exponents(
 
 /// The JSON; lists are empty and numbers null where the motion does not return as often.
 fn json<'a>(system: &'a System, found: Option<&Exponents>) -> Json<'a> {
+    let drift = |of: fn(&Exponents) -> &Vec<f64>| {
+        drift::by_name(system, found.map(of).map_or(&[], Vec::as_slice))
+    };
     Json {
         schema: 1,
         percuss: env!("CARGO_PKG_VERSION"),
@@ -101,5 +107,7 @@ fn json<'a>(system: &'a System, found: Option<&Exponents>) -> Json<'a> {
         mean_return_time: found.map(|it| it.mean_return_time),
         batches: found.map_or(0, |it| it.batches),
         stationary: found.and_then(|it| stationary(it.stationarity)),
+        drift_per_return: drift(|it| &it.drift_per_return),
+        drift_standard_error: drift(|it| &it.drift_standard_error),
     }
 }

@@ -2,6 +2,7 @@
 //! the user may have meant, progress, what is said on stderr, and exit codes. No verb stands here.
 
 pub(super) mod compact;
+pub(super) mod drift;
 pub(super) mod exit_codes;
 pub(super) mod format;
 pub(super) mod horizon;

@@ -2,6 +2,7 @@
 
 use super::super::json::{BOX, EntropyJson, POINTS, UncertaintyJson};
 use super::Survey;
+use crate::cli::shared::drift;
 use percuss::System;
 use percuss::affine::{Return, ReturnAttractor, UnresolvedReturn};
 use percuss::dynamics::attractor::{Label, entropy_of_labels, uncertainty_of_labels};
@@ -41,6 +42,10 @@ struct AttractorJson<'a> {
     /// Null is minus infinity; of what rests or escapes it is not known.
     lyapunov_per_return: f64,
     lyapunov_error: f64,
+    /// Null of what rests or escapes.
+    drift_per_return: BTreeMap<&'a str, f64>,
+    /// Null where the drift is not a mean over a run.
+    drift_standard_error: BTreeMap<&'a str, f64>,
 }
 
 #[derive(Serialize)]
@@ -116,10 +121,12 @@ impl<'a> AttractorJson<'a> {
             multipliers: orbit.flat_map(|it| it.multipliers.iter().copied()).collect(),
             lyapunov_per_return: attractor.lyapunov_per_return,
             lyapunov_error: attractor.lyapunov_error,
+            drift_per_return: drift::by_name(&survey.system, &attractor.drift_per_return),
+            drift_standard_error: drift::by_name(&survey.system, &attractor.drift_standard_error),
         }
     }
 
-    fn escaping(survey: &Survey) -> Self {
+    fn escaping(survey: &'a Survey) -> Self {
         Self {
             id: Label::Escaping.number(),
             kind: "escaping",
@@ -130,6 +137,8 @@ impl<'a> AttractorJson<'a> {
             multipliers: Vec::new(),
             lyapunov_per_return: f64::NAN,
             lyapunov_error: f64::NAN,
+            drift_per_return: drift::by_name(&survey.system, &[]),
+            drift_standard_error: drift::by_name(&survey.system, &[]),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::super::of_system::{PointJson, guess, points};
 use super::{Arguments, OrbitFormat};
+use crate::cli::shared::drift;
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::{DONE, OUT_OF_BOUNDS, note, say};
 use anyhow::{Result, bail};
@@ -25,6 +26,7 @@ struct OrbitJson<'a> {
     events: Vec<String>,
     multipliers: Vec<[f64; 2]>,
     stable: Option<bool>,
+    drift_per_return: BTreeMap<&'a str, f64>,
     /// The smallest residual that was reached; null where there was none.
     residual: Option<f64>,
 }
@@ -89,6 +91,10 @@ fn json<'a>(system: &'a System, found: &'a Result<Orbit, NoOrbit>) -> OrbitJson<
         events: orbit.map(|it| it.event_names(system)).unwrap_or_default(),
         multipliers: orbit.map(|it| it.multipliers.clone()).unwrap_or_default(),
         stable: orbit.map(Orbit::is_stable),
+        drift_per_return: drift::by_name(
+            system,
+            orbit.map_or(&[], |it| it.drift_per_return.as_slice()),
+        ),
         residual,
     }
 }
@@ -105,6 +111,11 @@ fn table(system: &System, orbit: &Orbit) -> String {
     };
     let multipliers: Vec<_> = orbit.multipliers.iter().map(number).collect();
     let _ = writeln!(text, "multipliers {}", multipliers.join(", "));
+    let drift = drift::by_name(system, &orbit.drift_per_return);
+    if !drift.is_empty() {
+        let drift: Vec<_> = drift.iter().map(|(name, it)| format!("{name} {it:.6}")).collect();
+        let _ = writeln!(text, "drift per return {}", drift.join(", "));
+    }
     let _ = writeln!(text, "events {}", orbit.event_names(system).join(", "));
     for point in &orbit.points {
         let states = system.states.iter().zip(&point.state);

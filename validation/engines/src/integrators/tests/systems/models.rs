@@ -12,6 +12,7 @@ fn system(name: &str, states: &[&str], [omega, phi]: [f64; 2], modes: Vec<Mode>)
         time_scale: if omega > 0.0 { 1.0 / omega } else { 1.0 },
         omega,
         phi,
+        drift: Vec::new(),
         modes,
     }
 }
