@@ -48,6 +48,9 @@ fn by_rows(system: &System) -> SystemBuilder {
     if let Some(forcing) = &system.forcing {
         builder = builder.forcing(forcing.omega.clone(), forcing.phi.clone());
     }
+    if let Some(drift) = &system.drift {
+        builder = builder.drift(drift.iter().map(|n| system.states[*n].as_str()));
+    }
     for mode in &system.modes {
         let rates = states().zip(&mode.matrix);
         let own = ModeBuilder::new(&*mode.name);
