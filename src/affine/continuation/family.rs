@@ -32,8 +32,8 @@ const KEPT: usize = 8;
 const STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
 
 impl<'a> ReturnFamily<'a> {
-    /// The family of a section; `system` is the system at a value, and `longest` the longest time of
-    /// a return that is waited for, if not that of [`SectionMap::new`].
+    /// The family of a section; `system` is the system at a value, and `longest` the longest time
+    /// of a return that is waited for, if not that of [`SectionMap::new`].
     pub fn new(
         section: Section,
         longest: Option<f64>,

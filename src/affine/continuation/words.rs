@@ -77,8 +77,8 @@ impl Curve<'_> {
         shots.images.iter().flat_map(|it| it.way.events.iter().copied()).collect()
     }
 
-    /// The crossings of the first orbit beyond, and of one sixteen times as far from the corner. The
-    /// distance is that at which a parabola would be whose top is the corner, or twice it.
+    /// The crossings of the first orbit beyond, and of one sixteen times as far from the corner.
+    /// The distance is that at which a parabola would be whose top is the corner, or twice it.
     fn orbits_beyond(&self, before: &CurvePoint, beyond: &CurvePoint) -> Option<Sides> {
         let apart = ((beyond.value - before.value) / beyond.tangent.rate).abs();
         let far = self.corrected(beyond, 15.0 * apart)?;

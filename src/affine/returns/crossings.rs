@@ -1,4 +1,5 @@
-//! The events of a motion on its way to the next return, with the rates at which guards are crossed.
+//! The events of a motion on its way to the next return, with the rates at which guards are
+//! crossed.
 
 use super::map::SectionMap;
 use super::section::Guard;

@@ -1,5 +1,5 @@
-//! The first wrong event of a row: which event it is, and how far it is from what it may be confused
-//! with.
+//! The first wrong event of a row: which event it is, and how far it is from what it may be
+//! confused with.
 
 use crate::engine::{Outcome, Task};
 use crate::score::local::{FirstWrong, WrongKind};
