@@ -7,8 +7,8 @@
 //! other side. [`words`] says what has happened there.
 //!
 //! [`family`] has the maps at the parameter's values, [`point`] the points of the curve, [`curve`]
-//! its tangent and the corrector, [`locate`] and [`corner`] the bifurcations, [`halving`] the end of
-//! a doubled branch, and [`follow`] the steps. Read them in this order.
+//! its tangent and the corrector, [`locate`] and [`corner`] the bifurcations, [`halving`] the end
+//! of a doubled branch, and [`follow`] the steps. Read them in this order.
 
 mod corner;
 mod curve;

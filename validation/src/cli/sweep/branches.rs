@@ -14,6 +14,7 @@ pub(super) struct BranchWork {
 impl BranchWork {
     pub(super) fn new(arguments: Arguments) -> Result<Self> {
         arguments.check_of_oscillator()?;
+        arguments.check_varied()?;
         Ok(Self { arguments })
     }
 }

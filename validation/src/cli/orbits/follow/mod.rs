@@ -65,6 +65,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     }
     arguments.check_of_oscillator()?;
     family(arguments, &arguments.model)?;
+    arguments.check_varied()?;
     let bar = long_work::share_bar();
     let (followed, why) =
         followed(arguments, &arguments.model, Reporting::Told(&|share| bar.show_share(share)))?;
@@ -83,6 +84,11 @@ impl Arguments {
         if let Some(transient) = self.transient {
             bail!("{}", without_system("--transient", &transient));
         }
+        Ok(())
+    }
+
+    /// Refuses the own flag of the parameter that varies.
+    pub(crate) fn check_varied(&self) -> Result<()> {
         self.model.check_varied(self.parameter_of_oscillator()?)
     }
 
