@@ -99,8 +99,8 @@ impl AttractorSearch<'_> {
     fn means(&self, from: &Place<f64>, returns: u64) -> Option<RunMeans> {
         let map = self.space.map;
         let found = map.exponents(from, SETTLING, returns, &mut |_| ()).ok()?;
-        let drifts = (0..map.system().states.len()).filter(|it| map.is_drift(*it)).count();
-        let neutral = drifts + usize::from(map.system().forcing.is_none());
+        let is_autonomous = map.system().forcing.is_none();
+        let neutral = found.drift_per_return.len() + usize::from(is_autonomous);
         Some(RunMeans {
             largest_exponent: largest_of(&found, neutral),
             drift: found.drift_per_return,

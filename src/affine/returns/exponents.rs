@@ -84,10 +84,12 @@ impl SectionMap<'_, f64> {
             while passed < settling + batches.end(k) {
                 let event = walk.next(&mut |from, to| frame.pass(from, to))?;
                 let time = event.time.value();
-                drift = self.drift_of(&event.state);
+                passed += 1;
+                if passed == settling + batches.end(k) {
+                    drift = self.drift_of(&event.state);
+                }
                 frame.settle(event);
                 frame.time = time;
-                passed += 1;
                 seen(passed);
             }
             marks.push(frame.mark(place, &drift));
