@@ -47,13 +47,13 @@ impl Reference {
             }
             let rates = Linear::rates(system, start, tangent);
             let flows = flows(&path, &linear, &rates);
-            by.push(ByName { rates, flows, units: Vec::new() });
+            let states = system.states.len();
+            let along =
+                Along { linear: &linear, rates: &rates, path: &path, flows: &flows, states };
+            let units = units(&along, system.time_scale);
+            by.push(ByName { rates, flows, units });
         }
-        let mut own = Self { case, linear, path, by };
-        for name in 0..own.by.len() {
-            own.by[name].units = units(&own.along(name), own.case.system.time_scale);
-        }
-        Ok(own)
+        Ok(Self { case, linear, path, by })
     }
 
     pub(super) fn along(&self, name: usize) -> Along<'_> {

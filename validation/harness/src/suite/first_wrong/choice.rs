@@ -1,7 +1,8 @@
 //! The choice of rows whose first wrong event is shown.
 
+use super::FirstWrongEvent;
 use super::mismatch::EventMismatch;
-use super::{FirstWrongEvent, Observed};
+use crate::engine::Engine;
 use crate::integrators;
 use crate::score::Verdict;
 use crate::suite::{PreparedCase, Scored, Status};
@@ -17,7 +18,8 @@ struct RowChoice<'a> {
     row: &'a Scored,
     prepared: &'a PreparedCase,
     mismatch: EventMismatch,
-    observed: Observed<'a>,
+    /// The engine, where it is run again and watched.
+    again: Option<&'static dyn Engine>,
 }
 
 /// The first wrong events of rows with a missed or a spurious event, or with a displaced one and
@@ -29,8 +31,8 @@ pub fn first_wrong_events<'a>(
     rows: &'a [Scored],
 ) -> Vec<FirstWrongEvent<'a>> {
     let candidates: Vec<_> = rows.par_iter().filter_map(|row| candidate(cases, row)).collect();
-    let observe = |RowChoice { row, prepared, mismatch, observed }: RowChoice<'a>| {
-        FirstWrongEvent::observed((prepared, row), mismatch, observed)
+    let observe = |RowChoice { row, prepared, mismatch, again }: RowChoice<'a>| {
+        FirstWrongEvent::observed((prepared, row), mismatch, again)
     };
     chosen(candidates).into_par_iter().with_max_len(1).filter_map(observe).collect()
 }
@@ -63,9 +65,5 @@ fn candidate<'a>(cases: &'a [PreparedCase], row: &'a Scored) -> Option<RowChoice
     let mismatch = EventMismatch::first(prepared, measures, outcome, row)?;
     let affordable = outcome.work.rhs_evaluations <= MOST_WORK;
     let own = integrators::all().iter().find(|it| it.declaration().name == row.engine);
-    let observed = match own.filter(|_| affordable) {
-        Some(engine) => Observed::Again(*engine),
-        None => Observed::Records(outcome),
-    };
-    Some(RowChoice { row, prepared, mismatch, observed })
+    Some(RowChoice { row, prepared, mismatch, again: own.filter(|_| affordable).copied() })
 }

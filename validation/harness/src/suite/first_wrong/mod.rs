@@ -48,21 +48,13 @@ pub struct EngineMotion {
     pub looks: Vec<GuardSample>,
 }
 
-/// The way in which an engine's run is observed.
-#[derive(Clone, Copy)]
-enum Observed<'a> {
-    /// The engine is run again and watched.
-    Again(&'static dyn Engine),
-    /// The records of the answer are continued exactly.
-    Records(&'a Outcome),
-}
-
 impl<'a> FirstWrongEvent<'a> {
-    /// Observes truth and engine around an event; none where either cannot be had.
+    /// Observes truth and engine around an event: the engine's run `again`, or else by the exact
+    /// continuation of its records; none where either cannot be had.
     fn observed(
         (prepared, row): (&'a PreparedCase, &'a Scored),
         mismatch: EventMismatch,
-        observed: Observed<'_>,
+        again: Option<&dyn Engine>,
     ) -> Option<Self> {
         let PreparedCase { task, case, .. } = prepared;
         let Status::Ok(_, outcome) = &row.status else { return None };
@@ -71,12 +63,10 @@ impl<'a> FirstWrongEvent<'a> {
         let scales = Scales::around(around, mean_step, prepared.period(), task.span);
         let instants = scales.all_instants();
         let truth = Truth::states(case, &instants)?;
-        let engine = match observed {
-            Observed::Again(engine) => {
-                watched_again((prepared, row), engine, scales.window(), &instants)?
-            }
-            Observed::Records(outcome) => EngineMotion {
-                outcome: outcome.clone(),
+        let engine = match again {
+            Some(engine) => watched_again((prepared, row), engine, scales.window(), &instants)?,
+            None => EngineMotion {
+                outcome: outcome.as_ref().clone(),
                 states: prepared.local.continued(task, outcome, &instants),
                 steps: Vec::new(),
                 looks: Vec::new(),
