@@ -20,8 +20,8 @@
 pub use crate::affine::{
     Direction, Exponents, Expression, Forcing, Guard, LARGEST_DIMENSION, LeftOut, Mode,
     ModeBuilder, Name, NoOrbit, NoReturn, Orbit, Passage, Place, Plane, RationalError, Return,
-    ReturnAttractor, ReturnBasins, ReturnBifurcation, ReturnBifurcationKind, ReturnBranch,
-    ReturnDiagram, ReturnDiagramStep, ReturnFamily, Returns, Row, Section, SectionMap, StartPoint,
-    Successor, SystemBuilder, SystemFile, TROUBLE, Tangent, UnresolvedReturn, Until, UntilBuilder,
-    ValueError, Watch,
+    ReturnAttractor, ReturnBasins, ReturnBifurcation, ReturnBranch, ReturnDiagram,
+    ReturnDiagramStep, ReturnFamily, Returns, Row, Section, SectionMap, StartPoint, Successor,
+    SystemBuilder, SystemFile, TROUBLE, Tangent, UnresolvedReturn, Until, UntilBuilder, ValueError,
+    Watch,
 };

@@ -4,9 +4,7 @@
 use percuss::affine::{NoOrbit, Orbit, Place, SectionMap, Solver, System, SystemError};
 use percuss::dynamics::continuation::{BifurcationKind, Branch, BranchEnding, Family};
 use percuss::dynamics::orbit::scan;
-use percuss::system::{
-    ReturnBifurcation, ReturnBifurcationKind, ReturnBranch, ReturnFamily, Section, SystemFile,
-};
+use percuss::system::{ReturnBifurcation, ReturnBranch, ReturnFamily, Section, SystemFile};
 use percuss::{Instant, Parameter, Parameters};
 
 macro_rules! system {
@@ -91,14 +89,14 @@ impl Varied {
     }
 }
 
-fn only(branch: &ReturnBranch, kind: ReturnBifurcationKind) -> &ReturnBifurcation {
+fn only(branch: &ReturnBranch, kind: BifurcationKind) -> &ReturnBifurcation {
     let mut found = branch.bifurcations.iter().filter(|it| it.kind == kind);
     let first = found.next().unwrap_or_else(|| panic!("{:?}", told(branch)));
     assert!(found.next().is_none(), "{:?}", told(branch));
     first
 }
 
-fn told(branch: &ReturnBranch) -> Vec<(ReturnBifurcationKind, f64, f64, bool)> {
+fn told(branch: &ReturnBranch) -> Vec<(BifurcationKind, f64, f64, bool)> {
     branch.bifurcations.iter().map(|it| (it.kind, it.value, it.error, it.turns)).collect()
 }
 
@@ -120,7 +118,7 @@ fn a_spring_is_touched_where_the_free_motion_is_as_large_as_the_gap() {
     let varied = Varied::new(BILINEAR, Section::strobe(0.0), "gap", &[]);
     let branch = varied.follow(&varied.settled(2.0, 300), 1, [2.0, 1.56]);
     assert!(branch.is_complete(), "{}", branch.ending);
-    let graze = only(&branch, ReturnBifurcationKind::Grazing);
+    let graze = only(&branch, BifurcationKind::Grazing);
     assert_value(graze, 0.6 * amplitude(0.8, 0.05));
     assert_eq!(graze.event.unwrap().name(&varied.at(2.0).unwrap()), "touch@free");
     assert!(!graze.turns);
@@ -128,7 +126,7 @@ fn a_spring_is_touched_where_the_free_motion_is_as_large_as_the_gap() {
     assert_eq!((first.events.len(), last.events.len()), (0, 2));
     // Back again the same graze is met.
     let back = varied.follow(&varied.settled(1.56, 300), 1, [1.56, 2.0]);
-    assert_value(only(&back, ReturnBifurcationKind::Grazing), 0.6 * amplitude(0.8, 0.05));
+    assert_value(only(&back, BifurcationKind::Grazing), 0.6 * amplitude(0.8, 0.05));
 }
 
 /// The touch passes the strobe at a gap of 1.5506, where the orbit's point changes its mode.
@@ -147,7 +145,7 @@ fn a_rigid_stop_is_touched_where_the_free_motion_is_as_large_as_the_gap() {
     let varied = Varied::new(system!("rigid-impact-oscillator"), Section::strobe(0.0), "A", &[]);
     let branch = varied.follow(&varied.settled(0.5, 300), 1, [0.5, 1.2]);
     let graze = &branch.bifurcations[0];
-    assert_eq!(graze.kind, ReturnBifurcationKind::Grazing);
+    assert_eq!(graze.kind, BifurcationKind::Grazing);
     assert_value(graze, 0.125 / amplitude(2.75, 0.05));
     assert_eq!(graze.event.unwrap().name(&varied.at(0.5).unwrap()), "impact@free");
 }
@@ -185,7 +183,7 @@ fn a_buck_converter_doubles_where_a_multiplier_is_minus_one() {
     let varied = Varied::new(system!("buck-converter"), Section::event("clock"), "Vin", &[]);
     let branch = varied.follow(&varied.settled(22.0, 200), 1, [22.0, 26.0]);
     assert!(branch.is_complete(), "{}", branch.ending);
-    let flip = only(&branch, ReturnBifurcationKind::Flip);
+    let flip = only(&branch, BifurcationKind::Flip);
     let value = root(&varied, flip, 0.01, |it| it.multipliers[0][0] + 1.0);
     assert!((flip.value - value).abs() <= 1e-10 * value, "{} {value}", flip.value);
     // Fossas and Olivar have it at 24.516.

@@ -5,24 +5,15 @@ use super::curve::Curve;
 use super::family::OrbitShots;
 use super::point::{CurvePoint, are_on_one_piece};
 use crate::dynamics::continuation::corner::last_along;
+use crate::dynamics::continuation::steps::{Corner, OrbitPoint};
 use core::cell::Cell;
-
-/// A corner: where the curve leaves a smooth piece, and where it goes on if it does.
-pub(super) struct Corner {
-    /// The last orbit of the piece that is left.
-    pub before: CurvePoint,
-    /// The first orbit of the piece beyond.
-    pub beyond: Option<CurvePoint>,
-    /// How far the parameter's value at the corner may be off.
-    pub error: f64,
-}
 
 /// Distance at which a corner counts as reached: some roundings of the points.
 const REACHED: f64 = 1e-14;
 /// Places beyond a corner lie within this many times the square root of the step: a touch moves an
 /// orbit by a root.
 const NEAR: f64 = 10.0;
-/// How far beyond the corner its other side is looked at and entered, nearest first.
+/// Distances beyond the corner at which its other side is looked at and entered, nearest first.
 const BEYOND: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
 /// Relative error of a corner with which no nearer place beyond is looked for; none is said to be
 /// smaller, because a touch within the solver's rounding of its guard counts as none.
@@ -38,14 +29,24 @@ const ASIDE: [f64; 2] = [8.0, -8.0];
 /// Times that a direction beyond a corner is taken again from a place nearer to it.
 const REFINED: usize = 4;
 
+/// A piece of a curve followed as far as it goes.
+struct Approach {
+    /// The last orbit of the piece.
+    last: CurvePoint,
+    /// The distance from it within which the piece ends.
+    rest: f64,
+    /// Whether no orbit was found further on, rather than one of another piece.
+    is_lost: bool,
+}
+
 impl Curve<'_> {
     /// The corner between a point and a distance along its tangent at which the piece is another
     /// one or no orbit is found.
     ///
-    /// The corner's error is what the halving leaves, and how far off the corner is found from the
-    /// other side if it is, but at least what is looked for.
-    pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner {
-        let (before, rest) = self.approached(base, distance);
+    /// The corner's error is what the halving leaves, and the distance at which the corner is found
+    /// from the other side if it is, but at least what is looked for.
+    pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
+        let Approach { last: before, rest, .. } = self.approached(base, distance);
         let least = SHARP * before.value.abs() + self.uncertainty(&before);
         let own = rest * before.tangent.rate.abs();
         let mut best = Corner { before, beyond: None, error: f64::INFINITY };
@@ -69,24 +70,23 @@ impl Curve<'_> {
         best
     }
 
-    /// How far off the corner is found from beyond; none where no orbit is found on the way there,
-    /// as where a derivative grows without bound.
+    /// The distance in the parameter between the corner and where it is found from beyond; none
+    /// where no orbit is found on the way there, as where a derivative grows without bound.
     fn seen_from(&self, beyond: &CurvePoint, step: f64, before: &CurvePoint) -> Option<f64> {
+        let Approach { last, rest, is_lost } = self.approached(&beyond.turned(), 2.0 * step);
+        let apart = (last.value - before.value).abs() + rest * last.tangent.rate.abs();
+        (!is_lost).then_some(apart)
+    }
+
+    /// Follows the curve from a point as far as its piece goes.
+    fn approached(&self, base: &CurvePoint, distance: f64) -> Approach {
         let is_lost = Cell::new(false);
-        let (after, rest) = last_along(&beyond.turned(), 2.0 * step, REACHED, &|from, step| {
+        let (last, rest) = last_along(base, distance, REACHED, &|from, step| {
             let there = self.corrected(from, step);
             is_lost.set(there.is_none());
             there.filter(|it| it.is_on_piece_of(from))
         });
-        let apart = (after.value - before.value).abs() + rest * after.tangent.rate.abs();
-        (!is_lost.get()).then_some(apart)
-    }
-
-    /// The last orbit of a point's piece along the curve, and how much further the corner may be.
-    fn approached(&self, base: &CurvePoint, distance: f64) -> (CurvePoint, f64) {
-        last_along(base, distance, REACHED, &|before, step| {
-            self.corrected(before, step).filter(|it| it.is_on_piece_of(before))
-        })
+        Approach { last, rest, is_lost: is_lost.get() }
     }
 
     /// The curve a step beyond the corner at `before`. Its direction there is that of the other

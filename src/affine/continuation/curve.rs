@@ -211,7 +211,7 @@ impl<'a> Curve<'a> {
         (first, solution[MOST] * self.unit)
     }
 
-    /// How far along the tangent of `base` shots lie.
+    /// The distance along the tangent of `base` at which shots lie.
     fn along(&self, base: &CurvePoint, value: f64, shots: &OrbitShots) -> Option<f64> {
         let moved = self
             .family

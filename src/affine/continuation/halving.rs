@@ -3,18 +3,13 @@
 use super::super::returns::newton::solved;
 use super::super::returns::shooting::{Change, MOST, ReturnMap, Shots};
 use super::curve::Curve;
-use super::locate::Located;
 use super::point::{CurvePoint, Direction};
-use super::{ReturnBifurcation, ReturnBifurcationKind};
-
-/// Distances about the branch's end in which the half's flip is looked for.
-const AROUND: [f64; 8] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 
 impl Curve<'_> {
-    /// The flip of an orbit of half the period that the curve runs into between two points. It goes
-    /// on beyond: as the same orbits, half a period later, so that the difference of their halves
-    /// changes sign.
-    pub fn halving(&self, point: &CurvePoint, next: &CurvePoint) -> Option<ReturnBifurcation> {
+    /// An orbit of half the period midway between the halves of a point's, if the curve runs into
+    /// its flip before the next point. It goes on beyond: as the same orbits, half a period later,
+    /// so that the difference of their halves changes sign.
+    pub fn half(&self, point: &CurvePoint, next: &CurvePoint) -> Option<CurvePoint> {
         let (here, there) = (self.differences(point)?, self.differences(next)?);
         let direction = |points| Direction { points, rate: 0.0 };
         let [here_too, there] = [here.clone(), there].map(|it| direction(vec![it[0]]));
@@ -30,15 +25,7 @@ impl Curve<'_> {
             solved(map, Shots::of(map, points.collect())?).ok()
         })?;
         let along = Direction { points: vec![[0.0; MOST]; half], rate: self.unit };
-        let single = self.point(point.value, middle, &along)?;
-        let located = AROUND.iter().find_map(|distance| {
-            let start = self.corrected(&single, -distance)?;
-            self.located(&start, 2.0 * distance, &CurvePoint::flip)
-        })?;
-        let error = self.error(&located);
-        let Located { point: CurvePoint { value, orbit, .. }, .. } = located;
-        let kind = ReturnBifurcationKind::Flip;
-        Some(ReturnBifurcation { kind, value, error, event: None, turns: true, orbit })
+        self.point(point.value, middle, &along)
     }
 
     /// The changes from points to those half a period later; none of an odd number of points.

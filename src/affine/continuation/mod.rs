@@ -7,26 +7,24 @@
 //! other side. [`words`] says what has happened there.
 //!
 //! [`family`] has the maps at the parameter's values, [`point`] the points of the curve, [`curve`]
-//! its tangent and the corrector, [`locate`] and [`corner`] the bifurcations, [`halving`] the end
-//! of a doubled branch, and [`follow`] the steps. Read them in this order.
+//! its tangent and the corrector, [`corner`] the ends of its pieces, [`halving`] those of a doubled
+//! branch, and [`mod@follow`] what step control asks for. Read them in this order.
 
 mod corner;
 mod curve;
 mod family;
 mod follow;
 mod halving;
-mod locate;
 mod point;
 mod words;
 
 use super::returns::orbit::{NoOrbit, Orbit};
 use super::returns::section::Guard;
 use super::run::place::Place;
-use crate::dynamics::continuation::BranchEnding;
+use crate::dynamics::continuation::steps::{FollowedCurve, follow};
+use crate::dynamics::continuation::{BifurcationKind, BranchEnding};
 use curve::Curve;
 pub use family::ReturnFamily;
-use follow::Follower;
-use std::fmt;
 
 /// A branch of orbits of a return map.
 #[derive(Clone, Debug)]
@@ -39,56 +37,14 @@ pub struct ReturnBranch {
     pub ending: BranchEnding,
 }
 
-/// The kinds of bifurcations of an orbit of a return map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum ReturnBifurcationKind {
-    /// A multiplier passes one: the branch turns in the parameter.
-    Fold,
-    /// A multiplier passes minus one: an orbit of twice the period branches off.
-    Flip,
-    /// A complex pair passes the unit circle.
-    NeimarkSacker,
-    /// A guard is touched: it is crossed on one side, with a rate that vanishes.
-    Grazing,
-    /// Two guards are crossed at once, or one takes the place of another.
-    Corner,
-    /// The orbit has an event more beyond, and no guard is touched.
-    EventGained,
-    /// The orbit has an event less beyond, and no guard is touched.
-    EventLost,
-}
-
-impl ReturnBifurcationKind {
-    /// The name used in files.
-    #[must_use]
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::Fold => "fold",
-            Self::Flip => "flip",
-            Self::NeimarkSacker => "neimark-sacker",
-            Self::Grazing => "grazing",
-            Self::Corner => "corner",
-            Self::EventGained => "event-gained",
-            Self::EventLost => "event-lost",
-        }
-    }
-}
-
-impl fmt::Display for ReturnBifurcationKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.as_str())
-    }
-}
-
 /// A special point of a branch.
 #[derive(Clone, Debug)]
 pub struct ReturnBifurcation {
     /// The kind of the bifurcation.
-    pub kind: ReturnBifurcationKind,
+    pub kind: BifurcationKind,
     /// The parameter's value.
     pub value: f64,
-    /// How far that may be off: what the search left, and rounding.
+    /// Bound on the error of the value: what the search left, and rounding.
     pub error: f64,
     /// The event that is touched, gained, lost, or at once with another.
     pub event: Option<Guard>,
@@ -116,7 +72,9 @@ impl ReturnBranch {
         let none = NoOrbit::NoDerivative(f64::NAN);
         let curve = Curve::new(family, [from, to]).ok_or(none.clone())?;
         let first = curve.first(from, places, (to - from).signum()).ok_or(none)?;
-        Ok(Follower::new(curve, [from, to], told).branch(first))
+        let FollowedCurve { points, bifurcations, ending } =
+            follow(&curve, [from, to], first, told);
+        Ok(Self { points, bifurcations, ending })
     }
 
     /// Whether the branch was followed to the value that was asked for.

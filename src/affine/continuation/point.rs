@@ -1,4 +1,4 @@
-//! Points of the curve of orbits, and what is watched along it.
+//! Points of the curve of orbits.
 
 use super::super::returns::map::Carried;
 use super::super::returns::orbit::Orbit;
@@ -36,45 +36,11 @@ pub(super) fn are_on_one_piece(one: &OrbitShots, other: &OrbitShots) -> bool {
 }
 
 impl CurvePoint {
-    /// Whether both lie on one smooth piece of the map.
-    pub fn is_on_piece_of(&self, other: &Self) -> bool {
-        are_on_one_piece(&self.shots, &other.shots)
-    }
-
     /// The point with the curve's direction turned round.
     pub fn turned(&self) -> Self {
         let mut turned = self.clone();
         turned.tangent = self.tangent.turned();
         turned
-    }
-
-    /// The product of all 1 + mu: zero at a flip.
-    pub fn flip(&self) -> f64 {
-        // The imaginary part of a pair's product vanishes.
-        let [re, _] = self.orbit.multipliers.iter().fold([1.0, 0.0], |[re, im], [a, b]| {
-            [re * (1.0 + a) - im * b, re * b + im * (1.0 + a)]
-        });
-        re
-    }
-
-    /// The product of what the moduli of complex pairs are more than one, and their number: the
-    /// product is zero at a Neimark-Sacker point.
-    pub fn torus(&self) -> (f64, usize) {
-        let pairs = self.orbit.multipliers.iter().filter(|it| it[1] > 0.0);
-        pairs.fold((1.0, 0), |(all, count), [re, im]| {
-            (all * (libm::hypot(*re, *im) - 1.0), count + 1)
-        })
-    }
-
-    /// How much the multipliers' sums of powers differ, relative to their size.
-    pub fn change_of_multipliers(&self, other: &Self) -> f64 {
-        let sums = |point: &Self| {
-            let multipliers = &point.orbit.multipliers;
-            let first: f64 = multipliers.iter().map(|it| it[0]).sum();
-            [first, multipliers.iter().map(|[re, im]| re * re - im * im).sum()]
-        };
-        let changes = sums(self).into_iter().zip(sums(other));
-        changes.map(|(a, b)| (a - b).abs() / (1.0 + a.abs().min(b.abs()))).fold(0.0, f64::max)
     }
 }
 

@@ -7,14 +7,14 @@
 
 use super::super::returns::crossings::Crossing;
 use super::super::returns::section::Guard;
-use super::ReturnBifurcationKind;
 use super::curve::Curve;
 use super::family::OrbitShots;
 use super::point::CurvePoint;
+use crate::dynamics::continuation::BifurcationKind;
 
 /// What a corner is, and the event that it is about.
 pub(super) struct Meaning {
-    pub kind: ReturnBifurcationKind,
+    pub kind: BifurcationKind,
     pub event: Guard,
 }
 
@@ -47,11 +47,8 @@ impl Curve<'_> {
         let is_beyond = lost.is_empty();
         let changed = if is_beyond { &gained } else { &lost };
         let first = *changed.first()?;
-        let plain = if is_beyond {
-            ReturnBifurcationKind::EventGained
-        } else {
-            ReturnBifurcationKind::EventLost
-        };
+        let plain =
+            if is_beyond { BifurcationKind::EventGained } else { BifurcationKind::EventLost };
         if changed.iter().chain(&gained).all(|it| it.is_watched) {
             return Some(Meaning { kind: plain, event: first });
         }
@@ -67,8 +64,8 @@ impl Curve<'_> {
         let touched = touched(&near, &far, changed);
         let is_corner = !gained.is_empty() && !lost.is_empty() || are_at_once(&near, &far, changed);
         Some(match touched {
-            Some(event) => Meaning { kind: ReturnBifurcationKind::Grazing, event },
-            None if is_corner => Meaning { kind: ReturnBifurcationKind::Corner, event: first },
+            Some(event) => Meaning { kind: BifurcationKind::Grazing, event },
+            None if is_corner => Meaning { kind: BifurcationKind::Corner, event: first },
             None => Meaning { kind: plain, event: first },
         })
     }

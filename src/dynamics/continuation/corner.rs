@@ -1,18 +1,9 @@
 //! From one smooth piece of the map to the next.
 
 use super::point::{ContinuationPoint, FamilyCurve, shifted};
+use super::steps::{Corner, OrbitPoint};
 use crate::dynamics::orbit::ShootingIterate;
 use crate::dynamics::strobe::StrobePoint;
-
-/// A corner: where the curve leaves a smooth piece, and where it goes on.
-pub(super) struct Corner {
-    /// The last orbit of the piece that is left.
-    pub(super) before: ContinuationPoint,
-    /// The first orbit of the piece beyond.
-    pub(super) beyond: ContinuationPoint,
-    /// How far the parameter's value at the corner may be off.
-    pub(super) error: f64,
-}
 
 /// Halvings of the distance to the corner.
 const HALVINGS: usize = 300;
@@ -30,14 +21,18 @@ impl FamilyCurve {
     ///
     /// The corner's error is what the halving leaves, rounding, and how far off the corner is found
     /// from the other side: a contact that is too short to be told from a touch counts as none.
-    pub(super) fn corner(&self, base: &ContinuationPoint, distance: f64) -> Option<Corner> {
+    pub(super) fn corner(
+        &self,
+        base: &ContinuationPoint,
+        distance: f64,
+    ) -> Option<Corner<ContinuationPoint>> {
         let (before, rest) = self.approached(base, distance);
-        let mut best: Option<Corner> = None;
+        let mut best: Option<Corner<_>> = None;
         for step in BEYOND {
             let Some(beyond) = self.beyond(&before, step) else { continue };
             let error = rest * before.tangent.rate.abs() + self.seen_from(&beyond, step, &before);
             if best.as_ref().is_none_or(|it| error < it.error) {
-                best = Some(Corner { before: before.clone(), beyond, error });
+                best = Some(Corner { before: before.clone(), beyond: Some(beyond), error });
             }
             if error <= SHARP * before.value.abs() {
                 break;

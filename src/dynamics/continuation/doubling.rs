@@ -1,6 +1,5 @@
 //! The orbit of twice the period that branches off at a flip.
 
-use super::follow::BranchFollower;
 use super::point::{BranchTangent, ContinuationPoint, FamilyCurve};
 use super::{Bifurcation, Branch, Family};
 use crate::dynamics::linear::{IDENTITY, adjugate, norm};
@@ -46,7 +45,7 @@ impl Doubling {
         let curve = FamilyCurve::new(family, from, to);
         let doubled = curve.doubled(flip)?;
         let criticality = curve.criticality(flip, &doubled)?;
-        let branch = BranchFollower::new(curve, from, to, told).branch(doubled);
+        let branch = Branch::along(&curve, [from, to], doubled, told);
         Some(Self { criticality, branch })
     }
 }

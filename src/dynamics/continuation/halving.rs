@@ -1,24 +1,19 @@
 //! Where a branch ends because its orbits close after half their period.
 
-use super::locate::Located;
 use super::point::{BranchTangent, ContinuationPoint, FamilyCurve};
-use super::{Bifurcation, BifurcationKind};
 use crate::dynamics::linear::dot;
 use crate::dynamics::orbit::{ShootingIterate, solved};
 use crate::dynamics::strobe::StrobePoint;
 
-/// Distances about the branch's end in which the half's flip is looked for.
-const AROUND: [f64; 8] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
-
 impl FamilyCurve {
-    /// The flip of an orbit of half the period that the curve runs into between two points. It goes
-    /// on beyond: as the same orbits, half a period later, so that the difference of their halves
-    /// changes sign.
-    pub(super) fn halving(
+    /// An orbit of half the period midway between the halves of a point's, if the curve runs into
+    /// its flip before the next point. It goes on beyond: as the same orbits, half a period later,
+    /// so that the difference of their halves changes sign.
+    pub(super) fn half(
         &self,
         point: &ContinuationPoint,
         next: &ContinuationPoint,
-    ) -> Option<Bifurcation> {
+    ) -> Option<ContinuationPoint> {
         let (here, there) = (differences(&point.iterate)?, differences(&next.iterate)?);
         let along: f64 = here.iter().zip(&there).map(|(a, b)| dot(a, b)).sum();
         if along >= 0.0 {
@@ -34,21 +29,7 @@ impl FamilyCurve {
             .collect();
         let iterate = solved(&map, ShootingIterate::of(&map, &middle)?).ok()?;
         let along = BranchTangent { points: vec![[0.0; 3]; half], rate: self.unit };
-        let single = self.point(point.value, iterate, &along);
-        let located = AROUND.iter().find_map(|distance| {
-            let start = self.corrected(&single, -distance)?;
-            self.located(&start, 2.0 * distance, ContinuationPoint::flip)
-        })?;
-        let error = self.error(&located);
-        let Located { point: ContinuationPoint { value, orbit, .. }, .. } = located;
-        Some(Bifurcation {
-            kind: BifurcationKind::Flip,
-            value,
-            error,
-            turns: true,
-            orbit,
-            beyond: None,
-        })
+        Some(self.point(point.value, iterate, &along))
     }
 }
 

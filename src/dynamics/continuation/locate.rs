@@ -1,18 +1,13 @@
 //! A sign change of a test along a smooth piece of the curve, found and held against rounding.
 
-use super::point::{ContinuationPoint, FamilyCurve};
-
 /// The point of a curve at which a test function vanishes.
 pub(crate) struct LocatedPoint<P> {
     pub(crate) point: P,
     /// Distance from the point that was searched from.
     pub(crate) distance: f64,
-    /// How far along the curve the located point may be off.
+    /// Bound on the error of the located point along the curve.
     pub(crate) bracket: f64,
 }
-
-/// The orbit at which a test function vanishes.
-pub(super) type Located = LocatedPoint<ContinuationPoint>;
 
 /// Iterations of regula falsi (Illinois), of which about eight are used.
 const ITERATIONS: usize = 60;
@@ -21,23 +16,6 @@ const RESOLUTION: f64 = 1e-15;
 /// Distances at which the test is sampled about its zero, in units of the bracket searched: at
 /// these its curvature is below rounding.
 const SPREAD: f64 = 1e-6;
-
-impl FamilyCurve {
-    /// How far the parameter's value there may be off.
-    pub(super) fn error(&self, located: &Located) -> f64 {
-        located.bracket * located.point.tangent.rate.abs() + self.uncertainty(&located.point)
-    }
-
-    /// The zero of `test` on the curve between `base` and a distance along its tangent.
-    pub(super) fn located(
-        &self,
-        base: &ContinuationPoint,
-        distance: f64,
-        test: impl Fn(&ContinuationPoint) -> f64,
-    ) -> Option<Located> {
-        zero_along(base, distance, &|at| self.corrected(base, at), &test)
-    }
-}
 
 /// The zero of `test` on a curve between `base` and a distance along its tangent, at which
 /// `corrected` has the curve's points.

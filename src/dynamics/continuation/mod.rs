@@ -39,16 +39,17 @@ mod follow;
 mod halving;
 pub(crate) mod locate;
 mod point;
+pub(crate) mod steps;
 
 use super::orbit::{NoOrbit, Orbit, ShootingIterate};
 use super::strobe::StrobePoint;
 use crate::unknown_name::UnknownName;
 pub use doubling::{Criticality, Doubling};
 pub use family::Family;
-use follow::BranchFollower;
-use point::{BranchTangent, FamilyCurve};
+use point::{BranchTangent, ContinuationPoint, FamilyCurve};
 use std::fmt;
 use std::str::FromStr;
+use steps::FollowedCurve;
 
 /// A branch of orbits.
 #[derive(Clone, Debug)]
@@ -81,13 +82,27 @@ pub enum BifurcationKind {
     Flip,
     /// A complex pair passes the unit circle.
     NeimarkSacker,
-    /// A phase appears or vanishes.
+    /// A guard is touched; of the impact oscillator, a phase appears or vanishes.
     Grazing,
+    /// Two guards are crossed at once, or one takes the place of another.
+    Corner,
+    /// The orbit has an event more beyond, and no guard is touched.
+    EventGained,
+    /// The orbit has an event less beyond, and no guard is touched.
+    EventLost,
 }
 
 impl BifurcationKind {
     /// All kinds of bifurcations.
-    pub const ALL: [Self; 4] = [Self::Fold, Self::Flip, Self::NeimarkSacker, Self::Grazing];
+    pub const ALL: [Self; 7] = [
+        Self::Fold,
+        Self::Flip,
+        Self::NeimarkSacker,
+        Self::Grazing,
+        Self::Corner,
+        Self::EventGained,
+        Self::EventLost,
+    ];
 
     /// The name used in files.
     #[must_use]
@@ -97,6 +112,9 @@ impl BifurcationKind {
             Self::Flip => "flip",
             Self::NeimarkSacker => "neimark-sacker",
             Self::Grazing => "grazing",
+            Self::Corner => "corner",
+            Self::EventGained => "event-gained",
+            Self::EventLost => "event-lost",
         }
     }
 }
@@ -122,7 +140,7 @@ pub struct Bifurcation {
     pub kind: BifurcationKind,
     /// The parameter's value.
     pub value: f64,
-    /// How far that may be off: what the search left, and rounding.
+    /// Bound on the error of the value: what the search left, and rounding.
     pub error: f64,
     /// Whether the branch turns back in the parameter: at every fold, and at a corner that is one.
     pub turns: bool,
@@ -201,7 +219,19 @@ impl Branch {
             rate: curve.unit * (to - from).signum(),
         };
         let first = curve.point(from, iterate, &towards);
-        Ok(BranchFollower::new(curve, from, to, told).branch(first))
+        Ok(Self::along(&curve, [from, to], first, told))
+    }
+
+    /// The branch from a point of a curve on.
+    fn along(
+        curve: &FamilyCurve,
+        ends: [f64; 2],
+        first: ContinuationPoint,
+        told: &mut dyn FnMut(f64),
+    ) -> Self {
+        let FollowedCurve { points, bifurcations, ending } =
+            steps::follow(curve, ends, first, told);
+        Self { points, bifurcations, ending }
     }
 
     /// Whether the branch was followed to the value that was asked for.

@@ -1,7 +1,7 @@
 //! Points of the curve of orbits in (strobes, parameter), its tangent, and the corrector.
 
 use super::family::Family;
-use crate::dynamics::linear::{IDENTITY, dot, modulus, solve};
+use crate::dynamics::linear::{IDENTITY, dot, solve};
 use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size};
 use crate::dynamics::strobe::StrobePoint;
 use crate::phase::Phase;
@@ -111,7 +111,7 @@ impl FamilyCurve {
         tangent
     }
 
-    /// How far along the tangent of `base` an iterate lies.
+    /// The distance along the tangent of `base` at which an iterate lies.
     fn along(&self, base: &ContinuationPoint, iterate: &ShootingIterate, value: f64) -> f64 {
         let moved: StrobePoint =
             std::array::from_fn(|i| iterate.points[0][i] - base.iterate.points[0][i]);
@@ -194,42 +194,11 @@ impl BranchTangent {
 }
 
 impl ContinuationPoint {
-    /// The phases strobe by strobe: where they are the same, the map is smooth in between.
-    pub(super) fn is_on_piece_of(&self, other: &Self) -> bool {
-        self.iterate.is_on_piece_of(&other.iterate)
-    }
-
     /// The phases of the whole orbit from wherever they are least: a switch that passes a strobe
     /// does not change them.
     pub(super) fn phase_sequence(&self) -> Vec<Phase> {
         let phases = &self.orbit.phases;
         let turned = (0..phases.len()).map(|k| [&phases[k..], &phases[..k]].concat());
         turned.min().unwrap_or_default()
-    }
-
-    /// (1 + mu1) (1 + mu2) (1 + mu3): zero at a flip.
-    pub(super) fn flip(&self) -> f64 {
-        // The imaginary part of a pair's product vanishes.
-        let [re, _] = self.orbit.multipliers.iter().fold([1.0, 0.0], |[re, im], [a, b]| {
-            [re * (1.0 + a) - im * b, re * b + im * (1.0 + a)]
-        });
-        re
-    }
-
-    /// The modulus of a complex pair less one: zero at a Neimark-Sacker point.
-    pub(super) fn torus(&self) -> Option<f64> {
-        let pair = self.orbit.multipliers.iter().find(|it| it[1] != 0.0);
-        pair.map(|it| modulus(*it) - 1.0)
-    }
-
-    /// How much sum and pairwise products of the multipliers differ, relative to their size.
-    pub(super) fn change_of_multipliers(&self, other: &Self) -> f64 {
-        let invariants = |point: &Self| {
-            let [a, b, c] = point.orbit.multipliers;
-            let pair = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] - a[1] * b[1];
-            [a[0] + b[0] + c[0], pair(a, b) + pair(b, c) + pair(c, a)]
-        };
-        let changes = invariants(self).into_iter().zip(invariants(other));
-        changes.map(|(a, b)| (a - b).abs() / (1.0 + a.abs().min(b.abs()))).fold(0.0, f64::max)
     }
 }

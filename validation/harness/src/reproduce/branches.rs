@@ -109,8 +109,11 @@ fn marks(branch: &Branch) -> Vec<Layer> {
     let colour = |kind: BifurcationKind| match kind {
         BifurcationKind::Fold => Colour(0, 0, 0),
         BifurcationKind::Flip => Colour(200, 0, 30),
-        BifurcationKind::Grazing => Colour(130, 130, 130),
         BifurcationKind::NeimarkSacker => Colour(0, 158, 115),
+        BifurcationKind::Grazing
+        | BifurcationKind::Corner
+        | BifurcationKind::EventGained
+        | BifurcationKind::EventLost => Colour(130, 130, 130),
     };
     let mark = |it: &Bifurcation| Layer::Dots {
         points: it.orbit.points.iter().map(|point| [it.value, point[0]]).collect(),
