@@ -111,7 +111,8 @@ fn names_are_read_back() {
     }
     assert_eq!(attractor::AttractorKind::QuasiPeriodic.as_str(), "quasi-periodic");
     let unknown = "cusp".parse::<continuation::BifurcationKind>().unwrap_err().to_string();
-    let accepted = "accepted are fold, flip, neimark-sacker, grazing";
+    let accepted =
+        "accepted are fold, flip, neimark-sacker, grazing, corner, event-gained, event-lost";
     assert_eq!(unknown, format!("\"cusp\" is no kind of bifurcation: {accepted}"));
 }
 
