@@ -38,6 +38,9 @@
 //! # Ok::<(), percuss::SystemError>(())
 //! ```
 //!
+//! What a system's file may hold, what a score of an integrator means, and the oscillator's own
+//! dynamics stand in [the book](https://percuss.github.io/percuss/).
+//!
 //! # Digits that are proved
 //!
 //! The same run in [`Proved`] numbers: each has a bound of its error, and prints the digits that

@@ -128,7 +128,6 @@ fn the_expected_failures_are_those_of_the_full_suite() {
     assert!(rows.iter().any(|row| row[2].as_str() == Some("restart_error")));
 }
 
-/// The sources of all packages, those outside the workspace too.
 /// How a comment begins in sources of this kind.
 fn comment_marks(extension: &str) -> &'static [&'static str] {
     match extension {
@@ -140,7 +139,7 @@ fn comment_marks(extension: &str) -> &'static [&'static str] {
     }
 }
 
-/// Sources with how their comments begin.
+/// Sources of all packages, those outside the workspace too, with how their comments begin.
 fn sources(folder: &Path, found: &mut Vec<(PathBuf, &'static [&'static str])>) {
     let entries = std::fs::read_dir(folder).expect("the folder is there");
     for path in entries.map(|entry| entry.expect("the entry is readable").path()) {
@@ -195,53 +194,4 @@ fn every_file_of_tests_is_in_its_program() {
             assert!(own || part, "{package} tests/{name}: main.rs does not name it");
         }
     }
-}
-
-/// The relative links of a page: a path from the page's folder, and the anchor in it.
-fn links(page: &str) -> Vec<(String, String)> {
-    // Of what stands between fences, every second piece is code.
-    let prose: String = page.split("```").step_by(2).collect();
-    let ends = prose.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
-    let own = ends.filter(|(link, _)| !link.contains("://"));
-    own.map(|(link, _)| link.split_once('#').unwrap_or((link, "")))
-        .map(|(path, anchor)| (path.to_owned(), anchor.to_owned()))
-        .collect()
-}
-
-/// The anchors of a page's headings, as the places that show pages make them.
-fn anchors(page: &str) -> Vec<String> {
-    let headings = page.lines().filter(|line| line.starts_with('#'));
-    let word = |c: &char| c.is_alphanumeric() || " -_".contains(*c);
-    let anchor = |line: &str| {
-        let text = line.trim_start_matches('#').trim().to_lowercase();
-        text.chars().filter(word).map(|c| if c == ' ' { '-' } else { c }).collect()
-    };
-    headings.map(anchor).collect()
-}
-
-/// The pages of the repository's root, of `docs/` and of its archive.
-fn pages() -> Vec<PathBuf> {
-    let folders = ["", "docs", "docs/archive"].map(|folder| root().join(folder));
-    let files = folders.iter().flat_map(|it| std::fs::read_dir(it).expect("a folder"));
-    let paths = files.map(|file| file.expect("a file").path());
-    paths.filter(|path| path.extension().is_some_and(|it| it == "md")).collect()
-}
-
-#[test]
-fn links_lead_somewhere() {
-    let pages = pages();
-    assert!(pages.len() > 15, "{pages:?}");
-    for page in pages {
-        let text = std::fs::read_to_string(&page).expect("a page");
-        for (path, anchor) in links(&text) {
-            let folder = page.parent().expect("a folder");
-            let target = if path.is_empty() { page.clone() } else { folder.join(&path) };
-            assert!(target.exists(), "{} links {path}", page.display());
-            if !anchor.is_empty() && target.extension().is_some_and(|it| it == "md") {
-                let there = anchors(&std::fs::read_to_string(&target).expect("a page"));
-                assert!(there.contains(&anchor), "{} links {path}#{anchor}", page.display());
-            }
-        }
-    }
-    assert!(links(&read("ARCHITECTURE.md")).len() > 50);
 }

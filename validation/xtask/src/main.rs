@@ -1,5 +1,6 @@
 //! What maintainers of percuss do by one command: `cargo xtask`.
 
+mod book;
 mod changelog;
 mod edit;
 mod interface;
@@ -22,6 +23,7 @@ struct Arguments {
 enum Task {
     Release(release::Arguments),
     Interface(interface::Arguments),
+    Book(book::Arguments),
 }
 
 fn main() -> Result<()> {
@@ -30,5 +32,6 @@ fn main() -> Result<()> {
     match Arguments::parse().task {
         Task::Release(arguments) => release::run(&root, &arguments),
         Task::Interface(arguments) => interface::run(&root, &arguments),
+        Task::Book(arguments) => book::run(&root, &arguments),
     }
 }
