@@ -1,9 +1,6 @@
 //! docs/FINDINGS.md: its commands choose rows that exist, and its programs are as it describes.
 
-#[allow(dead_code, reason = "its main is another program's")]
-#[path = "../examples/systems_by_engine.rs"]
-mod systems_by_engine;
-
+use crate::maintain::{blocks, systems_table};
 use percuss_validation::case::embedded;
 use percuss_validation::integrators::all;
 use serde_json::json;
@@ -110,7 +107,7 @@ fn by_engine(page: &str) -> Vec<Vec<String>> {
 fn the_table_of_systems_has_every_engine_and_every_system_with_all_their_rows() {
     let lines = by_engine(&read("docs/FINDINGS.md"));
     let [head, _, body @ ..] = lines.as_slice() else { panic!("no table") };
-    let systems = systems_by_engine::systems().expect("read");
+    let systems = systems_table::systems().expect("read");
     let named: BTreeSet<_> = systems.values().map(String::as_str).collect();
     assert_eq!(head[1..].iter().map(String::as_str).collect::<BTreeSet<_>>(), named);
     let engines: BTreeSet<_> = all().iter().map(|it| it.declaration().name.to_owned()).collect();
@@ -135,13 +132,13 @@ fn rows_are_counted_by_system_and_verdict() {
     let verdicts = ["pass", "pass", "known", "error", "fail", "undecidable", "not-run"];
     let mut rows: Vec<_> = verdicts.iter().map(|it| row("chaos-from-rest", it)).collect();
     rows.push(row("ball-cut-short", "not-run"));
-    let systems = systems_by_engine::systems().expect("read");
+    let systems = systems_table::systems().expect("read");
     let report = json!({"percuss": "1", "commit": null, "suite": "quick", "results": rows});
-    let table = systems_by_engine::table(&report, &systems).expect("made");
+    let table = systems_table::table(&report, &systems).expect("made");
     let page = "a<!-- begin: systems by engine -->\nold<!-- end: systems by engine -->b";
-    let lines = by_engine(&systems_by_engine::spliced(page, &table).expect("spliced"));
+    let lines = by_engine(&blocks::replaced(page, systems_table::BLOCK, &table).expect("spliced"));
     assert_eq!(lines[0], ["engine", "oscillator", "bouncing-ball"]);
     assert_eq!(lines[2], ["e", "2/1/2 of 7", "\u{2013}"]);
     let unknown = json!({"results": [row("nosuch", "pass")]});
-    assert!(systems_by_engine::table(&unknown, &systems).is_err());
+    assert!(systems_table::table(&unknown, &systems).is_err());
 }

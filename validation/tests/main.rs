@@ -65,4 +65,7 @@ mod terminal;
 mod validate;
 
 mod exact;
+#[allow(dead_code, reason = "its main is another program's")]
+#[path = "../examples/maintain/main.rs"]
+mod maintain;
 mod support;

@@ -1,11 +1,8 @@
 //! The scoreboard of a small report.
 
-#[allow(dead_code, reason = "its main is another program's")]
-#[path = "../examples/scoreboard/main.rs"]
-mod example;
-
-use example::board::Board;
-use example::{page, spliced};
+use crate::maintain::blocks::replaced;
+use crate::maintain::scoreboard::board::Board;
+use crate::maintain::scoreboard::{BLOCK, page};
 use serde_json::{Value, json};
 
 fn row(engine: &str, case: &str, trouble: &[&str], found: Option<[u64; 2]>) -> Value {
@@ -106,7 +103,7 @@ fn portions_of_other_cases_are_one_run() {
 #[test]
 fn the_block_takes_the_place_of_the_old_one() {
     let page = "a\n<!-- begin: scoreboard -->\nold\n<!-- end: scoreboard -->\nb\n";
-    let new = spliced(page, "new\n").expect("spliced");
+    let new = replaced(page, BLOCK, "new\n").expect("spliced");
     assert_eq!(new, page.replace("old", "new"));
-    assert!(spliced("no block", "new").is_err());
+    assert!(replaced("no block", BLOCK, "new").is_err());
 }

@@ -137,7 +137,7 @@ fn the_scoreboards_commands_are_found() {
     let page = std::fs::read_to_string(page).unwrap();
     let commands: Vec<&str> = first_commands(&page).unwrap().lines().collect();
     assert_eq!(commands.first(), Some(&"validation/programs/setup"));
-    let last = "cargo run --release -p percuss-validation --example scoreboard -- ";
+    let last = "cargo maintain scoreboard ";
     assert!(commands.last().is_some_and(|line| line.starts_with(last)), "{commands:?}");
     assert!(first_commands("no block").is_err());
 }

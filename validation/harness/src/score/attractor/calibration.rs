@@ -1,6 +1,6 @@
 //! Limits measured on runs of the exact solver, without an extrapolated tail.
 //!
-//! `cargo run --release --example calibrate` makes `attractors.toml` again. With m and s the mean
+//! `cargo maintain calibrate` makes `attractors.toml` again. With m and s the mean
 //! and standard deviation over the runs against the reference, a limit is |m| + z s of the
 //! difference itself for exponent and drift, which are means over many periods and so nearly
 //! normal, and exp(m + z s) of the logarithms of the other distances, which are positive. m and s

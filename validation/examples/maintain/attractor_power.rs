@@ -1,10 +1,6 @@
-//! Measures what the same-attractor test notices, and puts the figures and their picture into its
-//! page.
-//!
-//! `cargo run --release -p percuss-validation --example attractor_power -- docs/ATTRACTOR_TEST.md`
-//!
-//! Without a page it prints the blocks. The picture lies beside the page, as `attractor-power.png`.
+//! Measures what the same-attractor test notices: `cargo maintain attractor-power`.
 
+use super::blocks;
 use anyhow::{Context, Result};
 use percuss_validation::case::{OscillatorCase, embedded};
 use percuss_validation::number::brief;
@@ -15,7 +11,7 @@ use percuss_validation::score::attractor::{
     Alarms, AttractorTest, Calibrated, Changed, calibrated, interval,
 };
 use std::fmt::Write;
-use std::path::Path;
+use std::path::PathBuf;
 
 /// Runs a case from which the rate of false alarms is taken: none of the calibration.
 const FRESH_RUNS: u32 = 2_000;
@@ -26,8 +22,16 @@ const SIZES: [f64; 8] = [1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
 const PICTURE: &str = "attractor-power.png";
 
-fn main() -> Result<()> {
-    let page = std::env::args().nth(1);
+/// Measure the same-attractor test's false alarms and power, into docs/ATTRACTOR_TEST.md
+///
+/// Without a page it prints the blocks. The picture lies beside the page, as attractor-power.png.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The page to write
+    page: Option<PathBuf>,
+}
+
+pub(crate) fn run(Arguments { page }: &Arguments) -> Result<()> {
     let cases = ready()?;
     let power = power(&cases)?;
     let blocks = [("false alarms", false_alarms(&cases)?), ("power", power_table(&power))];
@@ -35,19 +39,8 @@ fn main() -> Result<()> {
         blocks.iter().for_each(|(name, text)| println!("{name}\n\n{text}"));
         return Ok(());
     };
-    let beside = Path::new(&page).with_file_name(PICTURE);
-    std::fs::write(&beside, png(&picture(&power))?)?;
-    let text = std::fs::read_to_string(&page).with_context(|| page.clone())?;
-    let filled = blocks.iter().try_fold(text, |text, (name, block)| fill(&text, name, block));
-    Ok(std::fs::write(&page, filled?)?)
-}
-
-/// Puts a block between its marks.
-fn fill(text: &str, name: &str, block: &str) -> Result<String> {
-    let (begin, end) = (format!("<!-- begin: {name} -->\n"), format!("<!-- end: {name} -->"));
-    let (before, rest) = text.split_once(&begin).with_context(|| format!("no block of {name}"))?;
-    let (_, after) = rest.split_once(&end).with_context(|| format!("{name} does not end"))?;
-    Ok(format!("{before}{begin}{block}{end}{after}"))
+    std::fs::write(page.with_file_name(PICTURE), png(&picture(&power))?)?;
+    blocks::replace(page, &blocks)
 }
 
 /// Every case that has limits, with its test.

@@ -1,19 +1,12 @@
-//! Draws the power of the judgement of records: the share of wrong answers that are caught.
-//!
-//! ```sh
-//! cargo run --release -p percuss-validation --example power_curve -- docs/power.svg
-//! ```
-//!
-//! The answers are those of set-ups and cases that set no limit, at 1e-6; the table that belongs to
-//! the picture is printed. The picture's note has the false alarms: right answers that are
-//! condemned.
+//! Draws the power of the judgement of records: `cargo maintain power-curve`.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use percuss_validation::case::{ClassBounds, defaults, embedded};
 use percuss_validation::picture::{Axis, AxisScale, Colour, Curve, Curves, Marker, Stroke, svg};
 use percuss_validation::power::{Variant, loosened, tallies, trials};
 use percuss_validation::suite::{PreparedCase, prepare};
 use percuss_validation::truth::Library;
+use std::path::PathBuf;
 
 const TOLERANCE: f64 = 1e-6;
 /// Lateness in tolerances, and factors by which a tolerance is loosened.
@@ -30,8 +23,17 @@ const KINDS: [Kind; 3] = [
     ("states off after events", Variant::Noise, Colour(0, 158, 115), Marker::Triangle),
 ];
 
-fn main() -> Result<()> {
-    let page = std::env::args().nth(1).context("name the picture's file, an SVG")?;
+/// Draw the share of wrong answers that are caught, and print its table
+///
+/// The answers are those of set-ups and cases that set no limit, at 1e-6. The picture's note has
+/// the false alarms: right answers that are condemned.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The picture to write, an SVG
+    output: PathBuf,
+}
+
+pub(crate) fn run(Arguments { output }: &Arguments) -> Result<()> {
     let prepared = prepare(embedded()?, &Library::embedded()?, None)?;
     let classes = defaults()?.classes;
     let of_size = |kind: &Kind| STEPS.map(kind.1);
@@ -71,7 +73,7 @@ fn main() -> Result<()> {
         y: Axis { scale: AxisScale::Linear, label: "caught, per cent".to_owned() },
         curves,
     };
-    Ok(std::fs::write(page, svg(&picture))?)
+    Ok(std::fs::write(output, svg(&picture))?)
 }
 
 const LOOSE: (Colour, Marker) = (Colour(204, 121, 167), Marker::Diamond);

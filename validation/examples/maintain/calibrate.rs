@@ -1,6 +1,4 @@
-//! Measures the limits of the same-attractor test and prints `attractors.toml`.
-//!
-//! `cargo run --release -p percuss-validation --example calibrate > target/attractors.toml`
+//! Measures the limits of the same-attractor test: `cargo maintain calibrate`.
 
 use percuss_validation::case::embedded;
 use percuss_validation::score::attractor::{ComparisonPlan, NULL_RUNS, calibrate};
@@ -10,10 +8,14 @@ const CASES: [&str; 3] = ["chaos-from-rest", "fig7a-chaos", "fig7d-chaos"];
 const PLAN: ComparisonPlan =
     ComparisonPlan { transient: 200, periods: 2000, reference_periods: 20_000 };
 
-fn main() -> anyhow::Result<()> {
+/// Measure the limits of the same-attractor test, and print attractors.toml
+#[derive(clap::Args)]
+pub(crate) struct Arguments {}
+
+pub(crate) fn run(Arguments {}: &Arguments) -> anyhow::Result<()> {
     println!(
         "# Limits of the same-attractor test: measured, see src/score/attractor/calibration.rs for how.\n\
-         # Made by `cargo run --release -p percuss-validation --example calibrate`.\n\
+         # Made by `cargo maintain calibrate`.\n\
          # Level: one more run of the exact solver exceeds any limit of its case with a probability of\n\
          # 1 in {}, because no distance of {NULL_RUNS} runs a case exceeds its limit.",
         NULL_RUNS + 1

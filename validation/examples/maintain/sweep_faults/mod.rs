@@ -1,13 +1,7 @@
-//! Spoils sweeps in all the ways that clusters do, and counts what is lost or doubled.
-//!
-//! ```sh
-//! cargo run --release -p percuss-validation --example sweep_faults -- docs/SWEEPS.md
-//! ```
-//!
-//! writes its table between the marks of that page. The program that it runs lies beside it: build
-//! it first, by `cargo build --release`. Full disks and read-only folders need root on Linux.
+//! Spoils sweeps in all the ways that clusters do: `cargo maintain sweep-faults`.
 
-use anyhow::{Context, Result, ensure};
+use super::blocks;
+use anyhow::{Result, ensure};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -55,8 +49,17 @@ struct SweepTrial {
     shard: Duration,
 }
 
-fn main() -> Result<()> {
-    let page = std::env::args().nth(1).context("the page that gets the table is missing")?;
+/// Spoil sweeps as clusters do, and count what is lost or doubled, into docs/SWEEPS.md
+///
+/// The program that it runs lies beside it: build it first, by cargo build --release. Full disks
+/// and read-only folders need root on Linux.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The page to write
+    page: PathBuf,
+}
+
+pub(crate) fn run(Arguments { page }: &Arguments) -> Result<()> {
     let program = std::env::current_exe()?.with_file_name("../percuss").canonicalize()?;
     let mut trial = SweepTrial::new(program)?;
     trial.measure()?;
@@ -78,7 +81,9 @@ fn main() -> Result<()> {
         );
     }
     let head = "| fault | times | lost | doubled | what happened |\n|---|---|---|---|---|";
-    splice(Path::new(&page), &format!("{head}\n{}", rows.join("\n")))
+    let table = format!("{head}\n{}\n", rows.join("\n"));
+    println!("{table}");
+    blocks::replace(page, &[("faults", table)])
 }
 
 impl Tried {
@@ -86,16 +91,6 @@ impl Tried {
         let Self { fault, times, lost, doubled, outcome } = self;
         format!("| {fault} | {times} | {lost} | {doubled} | {outcome} |")
     }
-}
-
-/// Puts a table between the marks of a page.
-fn splice(page: &Path, table: &str) -> Result<()> {
-    const MARKS: [&str; 2] = ["<!-- faults -->", "<!-- end of faults -->"];
-    let text = fs::read_to_string(page)?;
-    let (before, rest) = text.split_once(MARKS[0]).context("the page has no mark")?;
-    let (_, after) = rest.split_once(MARKS[1]).context("the page has no second mark")?;
-    println!("{table}");
-    Ok(fs::write(page, format!("{before}{}\n{table}\n{}{after}", MARKS[0], MARKS[1]))?)
 }
 
 impl SweepTrial {

@@ -1,7 +1,9 @@
 //! What a scoreboard needs of a report.
 
+use super::blocks;
 use anyhow::{Context, Result};
 use serde::Deserialize;
+use std::path::Path;
 
 /// A report.
 #[derive(Deserialize)]
@@ -74,7 +76,6 @@ impl RowJson {
 }
 
 /// Reads a report.
-pub(crate) fn report(path: &str) -> Result<ReportJson> {
-    let text = std::fs::read_to_string(path).with_context(|| path.to_owned())?;
-    serde_json::from_str(&text).with_context(|| format!("{path} is no report.json of this version"))
+pub(crate) fn report(path: &Path) -> Result<ReportJson> {
+    blocks::read_json(path).context("a report has to be of this version")
 }

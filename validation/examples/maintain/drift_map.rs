@@ -1,15 +1,6 @@
 //! Draws a drift map that `percuss sweep` has computed over omega and another parameter: the drift,
 //! and the regime of each point. Drifts and chaos are what the verb `lyapunov` gives, periods are
 //! those of the last strobes, which the verb `bifurcation` gives.
-//!
-//! ```sh
-//! for map in omega-b omega-b-strobes; do
-//!     percuss sweep run --plan docs/sweeps/$map.toml --out target/$map
-//!     percuss sweep merge --plan docs/sweeps/$map.toml --out target/$map --output target/$map.npz
-//! done
-//! cargo run --release -p percuss-validation --example drift_map -- \
-//!     target/omega-b.npz target/omega-b-strobes.npz b docs/drift-omega-b.png
-//! ```
 
 use anyhow::{Context, Result};
 use npyz::NpyFile;
@@ -19,6 +10,7 @@ use percuss_validation::picture::{
 };
 use std::fs::File;
 use std::io::Read;
+use std::path::PathBuf;
 use zip::ZipArchive;
 
 /// A positive exponent counts as chaos from so many standard errors on, as everywhere in percuss.
@@ -85,17 +77,24 @@ impl MergedSweep {
     }
 }
 
-fn main() -> Result<()> {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let [file, strobes, other, output] = &words[..] else {
-        anyhow::bail!(
-            "four arguments: the merged files of lyapunov and of bifurcation, the second parameter, \
-             the picture"
-        );
-    };
-    let parameter: Parameter = other.parse()?;
+/// Draw a drift map of two merged sweeps, as docs/SWEEPS.md shows
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The merged file of a sweep of lyapunov
+    sweep: String,
+    /// The merged file of a sweep of bifurcation over the same points
+    strobes: String,
+    /// The parameter beside omega
+    parameter: Parameter,
+    /// The picture to write, a PNG
+    output: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let Arguments { sweep: file, strobes, parameter, output } = arguments;
+    let parameter = *parameter;
     let mut sweep = MergedSweep::open(file)?;
-    let (x, y) = (sweep.f8("omega")?, sweep.f8(other)?);
+    let (x, y) = (sweep.f8("omega")?, sweep.f8(parameter.as_str())?);
     let drift = sweep.f8("drift_per_period")?;
     let periods = periods(&mut MergedSweep::open(strobes)?, drift.len())?;
     let regimes = regimes(&mut sweep, &drift, &periods)?;

@@ -1,36 +1,31 @@
-//! Puts the table of systems by engines into docs/FINDINGS.md: how many rows of each system each
-//! engine passes, passes but for expected failures, and fails.
-//!
-//! ```sh
-//! cargo run --release -- validate --out target/quick
-//! cargo run --release -p percuss-validation --example systems_by_engine -- \
-//!   target/quick/report.json docs/FINDINGS.md
-//! ```
+//! Counts the rows of systems by engines for docs/FINDINGS.md: `cargo maintain systems-table`.
 
+use super::blocks;
 use anyhow::{Context, Result};
 use percuss_validation::case::embedded;
 use percuss_validation::report::CaseNote;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
-const BEGIN: &str = "<!-- begin: systems by engine -->\n";
-const END: &str = "<!-- end: systems by engine -->";
+/// The name of the page's block.
+pub(crate) const BLOCK: &str = "systems by engine";
 
-fn main() -> Result<()> {
-    let usage = "takes the report.json of a run and the page to write";
-    let [report, page]: [String; 2] =
-        std::env::args().skip(1).collect::<Vec<_>>().try_into().ok().context(usage)?;
-    let text = std::fs::read_to_string(&report).with_context(|| report.clone())?;
-    let table = table(&serde_json::from_str(&text)?, &systems()?)?;
-    let old = std::fs::read_to_string(&page).with_context(|| page.clone())?;
-    std::fs::write(&page, spliced(&old, &table)?).with_context(|| page.clone())
+/// Put the table of systems by engines into docs/FINDINGS.md
+///
+/// It counts how many rows of each system each engine passes, passes but for expected failures,
+/// and fails.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The report.json of a run
+    report: PathBuf,
+    /// The page to write
+    page: PathBuf,
 }
 
-/// A page with another table between the marks.
-pub(crate) fn spliced(old: &str, table: &str) -> Result<String> {
-    let (before, rest) = old.split_once(BEGIN).context("the page has no table of the systems")?;
-    let (_, after) = rest.split_once(END).context("the table does not end")?;
-    Ok(format!("{before}{BEGIN}{table}{END}{after}"))
+pub(crate) fn run(Arguments { report, page }: &Arguments) -> Result<()> {
+    let table = table(&blocks::read_json(report)?, &systems()?)?;
+    blocks::replace(page, &[(BLOCK, table)])
 }
 
 /// The system of each case inside the binary.

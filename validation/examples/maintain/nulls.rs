@@ -1,15 +1,4 @@
-//! Measures what the local judgement's limits are set from, on the cases inside the binary: the
-//! largest defects of each engine, and how many wrong answers of each kind are caught.
-//!
-//! ```sh
-//! cargo run --release -p percuss-validation --example nulls -- [ENGINE] [CASE] [power]
-//! ```
-//!
-//! ENGINE and CASE are regular expressions on names; wrong answers are made with `power` alone. The
-//! limits of `validation/classes.toml` are three times the largest defects of `ode_solvers-dopri5`,
-//! `ode_solvers-dop853-time`, `ode_solvers-rk4`, `differential-equations-rkv655e`,
-//! `differential-equations-radau5`, `differential-equations-kvaerno745`, `diffsol-esdirk34` and
-//! `differential-equations-bdf` on every second case, the first included.
+//! Measures what the local judgement's limits are set from: `cargo maintain nulls`.
 
 use anyhow::Result;
 use percuss_validation::case::{defaults, embedded};
@@ -23,12 +12,28 @@ use rayon::prelude::*;
 use regex::Regex;
 use std::collections::BTreeMap;
 
-fn main() -> Result<()> {
-    let mut patterns = std::env::args().skip(1);
-    let engines = Regex::new(&patterns.next().unwrap_or_default())?;
-    let cases = Regex::new(&patterns.next().unwrap_or_default())?;
-    let variants =
-        if patterns.next().is_some_and(|it| it == "power") { &Variant::ALL[..] } else { &[] };
+/// Measure the largest defects of each engine, and how many wrong answers are caught
+///
+/// The limits of validation/classes.toml are three times the largest defects of
+/// ode_solvers-dopri5, ode_solvers-dop853-time, ode_solvers-rk4, differential-equations-rkv655e,
+/// differential-equations-radau5, differential-equations-kvaerno745, diffsol-esdirk34 and
+/// differential-equations-bdf on every second case inside the binary, the first included.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Only engines whose name matches
+    #[arg(short, long, value_name = "RE", default_value = "")]
+    engine: Regex,
+    /// Only cases whose name matches
+    #[arg(short, long, value_name = "RE", default_value = "")]
+    case: Regex,
+    /// Makes wrong answers of each kind too
+    #[arg(long)]
+    power: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<()> {
+    let Arguments { engine: engines, case: cases, power } = arguments;
+    let variants = if *power { &Variant::ALL[..] } else { &[] };
     let prepared = prepare(embedded()?, &Library::embedded()?, None)?;
     let classes = defaults()?.classes;
     let mut jobs: Vec<(usize, &'static dyn Engine, Accuracy)> = Vec::new();

@@ -1,19 +1,18 @@
-//! Writes `shortcomings.toml` anew from a `report.json` of the full suite.
+//! Makes the expected failures anew: `cargo maintain shortcomings`.
 //!
-//! `cargo run --release --example shortcomings -- REPORT...` prints the file: every bound that
-//! fails in one of the reports becomes a row of its engine's defect, with a range
+//! Every bound that fails in one of the reports becomes a row of its engine's defect, with a range
 //! around the figure that was measured; rows that no report has stay as they are, and so do figures
-//! of probes that were not asked for. An engine has one
-//! defect on the oscillator and one on other systems. Reasons are people's: those of
-//! the present file are kept, a new defect gets an empty one, which the program refuses to read.
-//! Before the reports `--file FILE` names another file than that of the engines in Rust, as
-//! `validation/programs/shortcomings.toml`.
+//! of probes that were not asked for. An engine has one defect on the oscillator and one on other
+//! systems. Reasons are people's: those of the present file are kept, a new defect gets an empty
+//! one, which the program refuses to read.
 
-use anyhow::{Context, Result, bail, ensure};
+use super::blocks;
+use anyhow::{Context, Result, ensure};
 use percuss_validation::case::embedded;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 /// A figure may differ by this factor on another processor: a step that is accepted here is refused
 /// there.
@@ -47,25 +46,27 @@ type RowGroup = (String, &'static str);
 /// The rows of each group, with the range of each.
 type Defects = BTreeMap<RowGroup, BTreeMap<Key, (f64, f64)>>;
 
-fn main() -> Result<()> {
+/// Print the file of expected failures anew, from reports of the full suite
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The present file: another than that of the engines in Rust is programs/shortcomings.toml
+    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/shortcomings.toml"))]
+    file: PathBuf,
+    /// The report.json of each run
+    #[arg(required = true)]
+    reports: Vec<PathBuf>,
+}
+
+pub(crate) fn run(Arguments { file, reports }: &Arguments) -> Result<()> {
     let mut defects = Defects::new();
     let mut reported = Reported::new();
-    let mut reports: Vec<String> = std::env::args().skip(1).collect();
-    let mut file = concat!(env!("CARGO_MANIFEST_DIR"), "/shortcomings.toml").to_owned();
-    if reports.first().is_some_and(|it| it == "--file") && reports.len() > 1 {
-        file = reports.drain(..2).next_back().unwrap_or_default();
-    }
-    if reports.is_empty() {
-        bail!("name one report.json or more");
-    }
     let systems = embedded()?.into_iter().filter(|case| case.oscillator.is_none());
     let systems: BTreeSet<String> = systems.map(|case| case.name).collect();
     for path in reports {
-        let text = std::fs::read_to_string(&path).with_context(|| path.clone())?;
-        let report: Value = serde_json::from_str(&text).with_context(|| path.clone())?;
+        let report: Value = blocks::read_json(path)?;
         // `quick` has no rows at other tolerances, and measures fewer restarts: what it does not
         // show would be dropped.
-        ensure!(report["suite"] == "full", "{path} is no report of the full suite");
+        ensure!(report["suite"] == "full", "{} is no report of the full suite", path.display());
         for row in report["results"].as_array().context("a report has results")? {
             let bounds = row["bounds"].as_array().into_iter().flatten();
             let quantities = bounds.filter_map(|it| it["quantity"].as_str().map(str::to_owned));
@@ -73,16 +74,14 @@ fn main() -> Result<()> {
             collect(row, &systems, &mut defects)?;
         }
     }
-    let whys = present(&file, &systems, &reported, &mut defects)?;
+    let whys = present(file, &systems, &reported, &mut defects)?;
     println!(
         "# Expected failures of engines on the cases inside the binary, row by row: case, tolerance (or"
     );
     println!(
         "# negative step), quantity, statistic, least and largest value of the figure that is out of bounds."
     );
-    println!(
-        "# Made by `cargo run --release --example shortcomings -- REPORT`; the reasons are people's."
-    );
+    println!("# Made by `cargo maintain shortcomings REPORT`; the reasons are people's.");
     for (group, rows) in defects {
         let (why, engine) = (whys.get(&group).cloned().unwrap_or_default(), group.0);
         println!("\n[[defects]]\nengine = {engine:?}\nwhy = {why:?}\nrows = [");
@@ -157,13 +156,13 @@ fn float(value: f64) -> String {
 
 /// The reasons of the present file; its rows that no report has are kept.
 fn present(
-    path: &str,
+    path: &Path,
     systems: &BTreeSet<String>,
     reported: &Reported,
     defects: &mut Defects,
 ) -> Result<BTreeMap<RowGroup, String>> {
-    let text = std::fs::read_to_string(path).with_context(|| path.to_owned())?;
-    let file: PresentFile = toml::from_str(&text).with_context(|| path.to_owned())?;
+    let file: PresentFile =
+        toml::from_str(&blocks::read(path)?).with_context(|| path.display().to_string())?;
     let mut reasons = BTreeMap::new();
     for PresentDefect { engine, why, rows } in file.defects {
         for (case, setting, quantity, statistic, at_least, at_most) in rows {
