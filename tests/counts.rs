@@ -2,8 +2,9 @@
 //!
 //! A guess, a bound or a piece's length that is wrong loses no event: the certificate asks for more
 //! work instead. So nothing but the work shows such a fault. The runs are short, so that their
-//! counts do not depend on the last digits of chaos. Where a change of the search changes a row,
-//! the test prints the rows as they are; fewer evaluations are a gain, more of them need a reason.
+//! counts do not depend on the last digits of chaos. Switches and touches have to be as they were;
+//! evaluations and divisions may be fewer. The test prints the rows as they are: a row that has
+//! become better is pinned anew, and one that has become worse needs a reason.
 
 use crate::support::graze::{self, Crest};
 use crate::support::random::Draw;
@@ -271,12 +272,14 @@ fn count_grazes(grazes: &Grazes) -> Counters {
     sum
 }
 
-/// The counts as they are, printed, and a line where they are not as pinned.
+/// The counts as they are, printed, and a line where they are other or more than those pinned.
 fn changed(name: &str, found: &Counters, pinned: [u64; 4]) -> Option<String> {
     let Counters { switches, evaluations, divisions, undecidable } = *found;
     let counts = [switches, evaluations, divisions, undecidable];
     println!("{name}: {counts:?}");
-    (counts != pinned).then(|| format!("{name}: {counts:?}, was {pinned:?}"))
+    let is_kept = counts[0] == pinned[0] && counts[3] == pinned[3];
+    let is_cheap = counts[1] <= pinned[1] && counts[2] <= pinned[2];
+    (!(is_kept && is_cheap)).then(|| format!("{name}: {counts:?}, was {pinned:?}"))
 }
 
 #[test]

@@ -10,8 +10,6 @@ struct Package {
     sources: &'static str,
     /// Its rooms, folders or files directly in `sources`: each may use those before it.
     rooms: &'static [&'static str],
-    /// The least number of uses of one file by another.
-    least_uses: usize,
 }
 
 /// All packages, in the order in which they are compiled.
@@ -34,7 +32,6 @@ const PACKAGES: [Package; 8] = [
             "affine",
             "system",
         ],
-        least_uses: 500,
     },
     Package {
         sources: "validation/engines/src",
@@ -50,7 +47,6 @@ const PACKAGES: [Package; 8] = [
             "integration",
             "integrators",
         ],
-        least_uses: 100,
     },
     Package {
         sources: "validation/pictures/src",
@@ -76,7 +72,6 @@ const PACKAGES: [Package; 8] = [
             "figure",
             "system_motion",
         ],
-        least_uses: 40,
     },
     Package {
         sources: "validation/programs/src",
@@ -91,7 +86,6 @@ const PACKAGES: [Package; 8] = [
             "engine",
             "start",
         ],
-        least_uses: 15,
     },
     Package {
         sources: "validation/harness/src",
@@ -106,12 +100,10 @@ const PACKAGES: [Package; 8] = [
             "bench",
             "reproduce",
         ],
-        least_uses: 150,
     },
     Package {
         sources: "validation/src",
         rooms: &["provenance", "unfinished", "sweep", "report", "cli"],
-        least_uses: 150,
     },
     Package {
         sources: "python/src",
@@ -132,12 +124,19 @@ const PACKAGES: [Package; 8] = [
             "scores",
             "command",
         ],
-        least_uses: 15,
     },
     Package {
         sources: "validation/xtask/src",
-        rooms: &["process", "changelog", "edit", "versions", "interface", "release", "main"],
-        least_uses: 5,
+        rooms: &[
+            "process",
+            "book",
+            "changelog",
+            "edit",
+            "versions",
+            "interface",
+            "release",
+            "main",
+        ],
     },
 ];
 
@@ -272,8 +271,9 @@ fn upward(rooms: &[&str], uses: &Uses) -> Vec<String> {
 
 #[test]
 fn no_room_uses_one_above_it() {
-    for Package { sources, rooms, .. } in PACKAGES {
+    for Package { sources, rooms } in PACKAGES {
         let uses = uses(&root().join(sources));
+        assert!(uses.values().any(|used| !used.is_empty()), "{sources}: no use was found");
         let above = upward(rooms, &uses);
         assert!(above.is_empty(), "{sources}: {above:#?}");
         let are_there: BTreeSet<&str> = uses.keys().map(|it| room(it)).collect();
@@ -285,8 +285,6 @@ fn no_room_uses_one_above_it() {
 #[test]
 fn no_room_of_affine_uses_one_above_it() {
     let uses = inside("affine", &uses(&root().join("src")));
-    let edges: usize = uses.values().map(BTreeSet::len).sum();
-    assert!(edges > 100, "{edges} uses only");
     let above = upward(&AFFINE_ROOMS, &uses);
     assert!(above.is_empty(), "{above:#?}");
 }
@@ -309,14 +307,12 @@ fn a_use_of_a_room_above_is_noticed() {
 /// A folder's `mod.rs` exports what is in the folder, which uses its types: these are one.
 #[test]
 fn no_files_use_one_another_in_a_circle() {
-    for Package { sources, least_uses, .. } in PACKAGES {
+    for Package { sources, .. } in PACKAGES {
         let mut left = uses(&root().join(sources));
         for (module, used) in &mut left {
             let inside = |one: &str, other: &str| one.starts_with(&format!("{other}::"));
             used.retain(|it| !inside(it, module) && !inside(module, it));
         }
-        let pairs: usize = left.values().map(BTreeSet::len).sum();
-        assert!(pairs > least_uses, "{sources}: {pairs} uses only");
         // What uses nothing that is left is in no circle.
         loop {
             let names: BTreeSet<String> = left.keys().cloned().collect();

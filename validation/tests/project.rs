@@ -162,7 +162,7 @@ fn comments_are_at_most_100_columns_wide() {
     const WIDTH: usize = 100;
     let mut found = Vec::new();
     sources(&root(), &mut found);
-    assert!(found.len() > 900, "{} sources", found.len());
+    assert!(!found.is_empty(), "no sources are found");
     let mut wide = Vec::new();
     for (path, marks) in found {
         let text = std::fs::read_to_string(&path).expect("the source is text");
