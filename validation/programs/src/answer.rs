@@ -1,8 +1,11 @@
 //! A run as a program answers it, held against the task before anything is measured of it.
 
-use crate::wire::{EventReply, RunReply};
+use crate::text::plain;
+use crate::wire::{EventGradientReply, EventReply, GradientReply, RunReply};
 use percuss_engines::engine::Ending;
-use percuss_engines::engine::{Event, Limits, Outcome, Task, Work};
+use percuss_engines::engine::{
+    Event, EventDerivatives, Limits, Outcome, RunDerivatives, Task, Work,
+};
 use percuss_engines::system::{Mode, Values};
 use std::fmt;
 use std::time::Duration;
@@ -85,7 +88,39 @@ pub(crate) fn checked(
         work: work(reply, limits)?,
         own_time: own_time(reply, took)?,
         trace: None,
+        gradients: gradients(&reply.gradients.0, task)?,
     })
+}
+
+/// The derivatives by the names that were asked for, in their order.
+fn gradients(given: &[GradientReply], task: &Task) -> Result<Vec<Option<RunDerivatives>>, Wrong> {
+    let asked = task.gradients.as_deref().map_or(&[][..], Vec::as_slice);
+    let mut by = vec![None; asked.len()];
+    for reply in given {
+        let name = plain(&reply.wrt);
+        let Some(place) = asked.iter().position(|it| it.name == reply.wrt) else {
+            let names: Vec<&str> = asked.iter().map(|it| it.name.as_str()).collect();
+            let accepted = if names.is_empty() {
+                "none, as none is asked for".into()
+            } else {
+                names.join(", ")
+            };
+            let what = format!("gave derivatives by {name:?}; accepted are {accepted}");
+            return Err(AnswerPart::Run.wrong(what));
+        };
+        if by[place].replace(derivatives(reply)).is_some() {
+            return Err(AnswerPart::Run.wrong(format!("gave derivatives by {name:?} twice")));
+        }
+    }
+    Ok(by)
+}
+
+fn derivatives(reply: &GradientReply) -> RunDerivatives {
+    let event = |it: &EventGradientReply| EventDerivatives {
+        time: it.time,
+        state: it.state.map(|it| it.0),
+    };
+    RunDerivatives { events: reply.events.0.iter().map(event).collect(), end: reply.end.0 }
 }
 
 fn ended(reply: &RunReply, task: &Task) -> Result<Ending, Wrong> {

@@ -115,6 +115,10 @@ impl Engine for ProgramEngine {
         }
     }
 
+    fn differentiates(&self) -> bool {
+        matches!(&self.runs, Runs::Set { set_up, .. } if set_up.gradients)
+    }
+
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let (pool, set_up) = match &self.runs {
             Runs::Set { pool, set_up } => (pool, set_up),

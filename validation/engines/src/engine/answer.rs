@@ -1,6 +1,7 @@
 //! An engine's answer, checked for completeness before anything is measured of it, and the work
 //! that it takes at the least.
 
+use super::derivatives;
 use super::{Engine, Limits, Outcome, Task, contain};
 use crate::accuracy::Accuracy;
 use crate::failure::Failure;
@@ -17,6 +18,7 @@ pub fn answer(
 ) -> Result<Outcome, Failure> {
     let outcome = contain(|| engine.run(task, accuracy, limits))?;
     complete(&outcome, task)?;
+    derivatives::complete(&outcome, task)?;
     Ok(outcome)
 }
 

@@ -11,6 +11,7 @@
 
 mod answer;
 mod declaration;
+mod derivatives;
 mod limits;
 mod oscillator_task;
 mod percussive;
@@ -23,6 +24,7 @@ pub use crate::equations::{Entered, Equations, Numbers};
 pub use crate::failure::Failure;
 pub use answer::{answer, least_work};
 pub use declaration::{Class, Colours, Declaration, Location, REFERENCE, Role};
+pub use derivatives::{EventDerivatives, RunDerivatives};
 pub(crate) use limits::stop;
 pub use limits::{Limits, contain, hush_contained_panics};
 pub use oscillator_task::{OscillatorTask, SampleGrid};
@@ -85,6 +87,9 @@ pub struct Outcome {
     pub own_time: Option<Duration>,
     /// The recording of the run, where the task asks for one and the engine can record.
     pub trace: Option<Trace>,
+    /// The derivatives by each name that the task asks for, in its order, where the engine has
+    /// them; none at all where it has none.
+    pub gradients: Vec<Option<RunDerivatives>>,
 }
 
 /// Something that can run a system with modes from a start to a horizon.
@@ -111,6 +116,11 @@ pub trait Engine: Sync {
     /// Why it does not, as a row without a result says it.
     fn takes(&self, _task: &Task) -> Result<(), &'static str> {
         Ok(())
+    }
+
+    /// Whether the engine answers derivatives through events where a task asks for them.
+    fn differentiates(&self) -> bool {
+        false
     }
 
     /// The longest step of a run, where the engine does not leave that to its library.

@@ -4,7 +4,7 @@ use super::{OscillatorTask, Watched};
 use crate::accuracy::shortest_time;
 use crate::equations::Numbers;
 use crate::failure::Failure;
-use crate::system::{CheckedSystem, SystemProblem, Values};
+use crate::system::{CheckedSystem, Rates, SystemProblem, Values};
 use std::sync::Arc;
 
 /// A run of a system that is to be made.
@@ -28,6 +28,8 @@ pub struct Task {
     /// The run in the words of the oscillator, where that is the system: an engine that has the
     /// oscillator's equations written by hand may take them instead of the system's matrices.
     pub oscillator: Option<Arc<OscillatorTask>>,
+    /// The names by which derivatives are asked for, with those of the coefficients.
+    pub gradients: Option<Arc<Vec<Rates>>>,
 }
 
 impl Task {
@@ -55,8 +57,17 @@ impl Task {
             return Err(Failure::new("a run takes a positive time, with samples in order"));
         }
         let state = Values::of(state);
-        let (watched, exact, oscillator) = (None, None, None);
-        Ok(Self { system, mode, state, span, samples, watched, exact, oscillator })
+        Ok(Self {
+            system,
+            mode,
+            state,
+            span,
+            samples,
+            watched: None,
+            exact: None,
+            oscillator: None,
+            gradients: None,
+        })
     }
 
     /// The run of a problem over a time.

@@ -32,7 +32,7 @@ pub(super) fn rounded(number: &Rational) -> f64 {
     number.to_f64()
 }
 
-fn mode(exact: &affine::Mode, states: usize) -> Mode {
+pub(super) fn mode(exact: &affine::Mode, states: usize) -> Mode {
     let rows: Vec<Row> = exact.matrix.iter().take(states).map(|it| row(it, states)).collect();
     Mode {
         name: exact.name.clone(),

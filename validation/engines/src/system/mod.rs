@@ -12,12 +12,14 @@ mod derivative_rows;
 mod given;
 mod numbers;
 mod problem;
+mod rates;
 mod spectrum;
 
 pub use affine::Affine;
 pub use checked::CheckedSystem;
 pub use numbers::{MOST_GUARDS, MOST_STATES, Values};
 pub use problem::SystemProblem;
+pub use rates::Rates;
 
 /// Coefficients of x, cos theta, sin theta and 1.
 pub type Row = Vec<f64>;

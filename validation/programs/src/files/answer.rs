@@ -53,6 +53,7 @@ pub(super) fn answer(
         ended_at,
         work: Default::default(),
         own_ns: None,
+        gradients: BoundedList::default(),
     };
     checked(&reply, task, (asked, Duration::ZERO), limits).map_err(
         |Wrong { part, what }| match part {

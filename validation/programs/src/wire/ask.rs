@@ -2,7 +2,7 @@
 
 use super::PROTOCOL;
 use percuss_engines::engine::{Accuracy, Limits, Task};
-use percuss_engines::system::{CheckedSystem, Direction, Mode, Row, System};
+use percuss_engines::system::{CheckedSystem, Direction, Mode, Rates, Row, System};
 use serde::Serialize;
 
 /// The part of its time after which a program is to give up by itself, before it is ended.
@@ -56,6 +56,37 @@ pub(crate) struct RunAsk<'a> {
     step: Option<f64>,
     times: TimesAsk,
     limits: LimitsAsk,
+    /// Left out where no derivatives are asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    gradients: Vec<RatesAsk<'a>>,
+}
+
+/// A name by which derivatives are asked for, with those of every coefficient.
+#[derive(Serialize)]
+struct RatesAsk<'a> {
+    wrt: &'a str,
+    value: f64,
+    omega: f64,
+    phi: f64,
+    state: &'a [f64],
+    modes: Vec<ModeRatesAsk<'a>>,
+}
+
+/// The derivatives of a mode's coefficients.
+#[derive(Serialize)]
+struct ModeRatesAsk<'a> {
+    #[serde(rename = "A")]
+    a: &'a [Vec<f64>],
+    #[serde(rename = "B")]
+    b: &'a [[f64; 2]],
+    c: &'a [f64],
+    events: Vec<EventRatesAsk<'a>>,
+}
+
+#[derive(Serialize)]
+struct EventRatesAsk<'a> {
+    guard: &'a [f64],
+    reset: Option<&'a [Row]>,
 }
 
 #[derive(Serialize)]
@@ -139,12 +170,37 @@ impl<'a> RunAsk<'a> {
                 events: limits.events,
                 wall_s: BY_ITSELF * limits.wall.as_secs_f64(),
             },
+            gradients: task.gradients.iter().flat_map(|it| it.iter()).map(RatesAsk::of).collect(),
         }
     }
 
     /// The number of samples that are asked for.
     pub(crate) fn samples(&self) -> usize {
         self.samples.len()
+    }
+}
+
+impl<'a> RatesAsk<'a> {
+    fn of(rates: &'a Rates) -> Self {
+        Self {
+            wrt: &rates.name,
+            value: rates.value,
+            omega: rates.omega,
+            phi: rates.phi,
+            state: &rates.state,
+            modes: rates.modes.iter().map(ModeRatesAsk::of).collect(),
+        }
+    }
+}
+
+impl<'a> ModeRatesAsk<'a> {
+    fn of(mode: &'a Mode) -> Self {
+        let until = mode
+            .until
+            .iter()
+            .map(|it| EventRatesAsk { guard: &it.guard, reset: it.reset.as_deref() });
+        let watch = mode.watch.iter().map(|it| EventRatesAsk { guard: &it.guard, reset: None });
+        Self { a: &mode.a, b: &mode.b, c: &mode.c, events: until.chain(watch).collect() }
     }
 }
 

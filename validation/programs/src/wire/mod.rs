@@ -10,7 +10,9 @@ mod schema_tests;
 pub(crate) use ask::{Ask, Asked, ModeAsk, RunAsk, TimesAsk, samples};
 pub(crate) use numbers::{BoundedList, Count, StateReply};
 pub use reply::{Capabilities, EventsBy, SetUp};
-pub(crate) use reply::{EventReply, ReplyContent, RunReply, decode};
+pub(crate) use reply::{
+    EventGradientReply, EventReply, GradientReply, ReplyContent, RunReply, decode,
+};
 
 /// The version of the protocol, which every message names.
 pub const PROTOCOL: u64 = 1;

@@ -8,6 +8,8 @@ use serde::Deserialize;
 
 /// The most events and samples of an answer.
 const MOST_ROWS: usize = 100_000;
+/// The most names by which derivatives are answered.
+const MOST_NAMES: usize = 1000;
 /// The most set-ups of a program.
 const MOST_SET_UPS: usize = 64;
 
@@ -69,6 +71,9 @@ pub struct SetUp {
     /// Whether the program reports events that do not end their mode.
     #[serde(default = "yes")]
     pub watch: bool,
+    /// Whether the program answers derivatives through events where they are asked for.
+    #[serde(default)]
+    pub gradients: bool,
 }
 
 /// Who finds the events of a set-up.
@@ -96,6 +101,29 @@ pub(crate) struct RunReply {
     pub(crate) work: WorkReply,
     #[serde(default)]
     pub(crate) own_ns: Option<f64>,
+    #[serde(default)]
+    pub(crate) gradients: BoundedList<GradientReply, MOST_NAMES>,
+}
+
+/// The derivatives of a run by a name, as a program answers them.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct GradientReply {
+    pub(crate) wrt: String,
+    /// A list for all events, or none where there are those of the end alone.
+    #[serde(default)]
+    pub(crate) events: BoundedList<EventGradientReply, MOST_ROWS>,
+    pub(crate) end: StateReply,
+}
+
+/// The derivatives of an event, as far as a program has them.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EventGradientReply {
+    #[serde(default)]
+    pub(crate) time: Option<f64>,
+    #[serde(default)]
+    pub(crate) state: Option<StateReply>,
 }
 
 /// An event as a program answers it.

@@ -4,7 +4,7 @@ use super::{Ask, Asked, ReplyContent, RunAsk, decode};
 use jsonschema::Validator;
 use percuss::Parameters;
 use percuss_engines::engine::{Accuracy, Limits, Task, percussive};
-use percuss_engines::system::{CheckedSystem, Direction, System, Watch};
+use percuss_engines::system::{CheckedSystem, Direction, Rates, System, Watch};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -67,6 +67,60 @@ fn requests_are_as_their_schema_says() {
         assert!(schema.is_valid(&value(&Ask::plain(1, asked))), "{asked:?}");
     }
     assert!(!schema.is_valid(&value(&Ask::plain(1, Asked::Run))));
+}
+
+/// A task that asks for the derivatives by one name, all of them zero.
+fn task_with_gradients() -> Task {
+    let task = task(system());
+    let modes = task.system.system().modes.clone();
+    let (name, state) = ("g".to_owned(), task.state);
+    let rates = Rates { name, value: 1.0, omega: 0.0, phi: 0.0, state, modes };
+    Task { gradients: Some(Arc::new(vec![rates])), ..task }
+}
+
+/// The key is there only where derivatives are asked for: other programs do not know it.
+#[test]
+fn derivatives_are_asked_for_as_the_schema_says() {
+    let schema = schema("request");
+    let (plain, asking) = (task(system()), task_with_gradients());
+    let ask = |task: &Task| {
+        let accuracy = Accuracy::Tolerance(1e-6);
+        value(&Ask::run(3, &RunAsk::new("radau", task, accuracy, &Limits::default())))
+    };
+    assert_eq!(ask(&plain)["run"].get("gradients"), None);
+    let mut asked = ask(&asking);
+    assert!(schema.is_valid(&asked), "{asked}: {:?}", schema.validate(&asked).err());
+    assert_eq!(asked["run"]["gradients"][0]["wrt"], json!("g"));
+    let events = asked["run"]["system"]["modes"][0]["events"].as_array().map(Vec::len);
+    let rates = asked["run"]["gradients"][0]["modes"][0]["events"].as_array().map(Vec::len);
+    assert_eq!(rates, events);
+    asked["run"]["gradients"][0]["modes"] = json!([]);
+    assert!(!schema.is_valid(&asked));
+}
+
+#[test]
+fn answered_derivatives_are_read_as_the_schema_says() {
+    let schema = schema("answer");
+    let (mut run, id) = example_run();
+    run["run"]["gradients"] =
+        json!([{"wrt": "g", "events": [{"time": 1, "state": null}, {}], "end": [0.5, 1.0]}]);
+    assert!(schema.is_valid(&run), "{run}: {:?}", schema.validate(&run).err());
+    let Ok(ReplyContent::Run(reply)) = decode(run.to_string().as_bytes(), id) else {
+        unreachable!("{run}")
+    };
+    assert_eq!(reply.gradients.0[0].events.0[0].time, Some(1.0));
+    let changes: [Spoiling; 4] = [
+        |it| it["run"]["gradients"][0]["end"] = json!([null, 1.0]),
+        |it| it["run"]["gradients"][0]["events"][0]["time"] = json!("NaN"),
+        |it| it["run"]["gradients"][0]["mood"] = json!(1),
+        |it| it["run"]["gradients"][0]["wrt"] = Value::Null,
+    ];
+    for (n, change) in changes.iter().enumerate() {
+        let mut changed = run.clone();
+        change(&mut changed);
+        assert!(!schema.is_valid(&changed), "{n}: {changed}");
+        assert!(decode(changed.to_string().as_bytes(), id).is_err(), "{n}: {changed}");
+    }
 }
 
 /// The first block of JSON after a heading of the protocol's page, a message a line.

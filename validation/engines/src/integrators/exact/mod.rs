@@ -40,6 +40,10 @@ impl Engine for Exact {
         }
     }
 
+    fn differentiates(&self) -> bool {
+        true
+    }
+
     fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         match &task.oscillator {
             Some(own) => run(own, limits),

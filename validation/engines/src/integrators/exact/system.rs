@@ -1,11 +1,11 @@
 //! The exact solver on any piecewise-affine system.
 
-use crate::engine::{Event, Limits, Outcome, Task, Work};
+use crate::engine::{Event, EventDerivatives, Limits, Outcome, RunDerivatives, Task, Work};
 use crate::equations::Numbers;
 use crate::failure::Failure;
-use crate::system::{SystemProblem, Values};
-use percuss::Ending;
+use crate::system::{Rates, SystemProblem, Values};
 use percuss::affine::{self, Time, What};
+use percuss::{Ending, Proved};
 use std::hint::black_box;
 
 /// Runs a task in closed form; the system has to be there with its exact coefficients.
@@ -35,7 +35,35 @@ pub(super) fn run(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
     let evaluations = run.work().evaluations;
     let steps = outcome.events.len() as u64 + 1;
     outcome.work = Work { rhs_evaluations: evaluations, steps, ..Work::default() };
+    if let Some(asked) = &task.gradients {
+        outcome.gradients = gradients(problem, asked, horizon)?;
+    }
     Ok(outcome)
+}
+
+/// The derivatives by names, along the run of the system's own start: in proved digits, because
+/// stiff systems leave none of them in f64.
+fn gradients(
+    problem: &SystemProblem,
+    asked: &[Rates],
+    horizon: f64,
+) -> Result<Vec<Option<RunDerivatives>>, Failure> {
+    let solver = problem.exact.solver::<Proved>().map_err(Failure::new)?;
+    let names = asked.iter().map(|it| it.name.as_str());
+    let run = solver.run().gradients(names).and_then(|it| it.until(horizon));
+    let events: Vec<_> = run.map_err(Failure::new)?.collect();
+    let by = |rates: &Rates| {
+        let found = |event: &percuss::Event<'_, Proved>| {
+            let gradient = event.gradient(&rates.name)?.ok()?;
+            let state: Vec<f64> = gradient.state().iter().map(Proved::midpoint).collect();
+            let (time, state) = (gradient.time().midpoint(), Values::of(&state));
+            Some(EventDerivatives { time: Some(time), state: Some(state) })
+        };
+        let mut events: Vec<_> = events.iter().map(found).collect::<Option<_>>()?;
+        let end = events.pop()?.state?;
+        Some(RunDerivatives { events, end })
+    };
+    Ok(asked.iter().map(by).collect())
 }
 
 /// The state at the end of a run whose events are looked at and not kept: what the exact solver
