@@ -4,7 +4,8 @@
 //! What a wrong rule at events would give instead is computed too (`walk`), along the events of
 //! the exact run (`path`): an answer that agrees with one of these and not with the truth has its
 //! missing term named ([`Mechanism`]). How far a right answer may be off is the tolerance times the
-//! growth of errors in states and derivatives (`unit`). [`judge()`] gives the verdicts.
+//! growth of errors in states and derivatives (`unit`). [`judge()`] gives the verdicts; [`run()`]
+//! asks engines for their answers.
 
 mod answer;
 mod case;
@@ -17,6 +18,9 @@ mod path;
 #[cfg(test)]
 mod power_tests;
 mod reference;
+mod run;
+#[cfg(test)]
+mod run_tests;
 #[cfg(test)]
 mod stepped_tests;
 mod unit;
@@ -29,4 +33,5 @@ pub use judge::{ALLOWED_UNITS, judge};
 pub use library::embedded;
 pub use mechanism::Mechanism;
 pub use reference::Reference;
+pub use run::{GradientJudgement, TOLERANCES, one, run};
 pub use verdict::{Judged, Verdict};

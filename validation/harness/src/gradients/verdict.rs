@@ -23,6 +23,17 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// All of them, in the order of tables.
+    pub const ALL: [Self; 7] = [
+        Self::Right,
+        Self::Noisy,
+        Self::WrongLimit,
+        Self::Zero,
+        Self::MissingTerm,
+        Self::Refused,
+        Self::NoneAsked,
+    ];
+
     /// The name in reports.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
