@@ -12,5 +12,5 @@ mod unfinished;
 
 pub use percuss_engines::case::systems;
 pub use percuss_engines::{case, engine, integration, integrators, number, system};
-pub use percuss_harness::{arrays, bench, power, reproduce, score, suite, truth};
+pub use percuss_harness::{arrays, bench, gradients, power, reproduce, score, suite, truth};
 pub use percuss_pictures as picture;

@@ -1,6 +1,7 @@
 //! `validate`: every engine on every case against the truth.
 
 use super::help;
+use super::shared::gradients;
 use super::shared::judged::{JudgedFlags, PreparedCases, accepts};
 use super::shared::names::ENGINES;
 use super::shared::programs::ProgramFlags;
@@ -11,7 +12,7 @@ use crate::engine::{Engine, hush_contained_panics};
 use crate::integrators;
 use crate::integrators::WrongEngine;
 use crate::power::{self, Finding, Standard};
-use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
+use crate::report::{GradientEntry, Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::first_wrong::first_wrong_events;
 use crate::suite::{self, Scored, Suite, SuiteScope};
 use anyhow::{Result, bail};
@@ -77,7 +78,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     }
     bar.finish_and_clear();
     let mut evidence = pool.install(|| evidence(arguments, &cases, &rows, &findings));
-    let report = Report::new(arguments.suite, &engines, &rows);
+    let gradients = pool.install(|| derivatives(arguments, &engines))?;
+    let report = Report { gradients, ..Report::new(arguments.suite, &engines, &rows) };
     let asked = |it: &RowPlace<'_>| {
         accepts(&arguments.engine, it.engine)
             && judged.chosen.accepts(it.case)
@@ -88,6 +90,16 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     }
     let code = judged.write(&report, &evidence, all.len())?;
     Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code })
+}
+
+/// The verdicts on derivatives through events. They decide neither ranks nor the exit code: an
+/// engine that handles events rightly is not worse for a derivative that it offers besides.
+fn derivatives(
+    arguments: &Arguments,
+    engines: &[&'static dyn Engine],
+) -> Result<Vec<GradientEntry>> {
+    let tolerances: Vec<f64> = arguments.tolerance.iter().map(|it| it.value).collect();
+    gradients::judged(&arguments.judged.chosen, engines, &tolerances)
 }
 
 /// Everything that the report shows beside its rows.

@@ -9,6 +9,7 @@ mod event;
 mod evidence;
 mod failing;
 mod gather;
+mod gradients;
 mod grazing;
 mod growth;
 mod html;
@@ -37,6 +38,7 @@ pub use evidence::{
     CASES_FLAG, CaseNote, ErrorGrowth, FaultRow, GrazeRow, OSCILLATOR, ReportEvidence,
     RestartHistogram, SectionPair,
 };
+pub use gradients::{GradientCounts, GradientEntry};
 pub use orders::{Order, orders};
 pub use pictures::{PictureFile, pictures};
 pub use ranking::{

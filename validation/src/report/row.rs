@@ -1,5 +1,6 @@
 //! The keys of `report.json`.
 
+use super::gradients::GradientEntry;
 use super::ranking::{Ranked, ranking};
 use super::records::JudgedRecords;
 use crate::engine::{Declaration, Engine, Work};
@@ -30,6 +31,9 @@ pub struct Report {
     pub ranking: Vec<Ranked>,
     /// The number of rows per verdict.
     pub summary: Summary,
+    /// The verdicts on derivatives through events; left out where no engine answers any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gradients: Vec<GradientEntry>,
 }
 
 /// An engine's declaration, as the report has it.
@@ -172,6 +176,7 @@ impl Report {
             summary: Summary::of(&results),
             ranking: ranking(&results),
             results,
+            gradients: Vec::new(),
         }
     }
 

@@ -70,6 +70,7 @@ pub(crate) fn report(results: Vec<ReportRow>) -> Report {
         order: None,
     };
     Report {
+        gradients: Vec::new(),
         build: provenance::this(),
         suite: Suite::Quick,
         engines: names.into_iter().map(engine).collect(),

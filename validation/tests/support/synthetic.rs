@@ -201,6 +201,7 @@ pub fn report() -> Report {
         order: None,
     };
     Report {
+        gradients: Vec::new(),
         build: Build {
             schema: 1,
             percuss: "0.1.0".to_owned(),

@@ -5,6 +5,7 @@ pub(super) mod compact;
 pub(super) mod drift;
 pub(super) mod exit_codes;
 pub(super) mod format;
+pub(super) mod gradients;
 pub(super) mod horizon;
 pub(super) mod judged;
 pub(super) mod list;

@@ -11,7 +11,7 @@ mod ranking;
 mod scope;
 mod view;
 
-use super::{Exporter, Report, ReportEvidence, summary};
+use super::{Exporter, GradientCounts, Report, ReportEvidence, summary};
 use crate::picture::looks;
 use askama::Template;
 use std::io::{self, Write};
@@ -44,6 +44,7 @@ struct Page<'a> {
     trouble: view::TroubleTable,
     horizons: Vec<ranking::HorizonLine>,
     power: view::PowerTable,
+    gradients: Vec<GradientCounts>,
     colours: String,
     style: &'static str,
     scripts: &'static str,
@@ -79,6 +80,7 @@ impl Exporter for Html {
             trouble: view::trouble(report, evidence),
             horizons: ranking::horizons(report),
             power: view::power(evidence),
+            gradients: GradientCounts::all(&report.gradients),
             colours: view::colours(&looks),
             style: STYLE,
             scripts: SCRIPTS,

@@ -1,0 +1,32 @@
+//! Derivatives through events, asked of the engines that answer them.
+
+use super::judged::{CaseFlags, accepts};
+use super::long_work;
+use crate::engine::{Engine, REFERENCE};
+use crate::gradients::{Reference, TOLERANCES, embedded, run};
+use crate::report::GradientEntry;
+use anyhow::{Result, anyhow};
+use rayon::prelude::*;
+
+/// The verdicts on the derivatives of the chosen cases; none where only the reference answers them
+/// or the cases are a user's own. With fewer than two tolerances both of the usual ones are asked.
+pub(in crate::cli) fn judged(
+    chosen: &CaseFlags,
+    engines: &[&'static dyn Engine],
+    tolerances: &[f64],
+) -> Result<Vec<GradientEntry>> {
+    let answering: Vec<_> = engines.iter().copied().filter(|it| it.differentiates()).collect();
+    let is_peer = |it: &&dyn Engine| !it.declaration().name.starts_with(REFERENCE);
+    if chosen.cases.is_some() || !answering.iter().any(|it| is_peer(&(*it as &dyn Engine))) {
+        return Ok(Vec::new());
+    }
+    let mut cases = embedded()?;
+    cases.retain(|it| accepts(&chosen.case, &it.name));
+    let ready = cases.into_par_iter().map(Reference::new).collect::<Result<Vec<_>, _>>();
+    let ready = ready.map_err(|failure| anyhow!("the cases of derivatives: {}", failure.reason))?;
+    let tolerances = if tolerances.len() < 2 { &TOLERANCES[..] } else { tolerances };
+    let bar = long_work::bar((ready.len() * answering.len()) as u64, "derivatives");
+    let rows = run(&ready, &answering, tolerances, &|| bar.inc(1));
+    bar.finish_and_clear();
+    Ok(rows.into_iter().map(GradientEntry::from).collect())
+}

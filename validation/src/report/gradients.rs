@@ -1,0 +1,109 @@
+//! Verdicts on answered derivatives, as rows of the report and as a table of their own.
+
+use super::screen::fitted_name;
+use super::table::{one_line, text};
+use crate::gradients::{GradientJudgement, Verdict};
+use comfy_table::{CellAlignment, Table, presets};
+use serde::Serialize;
+
+/// The most engines of the table; the others stand in report.json.
+const MOST_ENGINES: usize = 8;
+
+/// The verdict on the derivatives by one name of a case, at one tolerance of an engine.
+#[derive(Clone, Debug, Serialize)]
+#[allow(missing_docs, reason = "the keys are those of the command line's contract")]
+pub struct GradientEntry {
+    pub engine: &'static str,
+    pub case: String,
+    pub wrt: String,
+    pub tolerance: f64,
+    #[serde(serialize_with = "as_word")]
+    pub verdict: Verdict,
+    /// The wrong rule at events, where it is recognised.
+    pub missing_term: Option<&'static str>,
+    pub why: String,
+}
+
+fn as_word<S: serde::Serializer>(verdict: &Verdict, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(verdict.as_str())
+}
+
+impl From<GradientJudgement> for GradientEntry {
+    fn from(row: GradientJudgement) -> Self {
+        let GradientJudgement { engine, case, judged } = row;
+        Self {
+            engine,
+            case,
+            wrt: judged.wrt,
+            tolerance: judged.tolerance,
+            verdict: judged.verdict,
+            missing_term: judged.missing_term.map(crate::gradients::Mechanism::as_str),
+            why: judged.why,
+        }
+    }
+}
+
+/// The verdicts on one engine's derivatives.
+#[derive(Clone, Debug)]
+pub struct GradientCounts {
+    /// The engine's name.
+    pub engine: &'static str,
+    /// The number of verdicts of each kind, in the order of [`Verdict::ALL`].
+    pub counts: [usize; 7],
+    /// The first missing term, with its case and name.
+    pub missing: String,
+}
+
+impl GradientCounts {
+    /// The counts of all engines, in the order of their first rows.
+    #[must_use]
+    pub fn all(rows: &[GradientEntry]) -> Vec<Self> {
+        let mut names: Vec<&'static str> = Vec::new();
+        for row in rows {
+            if !names.contains(&row.engine) {
+                names.push(row.engine);
+            }
+        }
+        names.into_iter().map(|engine| Self::of(engine, rows)).collect()
+    }
+
+    fn of(engine: &'static str, rows: &[GradientEntry]) -> Self {
+        let own: Vec<&GradientEntry> = rows.iter().filter(|it| it.engine == engine).collect();
+        let counts = Verdict::ALL.map(|kind| own.iter().filter(|it| it.verdict == kind).count());
+        let missing = own.iter().find_map(|it| {
+            it.missing_term.map(|term| format!("{term}: {} by {}", it.case, it.wrt))
+        });
+        Self { engine, counts, missing: missing.unwrap_or_default() }
+    }
+}
+
+/// The table of the first screen; no line where no engine answers derivatives.
+pub(super) fn gradient_lines(rows: &[GradientEntry]) -> Vec<String> {
+    let all = GradientCounts::all(rows);
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING).set_header([
+        "derivatives",
+        "right",
+        "noisy",
+        "limit",
+        "zero",
+        "term",
+        "refused",
+        "none",
+        "first term",
+    ]);
+    for column in table.column_iter_mut().skip(1).take(Verdict::ALL.len()) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    for it in all.iter().take(MOST_ENGINES) {
+        let counts = it.counts.iter().map(ToString::to_string);
+        let name = fitted_name(it.engine);
+        table.add_row([name].into_iter().chain(counts).chain([it.missing.clone()]));
+    }
+    let more = all.len().saturating_sub(MOST_ENGINES);
+    let more = (more > 0).then(|| format!("and {more} engines more: --out"));
+    text(&table).lines().map(one_line).chain(more).collect()
+}
