@@ -12,11 +12,14 @@ nothing else. `METHOD` is what an expert adds:
 - Whether an event follows at once, and which mode, is told by the first derivative that is not
   zero, instead of by the rounding of a zero.
 - Implicit methods are given their Jacobian.
+- Derivatives, which SciPy has none of, are central differences of whole runs over a step that the
+  tolerance sets; `METHOD-default` takes forward ones over the step of approx_fprime.
 """
 
-from percuss_program import Failure, in_pairs, serve, unavailable
+from percuss_program import Failure, differences, in_pairs, serve, unavailable
 
 try:
+    import numpy as np
     import scipy
     from scipy.integrate import solve_ivp
 except ImportError as why:
@@ -127,6 +130,25 @@ def make(setup, course):
         by_default(course, method)
 
 
+def steps(setup, course):
+    """The steps of differences. `METHOD-default` takes a forward difference over the step of
+    scipy.optimize.approx_fprime. `METHOD` takes a central one over a step whose square is as small
+    as the noise of the tolerance over the step."""
+    tolerance = course.run["tolerance"]["relative"]
+
+    def chosen(rates):
+        if setup.endswith("-default"):
+            return 0.0, float(np.sqrt(np.finfo(float).eps))
+        step = np.cbrt(tolerance) * (abs(rates["value"]) or 1.0)
+        return -step, step
+
+    return chosen
+
+
+def gradients(setup, course):
+    return differences(make, setup, course, steps(setup, course))
+
+
 if __name__ == "__main__":
     methods = {name: said[1:] for name, said in METHODS.items()}
-    serve("scipy", scipy.__version__, in_pairs(methods), make)
+    serve("scipy", scipy.__version__, in_pairs(methods, gradients=True), make, gradients)
