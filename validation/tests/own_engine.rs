@@ -8,7 +8,9 @@
 #[path = "../examples/engine.rs"]
 mod engine;
 
-use percuss_validation::engine::{Accuracy, Declaration, Engine, Failure, Limits, Outcome, Task};
+use percuss_validation::engine::{
+    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Task,
+};
 use percuss_validation::integrators;
 use serde_json::Value;
 use std::path::Path;
@@ -21,6 +23,10 @@ fn main() -> ExitCode {
             let arguments = std::iter::once("percuss".into()).chain(std::env::args_os().skip(2));
             return percuss_validation::cli::run_with(&[&Absent], arguments);
         }
+        Some("negated") => {
+            let arguments = std::iter::once("percuss".into()).chain(std::env::args_os().skip(2));
+            return percuss_validation::cli::run_with(&[&Negated], arguments);
+        }
         // A test runner asks what tests there are.
         Some("--list") => return ExitCode::SUCCESS,
         _ => {}
@@ -30,6 +36,7 @@ fn main() -> ExitCode {
     it_is_an_engine_of_every_verb();
     its_accuracy_is_held_to_a_baseline();
     an_engine_that_is_not_installed_is_unavailable();
+    a_wrong_derivative_is_named_and_decides_nothing();
     the_pages_show_what_it_does();
     ExitCode::SUCCESS
 }
@@ -48,6 +55,64 @@ impl Engine for Absent {
 
     fn run(&self, _: &Task, _: Accuracy, _: &Limits) -> Result<Outcome, Failure> {
         panic!("an engine that is not there is not run");
+    }
+}
+
+/// The exact solver as a peer, whose derivatives have the other sign.
+struct Negated;
+
+impl Negated {
+    fn exact() -> &'static dyn Engine {
+        let exact = integrators::all().iter().find(|it| it.declaration().name == "exact");
+        *exact.expect("it is always there")
+    }
+}
+
+impl Engine for Negated {
+    fn declaration(&self) -> Declaration {
+        let stepping = Stepping::Adaptive;
+        Declaration { name: "negated", stepping, ..engine::Heun.declaration() }
+    }
+
+    fn differentiates(&self) -> bool {
+        true
+    }
+
+    fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+        let mut outcome = Self::exact().run(task, Accuracy::Exact, limits)?;
+        for by in outcome.gradients.iter_mut().flatten() {
+            by.end.iter_mut().for_each(|it| *it = -*it);
+            for event in &mut by.events {
+                event.time = event.time.map(|it| -it);
+                event.state.iter_mut().for_each(|it| it.iter_mut().for_each(|it| *it = -*it));
+            }
+        }
+        Ok(outcome)
+    }
+}
+
+/// The verb names the rule that is wrong; exact derivatives beside it are right, and both exit 0.
+fn a_wrong_derivative_is_named_and_decides_nothing() {
+    let folder = std::env::temp_dir().join(format!("percuss-negated-{}", std::process::id()));
+    let out = folder.to_str().expect("a path in Unicode");
+    let cases = "^(ball-geometric|ball-first-impacts)$";
+    let engines = "^(exact|negated)$";
+    let asked = ["negated", "validate", "-e", engines, "-c", cases, "--out", out];
+    let output = example(&asked);
+    let said = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{said}{}", text(&output.stderr));
+    assert!(said.contains("sign: ball-first-impacts by g"), "{said}");
+    let report = std::fs::read_to_string(folder.join("report.json")).expect("it was written");
+    let page = std::fs::read_to_string(folder.join("report.html")).expect("it was written");
+    assert!(page.contains("Derivatives through events"), "{page}");
+    std::fs::remove_dir_all(&folder).expect("it was made here");
+    let report: Value = serde_json::from_str(&report).expect("it is JSON");
+    let rows = report["gradients"].as_array().expect("there are rows");
+    assert_eq!(rows.len(), 2 * 2 * 3, "{rows:?}");
+    for row in rows {
+        let is_exact = row["engine"] == "exact";
+        assert_eq!(row["verdict"] == "right", is_exact, "{row}");
+        assert_eq!(row["missing_term"] == "sign", !is_exact, "{row}");
     }
 }
 

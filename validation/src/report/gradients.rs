@@ -1,13 +1,7 @@
-//! Verdicts on answered derivatives, as rows of the report and as a table of their own.
+//! Verdicts on answered derivatives, as rows of the report and counted by engine.
 
-use super::screen::fitted_name;
-use super::table::{one_line, text};
 use crate::gradients::{GradientJudgement, Verdict};
-use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
-
-/// The most engines of the table; the others stand in report.json.
-const MOST_ENGINES: usize = 8;
 
 /// The verdict on the derivatives by one name of a case, at one tolerance of an engine.
 #[derive(Clone, Debug, Serialize)]
@@ -75,35 +69,4 @@ impl GradientCounts {
         });
         Self { engine, counts, missing: missing.unwrap_or_default() }
     }
-}
-
-/// The table of the first screen; no line where no engine answers derivatives.
-pub(super) fn gradient_lines(rows: &[GradientEntry]) -> Vec<String> {
-    let all = GradientCounts::all(rows);
-    if all.is_empty() {
-        return Vec::new();
-    }
-    let mut table = Table::new();
-    table.load_preset(presets::NOTHING).set_header([
-        "derivatives",
-        "right",
-        "noisy",
-        "limit",
-        "zero",
-        "term",
-        "refused",
-        "none",
-        "first term",
-    ]);
-    for column in table.column_iter_mut().skip(1).take(Verdict::ALL.len()) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    for it in all.iter().take(MOST_ENGINES) {
-        let counts = it.counts.iter().map(ToString::to_string);
-        let name = fitted_name(it.engine);
-        table.add_row([name].into_iter().chain(counts).chain([it.missing.clone()]));
-    }
-    let more = all.len().saturating_sub(MOST_ENGINES);
-    let more = (more > 0).then(|| format!("and {more} engines more: --out"));
-    text(&table).lines().map(one_line).chain(more).collect()
 }

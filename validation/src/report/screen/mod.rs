@@ -5,12 +5,12 @@
 //! shows the last lines, so rows and details stand above it.
 
 mod advice;
+mod derivatives;
 mod details;
 mod engines;
 mod names;
 mod remark;
 
-use super::gradients::gradient_lines;
 use super::notes::power;
 use super::table::{one_line, reasons, row_table, setting, wrapped};
 use super::{Report, ReportEvidence, ReportRow};
@@ -23,8 +23,6 @@ pub(super) use details::figure;
 
 /// The most lines of the first screen, beside what got worse than a baseline.
 pub const MOST_LINES: usize = 30;
-/// The longest name of an engine in the table of derivatives, in columns.
-const LONGEST_NAME: usize = 28;
 /// The most unexpected failures that it names.
 const MOST_FAILURES: usize = 3;
 
@@ -53,7 +51,7 @@ pub fn screen(report: &Report, evidence: &ReportEvidence, parts: ScreenParts) ->
 fn first_screen(report: &Report, evidence: &ReportEvidence) -> String {
     let above = above(report);
     let advice = advice(report);
-    let derivatives = gradient_lines(&report.gradients);
+    let derivatives = derivatives::gradient_lines(&report.gradients);
     let below: Vec<String> = power(evidence).into_iter().chain([counts(report)]).collect();
     let bad = unexpected(report);
     let table = EngineTable::of(report);
@@ -69,11 +67,6 @@ fn first_screen(report: &Report, evidence: &ReportEvidence) -> String {
     let between = if spaced { "\n\n" } else { "\n" };
     let text = filled.map(|it| it.join("\n")).collect::<Vec<_>>().join(between);
     [text, "\n".to_owned(), worse(evidence), dearer(evidence)].concat()
-}
-
-/// An engine's name, cut to the length that leaves room for its figures.
-pub(super) fn fitted_name(name: &str) -> String {
-    names::fitted(name, LONGEST_NAME)
 }
 
 /// The rows that nothing excuses, the first of each engine before the others.
