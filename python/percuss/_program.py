@@ -282,9 +282,68 @@ class Course:
         }
 
 
-def in_pairs(methods):
+def moved(run, rates, step):
+    """The request for another value of a name, which is larger by a step: every coefficient is
+    moved by its derivative. What is not linear in the name is off by the square of the step."""
+
+    def along(own, rate):
+        if own is None or rate is None:
+            return own
+        return (np.array(own, dtype=float) + step * np.array(rate, dtype=float)).tolist()
+
+    def event(own, rate):
+        return own | {key: along(own[key], rate[key]) for key in ("guard", "reset")}
+
+    def mode(own, rate):
+        coefficients = {key: along(own[key], rate[key]) for key in "ABc"}
+        events = [event(*both) for both in zip(own["events"], rate["events"])]
+        return own | coefficients | {"events": events}
+
+    system = run["system"]
+    system = system | {
+        "omega": system["omega"] + step * rates["omega"],
+        "phi": system["phi"] + step * rates["phi"],
+        "modes": [mode(*both) for both in zip(system["modes"], rates["modes"])],
+    }
+    return run | {"system": system, "state": along(run["state"], rates["state"])}
+
+
+def differences(make, setup, course, steps):
+    """Derivatives by differences of whole runs. `steps` takes the rates of a name, and gives the
+    two steps of that name between whose runs the difference is taken. A name has none where the
+    two runs have other events."""
+    found = []
+    for rates in course.run["gradients"]:
+        below, above = steps(rates)
+        runs = []
+        for step in (below, above):
+            other = Course(moved(course.run, rates, step))
+            other.meter = course.meter
+            make(setup, other)
+            runs.append(other)
+        words = [[(it["event"], it["mode"]) for it in run.events] for run in runs]
+        if words[0] != words[1]:
+            continue
+        first, last = runs
+
+        def slope(a, b):
+            return ((np.array(b) - np.array(a)) / (above - below)).tolist()
+
+        events = [
+            {key: slope(*both) for key, both in (
+                ("time", (a["time"], b["time"])), ("state", (a["state"], b["state"]))
+            )}
+            for a, b in zip(first.events, last.events)
+        ]
+        end = slope(first.z, last.z)
+        found.append({"wrt": rates["wrt"], "events": events, "end": end})
+    return found
+
+
+def in_pairs(methods, **more):
     """The set-ups `NAME` and `NAME-default` of each method that finds events by itself. `methods`
-    has for each name what the method is, its class, and its order, or None."""
+    has for each name what the method is, its class, and its order, or None; `more` is what all of
+    them declare besides."""
     return [
         {
             "name": name + suffix,
@@ -294,15 +353,17 @@ def in_pairs(methods):
             "events": "library",
             "dense_output": True,
             "stepping": "adaptive",
+            **more,
         }
         for name, (method, class_, order) in methods.items()
         for suffix in ("", "-default")
     ]
 
 
-def serve(library, version, setups, make):
+def serve(library, version, setups, make, gradients=None):
     """Answers requests until there are no more. `make` takes the name of a set-up and a `Course`,
-    and runs it to its end."""
+    and runs it to its end. Set-ups that declare `gradients` need that function: it takes the same
+    two after a run, and returns the derivatives by the names that it has."""
     said = {
         "library": library,
         "version": version,
@@ -320,12 +381,12 @@ def serve(library, version, setups, make):
         elif request["ask"] == "ready":
             answer["ready"] = True
         else:
-            answer.update(made(make, request["run"]))
+            answer.update(made(make, request["run"], gradients))
         answers.write(json.dumps(answer) + "\n")
         answers.flush()
 
 
-def made(make, run):
+def made(make, run, gradients):
     """A run, or why there is none."""
     course = Course(run)
     try:
@@ -333,6 +394,8 @@ def made(make, run):
         make(run["setup"], course)
         took = time.perf_counter_ns() - began
         answer = course.answer(took)
+        if run.get("gradients"):
+            answer["gradients"] = gradients(run["setup"], course)
         json.dumps(answer, allow_nan=False)
         return {"run": answer}
     except Exception as why:  # whatever a library raises is its reason
