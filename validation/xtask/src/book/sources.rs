@@ -27,6 +27,8 @@ const BRANCH: &str = "main";
 
 /// The sources of the book, by their paths from the repository's root.
 pub struct Sources {
+    /// The address of the repository's site.
+    site: String,
     summary: String,
     pages: Vec<(PathBuf, String)>,
     shown: BTreeSet<PathBuf>,
@@ -35,41 +37,37 @@ pub struct Sources {
 impl Sources {
     /// Reads the pages; fails where one has no place, or a link leads nowhere.
     pub fn collect(root: &Folder) -> Result<Self> {
-        let site = site(root)?;
         let folder = Path::new(SHOWN);
         let summary = root.read(SUMMARY)?;
         let order = links::targets(&summary)?;
         let order: Vec<PathBuf> = order.iter().map(|page| below_root(folder, page)).collect();
         complete(root, &order)?;
-        let mut sources =
-            Self { summary: String::new(), pages: Vec::new(), shown: BTreeSet::new() };
-        sources.summary =
-            links::replaced(&summary, |page| Ok(named(&shown(&below_root(folder, page)))))?;
+        let mut sources = Self {
+            site: site(root)?,
+            summary: links::replaced(&summary, |page| {
+                Ok(named(&shown(&below_root(folder, page))))
+            })?,
+            pages: Vec::new(),
+            shown: BTreeSet::new(),
+        };
         for path in order.iter().filter(|path| !is_generated(path)) {
             let text = root.read(&shown(path))?;
-            sources.add(root, &site, (path, &order), &text)?;
+            sources.add(root, (path, &order), &text)?;
         }
         Ok(sources)
     }
 
     /// Adds the pages that are generated, for which the program is built and run.
     pub fn generate(&mut self, root: &Folder) -> Result<()> {
-        let site = site(root)?;
         for (path, text) in [(VERBS, reference::verbs(root)?), (KEYS, reference::keys(root)?)] {
-            self.add(root, &site, (Path::new(path), &[]), &text)?;
+            self.add(root, (Path::new(path), &[]), &text)?;
         }
         Ok(())
     }
 
     /// Adds a page with its links made good.
-    fn add(
-        &mut self,
-        root: &Folder,
-        site: &str,
-        (page, order): (&Path, &[PathBuf]),
-        text: &str,
-    ) -> Result<()> {
-        let moved = |target: &str| self.moved(root, site, (page, order), target);
+    fn add(&mut self, root: &Folder, (page, order): (&Path, &[PathBuf]), text: &str) -> Result<()> {
+        let moved = |target: &str| self.moved(root, (page, order), target);
         let text = links::replaced(text, moved).with_context(|| shown(page))?;
         self.pages.push((page.to_owned(), text));
         Ok(())
@@ -102,7 +100,6 @@ impl Sources {
     fn moved(
         &mut self,
         root: &Folder,
-        site: &str,
         (page, order): (&Path, &[PathBuf]),
         target: &str,
     ) -> Result<String> {
@@ -128,7 +125,7 @@ impl Sources {
         }
         let kind = if there.is_dir() { "tree" } else { "blob" };
         let anchor = anchor.map(|it| format!("#{it}")).unwrap_or_default();
-        Ok(format!("{site}/{kind}/{BRANCH}/{}{anchor}", shown(&path)))
+        Ok(format!("{}/{kind}/{BRANCH}/{}{anchor}", self.site, shown(&path)))
     }
 }
 
