@@ -38,8 +38,8 @@
 //! # Ok::<(), percuss::SystemError>(())
 //! ```
 //!
-//! What a system's file may hold, what a score of an integrator means, and the oscillator's own
-//! dynamics stand in [the book](https://percuss.github.io/percuss/).
+//! [The book](https://percuss.github.io/percuss/) says what a system's file may hold and what a
+//! score of an integrator means, and has the dynamics of the oscillator.
 //!
 //! # Digits that are proved
 //!

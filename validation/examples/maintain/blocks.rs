@@ -27,7 +27,7 @@ pub(crate) fn read(file: &Path) -> Result<String> {
     std::fs::read_to_string(file).with_context(|| file.display().to_string())
 }
 
-/// What a file of JSON holds.
+/// The value that a file of JSON holds.
 pub(crate) fn read_json<T: DeserializeOwned>(file: &Path) -> Result<T> {
     serde_json::from_str(&read(file)?).with_context(|| file.display().to_string())
 }

@@ -1,4 +1,4 @@
-//! What makes the project's own pages, tables and limits anew: `cargo maintain`.
+//! Makes the project's own pages, tables and limits anew: `cargo maintain`.
 
 pub(crate) mod attractor_power;
 pub(crate) mod blocks;

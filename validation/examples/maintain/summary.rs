@@ -34,7 +34,7 @@ pub(crate) fn run(Arguments { report, page }: &Arguments) -> Result<()> {
 /// The digits of the commit that a headline shows; all of them stand in the report.
 const COMMIT_DIGITS: usize = 12;
 
-/// What was run where.
+/// The line that says which version ran where.
 fn headline(report: &Value) -> String {
     let text = |key: &str| report[key].as_str().unwrap_or("unknown").to_owned();
     let (version, commit, suite, cpu) =
