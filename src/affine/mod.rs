@@ -33,13 +33,13 @@ pub use events::{BITS, LONGEST};
 pub use gradient::derivative::{Gradient, NoGradient};
 pub use gradient::walk::Walk;
 pub use guards::track::SearchWork;
-pub use model::builder::{Expression, ModeBuilder, SystemBuilder, UntilBuilder};
+pub use model::builder::{Expression, LimitBuilder, ModeBuilder, SystemBuilder, UntilBuilder};
 pub use model::error::SystemError;
 pub use model::file::SystemFile;
 pub use model::rational::{Rational, RationalError};
 pub use model::system::{
-    Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, TROUBLE,
-    Until, Watch, is_unit,
+    Direction, Forcing, LARGEST_DIMENSION, Limit, Mode, Row, StartPoint, Successor, System,
+    TROUBLE, Until, Watch, is_unit,
 };
 pub use model::tangent::{Name, Tangent};
 pub use returns::diagram::{LeftOut, ReturnDiagram, ReturnDiagramStep, ValueError};

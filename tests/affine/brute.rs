@@ -96,7 +96,7 @@ proptest! {
             match event.what {
                 What::Until(..) => prop_assert!(value(&mode.until[0].guard, &end).abs() < room),
                 What::Watch(..) => prop_assert!(value(&mode.watch[0].guard, &end).abs() < room),
-                What::Start | What::End(_) => break,
+                What::Start | What::Limit(..) | What::End(_) => break,
             }
             time = next;
             z = complete(&event.state, time);

@@ -18,7 +18,7 @@ fn followed(event: &Event<f64>) -> Option<Followed> {
     Some(match event.what {
         What::Until(_, until) => Followed::Until(until, event.mode),
         What::Watch(_, watch) => Followed::Watch(watch),
-        What::Start | What::End(_) => return None,
+        What::Start | What::Limit(..) | What::End(_) => return None,
     })
 }
 

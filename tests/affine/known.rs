@@ -31,7 +31,7 @@ fn a_ball_bounces_at_the_instants_of_a_geometric_series() {
                 // The height of 1/4 is touched by the first flight, and not crossed.
                 assert_eq!((watch, event.time.value()), (0, time + 0.5 * flight));
             }
-            What::Start => panic!("a run does not begin twice"),
+            What::Start | What::Limit(..) => panic!("a run begins once, and ends at its limit"),
             What::End(ending) => {
                 let Ending::Accumulation(from, to) = ending else { panic!("{ending:?}") };
                 let left = 2.0 - time;

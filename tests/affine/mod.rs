@@ -22,6 +22,7 @@ mod kept;
 mod known;
 mod limits;
 mod oscillator;
+mod past_limits;
 mod random;
 mod return_attractors;
 mod return_orbits;
@@ -68,6 +69,7 @@ fn name<T: Number>(system: &System, event: &Event<T>) -> String {
     match &event.what {
         What::Until(mode, index) => system.modes[*mode].until[*index].name.clone(),
         What::Watch(mode, index) => system.modes[*mode].watch[*index].name.clone(),
+        What::Limit(..) => "accumulation".to_owned(),
         What::Start => String::new(),
         What::End(Ending::Horizon) => "end".to_owned(),
         What::End(Ending::Accumulation(..)) => "accumulation".to_owned(),

@@ -216,6 +216,7 @@ fn kind<T: Number>(event: &Event<T>) -> (u8, usize, usize) {
         What::Start => (0, 0, 0),
         What::Until(mode, index) => (1, *mode, *index),
         What::Watch(mode, index) => (2, *mode, *index),
+        What::Limit(mode, index) => (4, *mode, *index),
         What::End(ending) => (
             3,
             0,

@@ -36,6 +36,7 @@ mod junit;
 mod motions_told;
 mod orbits;
 mod own_cases;
+mod past_accumulations;
 mod power;
 mod project;
 mod readme;

@@ -130,7 +130,7 @@ impl<'m> Space<'m> {
                 Some(Ok(point)) => point,
                 Some(Err(NoReturn::Equilibrium)) => return Err(Stop::Rest(returns.last_event())),
                 Some(Err(NoReturn::Ended(_))) => return Err(Stop::Label(Label::Ended)),
-                Some(Err(NoReturn::AmidEvents)) | None => break,
+                Some(Err(NoReturn::AmidEvents | NoReturn::PastAccumulation)) | None => break,
             };
             let spot = self.spot(&point);
             if spot.at.iter().any(|it| it.is_nan() || it.abs() > FARTHEST) {

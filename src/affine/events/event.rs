@@ -46,6 +46,9 @@ pub enum Kind {
     Until(usize, usize),
     /// A watched guard is crossed: the `watch` of the second index of the mode of the first.
     Watch(usize, usize),
+    /// The event of the mode of the first index that its `until` of the second makes has
+    /// accumulated, and the run goes on by [`Until::accumulates_to`](crate::system::Until).
+    Limit(usize, usize),
     /// A time at which the state was asked for.
     Sample,
     /// The run ends.
@@ -71,6 +74,7 @@ impl Kind {
             engine::What::Start => Self::Start,
             engine::What::Until(mode, index) => Self::Until(*mode, *index),
             engine::What::Watch(mode, index) => Self::Watch(*mode, *index),
+            engine::What::Limit(mode, index) => Self::Limit(*mode, *index),
             engine::What::End(ending) => Self::End(Ending::from(ending)),
         }
     }
@@ -83,6 +87,7 @@ impl Kind {
             Self::Sample => "sample",
             Self::Until(mode, index) => &system.modes[mode].until[index].name,
             Self::Watch(mode, index) => &system.modes[mode].watch[index].name,
+            Self::Limit(..) => Ending::Accumulation.as_str(),
             Self::End(ending) => ending.as_str(),
         }
     }

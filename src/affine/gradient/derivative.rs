@@ -40,6 +40,8 @@ pub enum NoGradient {
     /// The bits do not tell a value from zero that has to differ from it: the rate of a guard that
     /// fires, or the value of another.
     Undecided,
+    /// The run passes the limit of infinitely many impacts, across which none is taken.
+    Accumulation,
     /// The run ended, or its numbers are too large.
     Unknown,
 }
@@ -52,6 +54,9 @@ impl fmt::Display for NoGradient {
             Self::OtherEvents => "the run has other events on that side",
             Self::Touch => "a guard touches zero without crossing: it has two sides",
             Self::Undecided => "a graze, a tie or an event at the horizon, or too few digits",
+            Self::Accumulation => {
+                "the run passes an accumulation of impacts, and none is taken there"
+            }
             Self::Unknown => "the motion is not known",
         })
     }

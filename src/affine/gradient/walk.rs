@@ -153,6 +153,7 @@ impl<'a, T: Number> Walk<'a, T> {
                 Ok(())
             }
             What::End(Ending::Horizon) => self.given_time(event),
+            What::Limit(..) => Err(NoGradient::Accumulation),
             What::End(Ending::Undecided | Ending::LeavesDomain) | What::Start => {
                 Err(NoGradient::Unknown)
             }

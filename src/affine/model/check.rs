@@ -5,7 +5,8 @@ use super::form;
 use super::naming::{check_event, check_kebab, check_symbol};
 use super::rational::Rational;
 use super::system::{
-    LARGEST_COUNT, LARGEST_DIMENSION, Mode, Row, Successor, System, TROUBLE, Until, Watch, is_unit,
+    LARGEST_COUNT, LARGEST_DIMENSION, Limit, Mode, Row, Successor, System, TROUBLE, Until, Watch,
+    is_unit,
 };
 use std::collections::BTreeSet;
 
@@ -163,15 +164,25 @@ impl ModeCheck<'_> {
 
     fn until(&self, until: &Until) -> Result<(), SystemError> {
         self.row("guard", &until.guard)?;
-        self.rows("reset", &until.reset)?;
+        self.reset(&until.reset)?;
+        self.choices("successors", "successor", &until.next)?;
+        let Some(Limit { reset, next }) = &until.accumulates_to else { return Ok(()) };
+        let own = self.within("accumulates_to");
+        own.reset(reset)?;
+        own.choices("successors", "successor", next)
+    }
+
+    /// The matrix of a reset, which leaves cos theta, sin theta and 1 as they are.
+    fn reset(&self, reset: &[Row]) -> Result<(), SystemError> {
+        self.rows("reset", reset)?;
         let states = self.system.states.len();
         let names = if self.system.forcing.is_some() { &["cos", "sin", "1"][..] } else { &["1"] };
         for (n, entry) in names.iter().enumerate() {
-            if !is_unit(&until.reset[states + n], states + n) {
+            if !is_unit(&reset[states + n], states + n) {
                 return Err(SystemError::Reset { item: self.item.clone(), entry });
             }
         }
-        self.choices("successors", "successor", &until.next)
+        Ok(())
     }
 
     /// A list of modes, of which the first follows whose condition holds.

@@ -3,7 +3,7 @@
 
 use super::error::SystemError;
 use super::rational::Rational;
-use super::system::{Mode, Row, Successor, System, Until};
+use super::system::{Mode, Row, Successor, System};
 use std::collections::BTreeSet;
 
 /// Where an expression of a system is that no drift may be in.
@@ -17,6 +17,8 @@ pub(super) enum Place {
     Reset { mode: usize, until: usize, state: usize },
     /// The condition of a successor of an `until`.
     When { mode: usize, until: usize, successor: usize },
+    /// The reset or a condition of the limit at which an `until` accumulates.
+    Limit { mode: usize, until: usize },
     /// The condition of a mode of the start.
     Start { choice: usize },
 }
@@ -109,6 +111,9 @@ impl System {
             Place::When { mode: at, until: event, successor } => {
                 (format!("{}, condition", until(at, event)), format!(" {}", successor + 1))
             }
+            Place::Limit { mode: at, until: event } => {
+                (format!("{}, accumulates_to", until(at, event)), String::new())
+            }
             Place::Start { choice } => ("start, condition".to_owned(), format!(" {}", choice + 1)),
         };
         match written.is_empty() {
@@ -126,23 +131,31 @@ impl Mode {
         let guard = self.until.iter().map(|it| &it.guard).chain(watched).position(|it| has(it, n));
         let events = self.until.iter().enumerate();
         let reset = events.clone().find_map(|(until, it)| {
-            reset_on(it, n, states).map(|state| Place::Reset { mode, until, state })
+            reset_on(&it.reset, n, states).map(|state| Place::Reset { mode, until, state })
         });
         let when = events.clone().find_map(|(until, it)| {
             choice_on(&it.next, n).map(|successor| Place::When { mode, until, successor })
         });
+        let limit = self.until.iter().position(|it| {
+            let limit = it.accumulates_to.as_ref();
+            limit.is_some_and(|it| {
+                reset_on(&it.reset, n, states).is_some() || choice_on(&it.next, n).is_some()
+            })
+        });
         let equation = equation.map(|state| Place::Equation { mode, state });
-        equation.or(guard.map(|event| Place::Guard { mode, event })).or(reset).or(when)
+        let guard = guard.map(|event| Place::Guard { mode, event });
+        let limit = limit.map(|until| Place::Limit { mode, until });
+        equation.or(guard).or(reset).or(when).or(limit)
     }
 }
 
 /// The state whose reset depends on a state, or does not keep that state itself.
-fn reset_on(until: &Until, n: usize, states: usize) -> Option<usize> {
+fn reset_on(reset: &[Row], n: usize, states: usize) -> Option<usize> {
     let keeps = |(k, row): (usize, &Row)| match row.get(n).map(Rational::is_one) {
         Some(is_one) if k == n => is_one,
         _ => !has(row, n),
     };
-    until.reset.iter().take(states).enumerate().position(|it| !keeps(it))
+    reset.iter().take(states).enumerate().position(|it| !keeps(it))
 }
 
 /// The choice whose condition depends on a state.

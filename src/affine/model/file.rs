@@ -5,8 +5,8 @@ use super::error::SystemError;
 use super::naming::check_kebab;
 use super::scalar::{Assignment, Condition, Scalar};
 use super::source::{Source, SourceText};
-use serde::de::value::SeqAccessDeserializer;
-use serde::de::{self, IgnoredAny, SeqAccess, Visitor};
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{self, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -132,6 +132,67 @@ pub(super) struct UntilTable {
     #[serde(default)]
     pub reset: Vec<Spanned<Assignment>>,
     pub next: Option<Spanned<Vec<NextTable>>>,
+    pub accumulates_to: Option<Spanned<LimitEntry>>,
+}
+
+/// An `accumulates_to`: the name of a mode, or a table with a reset.
+#[derive(Clone, Debug)]
+pub(super) enum LimitEntry {
+    Mode(String),
+    Table(LimitTable),
+}
+
+impl<'de> Deserialize<'de> for LimitEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Read;
+        impl<'de> Visitor<'de> for Read {
+            type Value = LimitEntry;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the name of a mode, or a table { reset = [...], next = ... }")
+            }
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<LimitEntry, E> {
+                Ok(LimitEntry::Mode(value.to_owned()))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<LimitEntry, A::Error> {
+                Deserialize::deserialize(MapAccessDeserializer::new(table)).map(LimitEntry::Table)
+            }
+        }
+        deserializer.deserialize_any(Read)
+    }
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table, { reset = [...], next = ... }")]
+pub(super) struct LimitTable {
+    #[serde(default)]
+    pub reset: Vec<Spanned<Assignment>>,
+    pub next: Spanned<NextEntry>,
+}
+
+/// The successors of a limit: the name of a mode, or a list of modes by conditions.
+#[derive(Clone, Debug)]
+pub(super) enum NextEntry {
+    Mode(String),
+    Modes(Vec<NextTable>),
+}
+
+impl<'de> Deserialize<'de> for NextEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Read;
+        impl<'de> Visitor<'de> for Read {
+            type Value = NextEntry;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the name of a mode, or a list of { when, mode }")
+            }
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<NextEntry, E> {
+                Ok(NextEntry::Mode(value.to_owned()))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<NextEntry, A::Error> {
+                Deserialize::deserialize(SeqAccessDeserializer::new(list)).map(NextEntry::Modes)
+            }
+        }
+        deserializer.deserialize_any(Read)
+    }
 }
 
 #[derive(Clone, Debug, Deserialize)]

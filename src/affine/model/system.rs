@@ -136,6 +136,22 @@ pub struct Mode {
     pub watch: Vec<Watch>,
 }
 
+impl Mode {
+    /// The resets and the successors by which the mode is left: those of each `until`, then in the
+    /// same order those of their limits, which are empty where a run ends there.
+    pub(in crate::affine) fn exits(&self) -> impl Iterator<Item = (&[Row], &[Successor])> + Clone {
+        let limits = self.until.iter().map(Until::limit);
+        self.until.iter().map(|it| (&it.reset[..], &it.next[..])).chain(limits)
+    }
+}
+
+impl Until {
+    /// The reset and the successors of the limit, empty where there is none.
+    fn limit(&self) -> (&[Row], &[Successor]) {
+        self.accumulates_to.as_ref().map_or((&[], &[]), |it| (&it.reset, &it.next))
+    }
+}
+
 /// A guard that ends its mode where it becomes positive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Until {
@@ -144,6 +160,17 @@ pub struct Until {
     /// The guard, negative inside the mode.
     pub guard: Row,
     /// The rows of the reset's matrix R.
+    pub reset: Vec<Row>,
+    /// The modes that may follow: the first whose condition holds does.
+    pub next: Vec<Successor>,
+    /// The passage to what follows where the event accumulates; a run without it ends there.
+    pub accumulates_to: Option<Limit>,
+}
+
+/// The passage from the limit at which an event accumulates to the mode that follows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Limit {
+    /// The rows of the reset's matrix, which acts on the limit of the states.
     pub reset: Vec<Row>,
     /// The modes that may follow: the first whose condition holds does.
     pub next: Vec<Successor>,

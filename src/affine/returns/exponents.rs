@@ -82,7 +82,7 @@ impl SectionMap<'_, f64> {
         let (mut passed, mut drift) = (0, self.drift_of(&place.state));
         for k in 0..=batches.count() {
             while passed < settling + batches.end(k) {
-                let event = walk.next(&mut |from, to| frame.pass(from, to))?;
+                let event = walk.next_with_derivative(&mut |from, to| frame.pass(from, to))?;
                 let time = event.time.value();
                 passed += 1;
                 if passed == settling + batches.end(k) {

@@ -88,7 +88,7 @@ impl<T: Number> SectionMap<'_, T> {
         let mut walk = Walk::begin(self, place, false);
         let mut variation = Variation::of_each_state(self.solver());
         let mut events = Vec::new();
-        let event = walk.next(&mut |from, to| {
+        let event = walk.next_with_derivative(&mut |from, to| {
             variation.pass(self.solver(), from, to);
             events.extend(Guard::of(&to.what));
         })?;

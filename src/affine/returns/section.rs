@@ -127,7 +127,7 @@ impl Guard {
         match *what {
             What::Until(mode, index) => Some(Self { mode, index, is_watched: false }),
             What::Watch(mode, index) => Some(Self { mode, index, is_watched: true }),
-            What::Start | What::End(_) => None,
+            What::Start | What::Limit(..) | What::End(_) => None,
         }
     }
 

@@ -20,6 +20,8 @@ pub enum NoReturn {
     Ended(Ending),
     /// The return is one of several events of one instant, between which no run begins.
     AmidEvents,
+    /// The motion passes the limit of infinitely many impacts, across which no derivative is taken.
+    PastAccumulation,
 }
 
 impl fmt::Display for NoReturn {
@@ -27,6 +29,9 @@ impl fmt::Display for NoReturn {
         match self {
             Self::Equilibrium => f.write_str("the motion does not return to the section"),
             Self::Ended(ending) => write!(f, "the run ends: {ending}"),
+            Self::PastAccumulation => f.write_str(
+                "the motion passes an accumulation of impacts, across which no derivative is taken",
+            ),
             Self::AmidEvents => f.write_str("the section's event is one of several at once"),
         }
     }
@@ -73,6 +78,19 @@ impl<'a, T: Number> Walk<'a, T> {
             }
         }
         Ok(&self.last)
+    }
+
+    /// The next return, whose way has a derivative as far as accumulations go.
+    pub fn next_with_derivative(
+        &mut self,
+        see: &mut dyn FnMut(&Event<T>, &Event<T>),
+    ) -> Result<&Event<T>, NoReturn> {
+        let mut passes_limit = false;
+        self.next(&mut |from, to| {
+            passes_limit |= matches!(to.what, What::Limit(..));
+            see(from, to);
+        })?;
+        if passes_limit { Err(NoReturn::PastAccumulation) } else { Ok(&self.last) }
     }
 
     /// Whether the last event is a return.

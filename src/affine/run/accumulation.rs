@@ -15,9 +15,24 @@ use crate::numeric::number::{Bound, Number};
 /// A run ends at an accumulation once at most this share of the system's unit of time is left.
 const LEFT: f64 = 1.0 / (1u64 << 30) as f64;
 
+/// The rest of the motion from an impact to the limit at which impacts accumulate.
+#[derive(Clone, Debug)]
+pub(super) struct Remaining<T: Number> {
+    /// The earliest and the latest time of the limit, after the impact.
+    pub earliest: T,
+    pub latest: T,
+    /// The coefficient of restitution e, with a bound of its relative error.
+    pub restitution: T,
+    pub restitution_error: T::Bound,
+    /// The root of the largest acceleration in units of the smallest.
+    pub spread: T,
+    /// A bound of what errors of e and of the acceleration add to the time.
+    pub unknown: T::Bound,
+}
+
 impl<T: Number> Run<'_, T> {
-    /// Bounds of the time from the impact just passed to the limit at which impacts accumulate, if
-    /// that is proved and near. `before` is the state just before the impact, in the mode's
+    /// The time from the impact just passed to the limit at which impacts accumulate, if that is
+    /// proved and near. `before` is the state just before the impact, in the mode's
     /// co-ordinates.
     pub(super) fn accumulation(
         &mut self,
@@ -25,7 +40,7 @@ impl<T: Number> Run<'_, T> {
         firing: Firing,
         before: &Vector<T>,
         successor: usize,
-    ) -> Option<(T, T)> {
+    ) -> Option<Remaining<T>> {
         let solver_mode = &self.solver.modes[mode];
         let flow = &solver_mode.flow;
         let after = &{ self.segment.entry.y };
@@ -67,26 +82,39 @@ impl<T: Number> Run<'_, T> {
                 return None;
             }
         }
-        let q = e * (a2 / a1).sqrt();
+        let spread = (a2 / a1).sqrt();
+        let q = e * spread;
         let twice = departing + departing;
         let one = T::one();
         let earliest = twice / (a2 * (one - e * (a1 / a2).sqrt()));
         let latest = twice / (a1 * (one - q));
         let (earliest, latest) = self.widened(earliest, latest, gap, u);
         let proved = a1 > T::zero() && q < one && latest.to_f64() <= LEFT * scale;
-        proved.then_some((earliest, latest))
+        let [rate_share, bend_share] = [(1, departing), (2, bend)]
+            .map(|(order, value)| self.share(gap, order, value.to_f64()));
+        let rest = T::unit() * 16.0 + bend_share * 2.0 + rate_share * (2.0 / (1.0 - e_f64));
+        let unknown = if self.enclosure.is_some() { rest * latest.bound() } else { T::Bound::ZERO };
+        let restitution_error = rate_share + T::unit() * 4.0;
+        let restitution = e;
+        let found = Remaining { earliest, latest, restitution, restitution_error, spread, unknown };
+        proved.then_some(found)
     }
 
     /// Widens the bounds by the errors of the rate of departure, in a run that follows its errors.
     fn widened(&self, earliest: T, latest: T, gap: &ModalRow<T>, rate: f64) -> (T, T) {
-        let flow = &self.solver.modes[self.graph.node(self.node).mode].flow;
-        let inherited = self.enclosure.as_ref();
-        let inherited = inherited.map_or(T::Bound::ZERO, |it| it.of_row(flow, gap, 1));
-        let (_, size) = gap.order(1, &self.segment.entry);
-        let share = (inherited + T::unit() * 32.0 * size) * 4.0 / rate;
+        let share = self.share(gap, 1, rate);
         let share = if self.enclosure.is_some() { share } else { T::Bound::ZERO };
         let room = latest * T::of_bound(share);
         (earliest - room, latest + room)
+    }
+
+    /// A bound of the relative error of a derivative of the gap that has this value.
+    fn share(&self, gap: &ModalRow<T>, order: usize, value: f64) -> T::Bound {
+        let flow = &self.solver.modes[self.graph.node(self.node).mode].flow;
+        let inherited = self.enclosure.as_ref();
+        let inherited = inherited.map_or(T::Bound::ZERO, |it| it.of_row(flow, gap, order));
+        let (_, size) = gap.order(order, &self.segment.entry);
+        (inherited + T::unit() * 32.0 * size) * 4.0 / value
     }
 
     /// The coefficient of restitution: it is a constant of the model, and the fastest impact shows

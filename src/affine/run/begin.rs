@@ -91,6 +91,8 @@ impl<T: Number> Solver<T> {
             segment: GuardedSegment::before(&self.modes[mode].flow, &self.modes[mode].guards),
             failed_attempts: vec![FailedAttempts::default(); self.modes.len()],
             restitution: None,
+            limit_ahead: None,
+            is_silent: false,
             at_entry: 0,
             returning: 0,
             is_lenient: false,

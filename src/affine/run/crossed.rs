@@ -125,7 +125,7 @@ impl<T: Number> Run<'_, T> {
             Direction::Falling => !rising,
             Direction::Both => true,
         };
-        if counted {
+        if counted && !self.is_silent {
             let mut event = self.event(What::Watch(mode, watch), time, state);
             event.errors = errors.map(|it| self.errors(it));
             if errors.is_some() {

@@ -199,7 +199,7 @@ impl<B: Bound> Enclosure<B> {
 
     /// Takes away what is computed anew at an event: the errors of cos theta and sin theta become
     /// those that the errors of the time make, and the entry that is 1 has none.
-    fn anchor(&mut self, phase: Option<usize>, one: usize, rates: &[B]) {
+    pub fn anchor(&mut self, phase: Option<usize>, one: usize, rates: &[B]) {
         for column in &mut self.columns {
             column.state[one] = B::ZERO;
             for n in phase.map_or(0..0, |at| at..at + 2) {
@@ -240,7 +240,11 @@ impl<B: Bound> Enclosure<B> {
 }
 
 /// The rates M z of a state.
-fn rates<T: Number>(flow: &ModeFlow<T>, matrix: &[Vector<T>], state: &Vector<T>) -> Vec<T::Bound> {
+pub(super) fn rates<T: Number>(
+    flow: &ModeFlow<T>,
+    matrix: &[Vector<T>],
+    state: &Vector<T>,
+) -> Vec<T::Bound> {
     matrix.iter().map(|row| dot(row, state, flow.dimension).bound()).collect()
 }
 
@@ -273,7 +277,7 @@ impl<B: Bound> ErrorColumn<B> {
     pub const ZERO: Self = Self { state: [B::ZERO; LARGEST_DIMENSION], time: B::ZERO };
 
     /// Moves the error to a crossing that is later by `delay`.
-    fn delayed(&mut self, delay: B, rates: &[B]) {
+    pub fn delayed(&mut self, delay: B, rates: &[B]) {
         for (entry, rate) in self.state.iter_mut().zip(rates) {
             *entry += *rate * delay;
         }

@@ -5,6 +5,7 @@ use super::Run;
 use super::enclosure::Enclosure;
 use super::origins::{ExactRun, Origin};
 use crate::affine::arithmetic::vector::Vector;
+use crate::affine::model::rational::Rational;
 use crate::affine::solver::event::What;
 use crate::affine::zeros::exact::{Chain, Entries, Instant};
 use crate::affine::zeros::exact_mode::{entries_after, solve};
@@ -153,18 +154,31 @@ impl<T: Number> Run<'_, T> {
         entries
     }
 
-    /// The exact entries after the reset of an event.
-    pub(super) fn exact_after(&self, mode: usize, until: usize, before: &Entries) -> Entries {
-        entries_after(&self.solver.system.modes[mode].until[until].reset, before)
+    /// The exact entries at a limit before its reset, of which only the last is known.
+    pub(super) fn exact_at_limit(&self) -> Option<Entries> {
+        self.exact.as_ref()?;
+        let mut entries: Entries = vec![None; self.solver.system.dimension()];
+        *entries.last_mut()? = Some(Rational::ONE);
+        Some(entries)
     }
 
-    /// Passes an event of a mode, with the exact entries after it, to the segment that now begins.
-    pub(super) fn pass_exactly(&mut self, mode: usize, until: usize, entries: Option<Entries>) {
+    /// The exact entries after the reset of an event, or of a limit.
+    pub(super) fn exact_after(&self, mode: usize, exit: usize, before: &Entries) -> Entries {
+        let reset = self.solver.system.modes[mode].exits().nth(exit).map(|(reset, _)| reset);
+        entries_after(reset.unwrap_or_default(), before)
+    }
+
+    /// Passes an event of a mode, or a limit, with the exact entries after it, to the segment that
+    /// now begins.
+    pub(super) fn pass_exactly(&mut self, mode: usize, exit: usize, entries: Option<Entries>) {
         let (to, error) = (self.graph.node(self.node).mode, self.time_error());
         let modes = &self.solver.system.modes;
         if let (Some(exact), Some(entries)) = (&mut self.exact, entries) {
             let origin = Origin { time: self.entered, error, entries };
-            exact.pass([&modes[mode], &modes[to]], &modes[mode].until[until], origin);
+            match modes[mode].until.get(exit) {
+                Some(until) => exact.pass([&modes[mode], &modes[to]], until, origin),
+                None => exact.pass_limit(origin),
+            }
         }
     }
 }

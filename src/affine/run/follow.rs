@@ -151,6 +151,7 @@ impl<T: Number> Follower<'_, T> {
         (run.ended, run.events_in_instant, run.restitution) = (false, 0, None);
         let until_guards = low_bits(solver.system.modes[self.mode].until.len());
         (run.is_lenient, run.returning) = (true, late & until_guards);
+        (run.limit_ahead, run.is_silent) = (None, false);
         run.last = run.event(What::Start, run.entered, &run.state);
         self.record.clone_from(&run.last);
         run.enter();

@@ -2,8 +2,8 @@
 //!
 //! [`begin`] makes a run of a start. This file enters each segment and asks for its first crossing;
 //! [`crossed`] says which events the crossed guards are, and [`transition`] resets the state and
-//! picks the successor. [`accumulation`] encloses where impacts accumulate, and [`enclosure`]
-//! carries the errors along in a run that follows them. [`horizon`] has the errors at a time that
+//! picks the successor. [`accumulation`] encloses where impacts accumulate, [`limit`] goes on
+//! from there, and [`enclosure`] carries the errors along in a run that follows them. [`horizon`] has the errors at a time that
 //! is given, and [`given_up`] the motion that is known where such a run is not decided. [`follow`]
 //! continues the records of a run that someone else has made, [`place`] is where a run may be cut
 //! and go on with another state, and [`variation`] carries small changes of the state along. Read
@@ -17,6 +17,7 @@ mod exact;
 pub mod follow;
 mod given_up;
 mod horizon;
+mod limit;
 mod origins;
 pub mod place;
 mod reduction;
@@ -36,6 +37,7 @@ use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::zeros::graph::{Firing, ZeroGuards};
 use crate::numeric::number::{Bound, Number};
 use enclosure::Enclosure;
+use limit::LimitAhead;
 use origins::ExactRun;
 use std::collections::VecDeque;
 
@@ -57,6 +59,10 @@ pub struct Run<'a, T: Number> {
     failed_attempts: Vec<FailedAttempts>,
     /// The coefficient of restitution of an impact, from its fastest occurrence.
     restitution: Option<Restitution<T>>,
+    /// The limit of the impact just passed, where it accumulates and the run goes on after it.
+    limit_ahead: Option<Box<LimitAhead<T>>>,
+    /// Whether impacts go on without events up to a limit.
+    is_silent: bool,
     /// The guards that fire at the instant of entry, as bits.
     at_entry: u64,
     /// The guards of `until` that are positive since the segment was entered and do not fire until
@@ -264,6 +270,9 @@ impl<'a, T: Number> Run<'a, T> {
 
     /// Searches for the next event, and queues the events of its instant.
     fn advance(&mut self) {
+        if self.limit_ahead.is_some() && self.pass_limit() {
+            return;
+        }
         if self.at_entry != 0 {
             let zero = ZeroGuards { guards: self.at_entry, point: None };
             let guards = self.graph.tied(self.node, zero, true);

@@ -118,6 +118,12 @@ impl<T: Number> ExactRun<T> {
         self.circles.get(guard)?.as_ref()
     }
 
+    /// Begins anew where these entries are known: nothing goes on from before a limit.
+    pub fn pass_limit(&mut self, next: Origin<T>) {
+        self.entry = next;
+        self.earlier.clear();
+    }
+
     /// Passes an event from one mode to another, after which these entries are known.
     pub fn pass(&mut self, [from, to]: [&Mode; 2], until: &Until, next: Origin<T>) {
         self.earlier.insert(0, std::mem::replace(&mut self.entry, next));

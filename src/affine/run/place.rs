@@ -93,7 +93,7 @@ impl<T: Number> Run<'_, T> {
         let node = self.graph.node(self.node);
         let until = self.solver.system.modes[node.mode].until.len();
         let zeros = match self.last.what {
-            What::Start | What::Until(..) => node.zeros().clone(),
+            What::Start | What::Until(..) | What::Limit(..) => node.zeros().clone(),
             What::Watch(_, watch) => self.zeros_along(1 << (until + watch)),
             // No time has passed since the entry, all of whose zeros are there still.
             What::End(Ending::Horizon) if self.is_at_entry() => node.zeros().clone(),

@@ -2,8 +2,10 @@
 //! a run there.
 
 use super::Run;
+use super::limit::Jump;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{Vector, twice_summed_rounding};
+use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::exact::Entries;
 use crate::affine::zeros::graph::Firing;
@@ -30,22 +32,30 @@ impl<T: Number> Run<'_, T> {
             let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
             state[*n] = terms.fold(T::zero(), |sum, term| sum + term);
         }
-        let exact = self.exact_before(mode, firing.zero, firing.at_entry);
+        let limit = firing.until.checked_sub(solver.system.modes[mode].until.len());
+        let exact = match limit {
+            Some(_) => self.exact_at_limit(),
+            None => self.exact_before(mode, firing.zero, firing.at_entry),
+        };
         let exact = exact.map(|it| self.exact_after(mode, firing.until, &it));
         let successor = self.successor(mode, firing, &state, exact.as_ref());
         if self.is_open() {
             return;
         }
         let arrival = self.graph.arrival(self.node, firing);
-        let (impact, zero_entries) = (arrival.impact, arrival.zero_entries);
+        let (impact, rests) = (arrival.impact, arrival.rests);
+        let zero_entries = arrival.zero_entries;
         self.returning = 0;
         let from = self.node;
         let next = self.graph.enter(from, firing, successor);
         self.node = next;
         (self.entered, self.state) = (time, state);
         self.pass_exactly(mode, firing.until, exact);
-        let mut event = self.event(What::Until(mode, firing.until), time, &self.state);
+        let what = limit.map_or(What::Until(mode, firing.until), |it| What::Limit(mode, it));
+        let mut event = self.event(what, time, &self.state);
+        let mut errors_before = [T::Bound::ZERO; LARGEST_DIMENSION];
         if let Some(errors) = self.enclosure.take() {
+            errors_before = errors.state();
             let reset = &solver.modes[mode].resets[firing.until];
             let sizes = reset.iter().map(|row| {
                 let terms = row.iter().zip(&before).map(|(a, b)| (a.bound() * b.bound()).abs());
@@ -57,16 +67,23 @@ impl<T: Number> Run<'_, T> {
             event.set_zeros(zero_entries);
             self.enclosure = Some(errors);
         }
-        self.queue.push_back(event);
+        if !self.is_silent {
+            self.queue.push_back(event);
+        }
         if self.work.undecidable == 0 {
             self.decided = self.queue.len();
         }
         self.enter();
+        let jump = Jump { until: firing.until, before, errors: errors_before };
         if impact && next == from {
             let below = solver.modes[mode].flow.co_ordinates(&before);
-            if let Some((earliest, latest)) = self.accumulation(mode, firing, &below, successor) {
-                return self.end(Ending::Accumulation(earliest, latest));
-            }
+            let remaining = self.accumulation(mode, firing, &below, successor);
+            self.accumulate(mode, &jump, remaining);
+        } else if self.is_silent {
+            // Up to a limit there is no other event; rounding has made one.
+            self.end(Ending::Undecided);
+        } else if rests && self.graph.node(next).mode == mode {
+            self.rest(mode, &jump);
         }
         if self.events_in_instant >= MOST_AT_ONCE {
             self.end(Ending::NoProgress);
@@ -85,7 +102,8 @@ impl<T: Number> Run<'_, T> {
         let solver = self.solver;
         let orders = &self.graph.arrival(self.node, firing).orders;
         let conditions = &solver.modes[mode].conditions[firing.until];
-        let next = &solver.system.modes[mode].until[firing.until].next;
+        let next = solver.system.modes[mode].exits().nth(firing.until).map(|(_, next)| next);
+        let next = next.unwrap_or_default();
         for (n, (condition, order)) in conditions.iter().zip(orders.iter()).enumerate() {
             let chain = || solver.exact_mode(mode).conditions[firing.until][n].as_ref();
             if let Some(begin) = exact.and_then(|it| chain()?.begin(it)) {

@@ -77,7 +77,8 @@ impl<T: Number> Variation<T> {
         let (mode, guard, until) = match to.what {
             What::Until(mode, index) => (mode, index, Some(index)),
             What::Watch(mode, index) => (mode, solver.system.modes[mode].until.len() + index, None),
-            What::Start | What::End(_) => return,
+            // Whoever carries changes refuses a limit, or leaves it to others to refuse.
+            What::Start | What::Limit(..) | What::End(_) => return,
         };
         if !is_at_once(from, to) {
             self.delay(solver, mode, guard, to, &solver.state_at(from, &to.time));

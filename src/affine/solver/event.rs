@@ -12,6 +12,9 @@ pub enum What<T> {
     Until(usize, usize),
     /// The `watch` of the second index is crossed in the mode of the first.
     Watch(usize, usize),
+    /// The event of the mode of this index that its `until` of the second index makes has
+    /// accumulated, and the run goes on.
+    Limit(usize, usize),
     /// The run ends.
     End(Ending<T>),
 }

@@ -45,11 +45,11 @@ pub(super) struct SolverMode<T: Number> {
     pub guards: Vec<ModalRow<T>>,
     /// The rows of the mode's guards, in the entries of z.
     pub rows: Vec<Vector<T>>,
-    /// The matrices of the resets of `until`.
+    /// The matrices of the resets of `until`, then those of their limits.
     pub resets: Vec<Vec<Vector<T>>>,
     /// For each reset, the entries of z that it changes, with their rows.
     pub changes: Vec<Vec<Change<T>>>,
-    /// The conditions of the successors of each `until`, in the co-ordinates of their modes.
+    /// The conditions of the successors of each reset, in the co-ordinates of their modes.
     pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
     /// The mode's rows in exact arithmetic, once a run asks for them.
     pub exact: OnceLock<ExactMode>,
@@ -99,18 +99,18 @@ impl<T: Number> Solver<T> {
                 let twin = guards.iter().position(|it| it == guard).unwrap_or_default();
                 ModalRow { twin, ..row(guard, n) }
             };
-            let conditions = mode.until.iter().map(|until| {
+            let conditions = mode.exits().map(|(_, next)| {
                 let condition = |it: &Successor| it.when.as_ref().map(|when| row(when, it.mode));
-                until.next.iter().map(condition).collect()
+                next.iter().map(condition).collect()
             });
-            let resets = mode.until.iter().map(|it| it.reset.iter().map(numbers).collect());
+            let resets = mode.exits().map(|(reset, _)| reset.iter().map(numbers).collect());
             SolverMode {
                 flow: flows[n].clone(),
                 matrix: mode.matrix.iter().map(numbers).collect(),
                 guards: guards.iter().map(guard).collect(),
                 rows: guards.iter().map(|it| numbers(it)).collect(),
                 resets: resets.collect(),
-                changes: mode.until.iter().map(|it| changes(&it.reset)).collect(),
+                changes: mode.exits().map(|(reset, _)| changes(reset)).collect(),
                 conditions: conditions.collect(),
                 exact: OnceLock::new(),
             }

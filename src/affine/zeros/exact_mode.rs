@@ -65,9 +65,8 @@ impl ExactMode {
             turning: guards.clone().map(|it| TurningGuard::of(it, states, &mode.matrix)).collect(),
             guards: guards.map(|it| Chain::of(it, &mode.matrix)).collect(),
             conditions: mode
-                .until
-                .iter()
-                .map(|it| it.next.iter().map(condition).collect())
+                .exits()
+                .map(|(_, next)| next.iter().map(condition).collect())
                 .collect(),
             entries: (0..mode.matrix.len()).map(|n| Chain::of(&unit(n), &mode.matrix)).collect(),
         }

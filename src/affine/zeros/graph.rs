@@ -8,7 +8,7 @@ use super::circle::Circle;
 use super::residue::{Residue, Residues, residues, row_times};
 use super::space::ZeroSpace;
 use crate::affine::model::rational::Rational;
-use crate::affine::model::system::{Mode, Row, Successor, System, Until};
+use crate::affine::model::system::{Mode, Row, Successor, System};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -25,13 +25,15 @@ struct ModeResidues {
     /// For each guard, the rows that are zero where it is zero at one or the other of two rational
     /// points of the circle.
     points: Vec<[Vec<Residues>; 2]>,
+    /// The resets of `until`, then those of their limits.
     resets: Vec<Vec<Residues>>,
-    /// The conditions of each event's successors, with their modes.
+    /// The conditions of each reset's successors, with their modes.
     next: Vec<Vec<(Option<Residues>, usize)>>,
 }
 
 /// An event: the `until` that ends the mode, the zeros there, and whether it is at the instant at
-/// which the mode was entered.
+/// which the mode was entered. The limit at which an `until` accumulates is numbered after all
+/// `until`: all zeros of the mode's entry hold there, with the guard and its rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Firing {
     pub until: usize,
@@ -73,6 +75,10 @@ pub struct Arrival {
     /// Whether the event multiplies the rate of its guard by a negative factor and leaves it at
     /// zero.
     pub impact: bool,
+    /// Whether the event leaves its guard and the rate of that at zero.
+    pub rests: bool,
+    /// The entries of z that are zero before the event's reset, as bits.
+    pub zero_before: u64,
     /// The entries of z that are zero after the event, as bits.
     pub zero_entries: u64,
     after: ZeroSpace,
@@ -213,7 +219,11 @@ impl Node {
 
 fn arrived(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
     let own = &modes[node.mode];
-    let zeros = with_rows(node.zeros_at(firing.at_entry), own, firing.zero);
+    let mut zeros = with_rows(node.zeros_at(firing.at_entry), own, firing.zero);
+    let limit = firing.until.checked_sub(own.resets.len() / 2);
+    if let Some(guard) = limit.map(|until| &own.guards[until]) {
+        zeros.insert(&row_times(guard, &own.matrix));
+    }
     let after = zeros.after(&own.resets[firing.until]);
     let next = &own.next[firing.until];
     let order = |(when, mode): &(Option<Residues>, usize)| {
@@ -221,7 +231,9 @@ fn arrived(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
     };
     Arrival {
         orders: next.iter().map(order).collect(),
-        impact: is_impact(own, firing.until, &zeros, &after),
+        impact: limit.is_none() && is_impact(own, firing.until, &zeros, &after),
+        rests: limit.is_none() && rests(own, firing.until, &after),
+        zero_before: zeros.zero_entries(own.matrix.len()),
         zero_entries: after.zero_entries(own.matrix.len()),
         nodes: vec![None; next.len()],
         after,
@@ -237,6 +249,12 @@ fn with_rows(zeros: &ZeroSpace, mode: &ModeResidues, zero: ZeroGuards) -> ZeroSp
         mode.points[guard][point].iter().for_each(|row| zeros.insert(row));
     }
     zeros
+}
+
+/// h+ = 0 and h'+ = 0 with the guard h.
+fn rests(own: &ModeResidues, until: usize, after: &ZeroSpace) -> bool {
+    let guard = &own.guards[until];
+    after.contains(guard) && after.contains(&row_times(guard, &own.matrix))
 }
 
 /// h+ = 0 and h'+ = -e h' with the guard h; and all other changes are multiples of h'.
@@ -263,19 +281,19 @@ impl ModeResidues {
         let rows = until.chain(mode.watch.iter().map(|it| &it.guard));
         let guards = rows.clone().map(|it| residues(it));
         let points = rows.map(|it| points(it, states));
-        let next = |until: &Until| {
+        let next = |next: &[Successor]| {
             let one = |it: &Successor| match &it.when {
                 Some(row) => residues(row).map(|row| (Some(row), it.mode)),
                 None => Some((None, it.mode)),
             };
-            until.next.iter().map(one).collect()
+            next.iter().map(one).collect()
         };
         Some(Self {
             matrix: matrix(&mode.matrix)?,
             guards: guards.collect::<Option<_>>()?,
             points: points.collect::<Option<_>>()?,
-            resets: mode.until.iter().map(|it| matrix(&it.reset)).collect::<Option<_>>()?,
-            next: mode.until.iter().map(next).collect::<Option<_>>()?,
+            resets: mode.exits().map(|(reset, _)| matrix(reset)).collect::<Option<_>>()?,
+            next: mode.exits().map(|(_, successors)| next(successors)).collect::<Option<_>>()?,
         })
     }
 }

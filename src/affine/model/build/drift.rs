@@ -61,6 +61,7 @@ fn written<'a>(file: &'a SystemFile, system: &System, place: Place) -> Option<&'
             let next = modes[mode].until[until].next.as_ref()?;
             text(next.get_ref().get(successor)?.when.as_ref()?.get_ref())
         }
+        Place::Limit { .. } => None,
         Place::Start { choice } => text(&file.start.as_ref()?.modes.get(choice)?.when.as_ref()?.0),
     }
 }

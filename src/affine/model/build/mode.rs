@@ -5,15 +5,19 @@ use crate::affine::model::dual::Dual;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::expression::expression;
 use crate::affine::model::file::{
-    ModeTable, StartChoice, StartTable, SystemFile, UntilTable, WatchTable,
+    LimitEntry, LimitTable, ModeTable, NextEntry, NextTable, StartChoice, StartTable, SystemFile,
+    UntilTable, WatchTable,
 };
 use crate::affine::model::form::Form;
 use crate::affine::model::naming::{check_event, unknown_mode};
 use crate::affine::model::rational::Rational;
 use crate::affine::model::scalar::{Assignment, Condition, Scalar};
-use crate::affine::model::system::{Direction, LARGEST_COUNT, Mode, Row, Successor, Until, Watch};
+use crate::affine::model::system::{
+    Direction, LARGEST_COUNT, Limit, Mode, Row, Successor, Until, Watch,
+};
 use crate::unknown_name::UnknownName;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use toml::Spanned;
 
 /// A reader of a mode's tables, with all that they refer to but the names of expressions.
@@ -144,7 +148,24 @@ impl ModeReader<'_> {
         here: usize,
     ) -> Result<Until, SystemError> {
         let guard = self.guard(names, &table.guard)?;
-        let dimension = guard.len();
+        let reset = self.reset(names, &table.reset, guard.len())?;
+        let next = match &table.next {
+            Some(next) => self.successors(names, next.get_ref(), &next.span())?,
+            None => vec![Successor { when: None, mode: here }],
+        };
+        let limit = table.accumulates_to.as_ref();
+        let limit = limit.map(|it| self.limit(names, it, guard.len())).transpose()?;
+        let name = table.name.get_ref().clone();
+        Ok(Until { name, guard, reset, next, accumulates_to: limit })
+    }
+
+    /// The matrix of a reset: states that are not assigned stay.
+    fn reset(
+        &self,
+        names: &mut Names,
+        assignments: &[Spanned<Assignment>],
+        dimension: usize,
+    ) -> Result<Vec<Row>, SystemError> {
         // What a reset leaves as it is does so whatever the parameters are.
         let one = names.wanted(Dual::ONE);
         let unit = |index| {
@@ -154,7 +175,7 @@ impl ModeReader<'_> {
         };
         let mut reset: Vec<Row> = (0..dimension).map(unit).collect();
         let mut assigned = BTreeSet::new();
-        for text in &table.reset {
+        for text in assignments {
             let (state, row) = self.assignment(names, text, false)?;
             if !assigned.insert(state) {
                 let what = format!("{} is assigned twice", names.states[state]);
@@ -162,38 +183,62 @@ impl ModeReader<'_> {
             }
             reset[state] = row;
         }
-        let next = self.successors(names, table, here)?;
-        Ok(Until { name: table.name.get_ref().clone(), guard, reset, next })
+        Ok(reset)
+    }
+
+    /// The passage from the limit at which an event accumulates.
+    fn limit(
+        &self,
+        names: &mut Names,
+        entry: &Spanned<LimitEntry>,
+        dimension: usize,
+    ) -> Result<Limit, SystemError> {
+        let alone = |mode: &str, span: &Range<usize>| {
+            Ok(vec![Successor { when: None, mode: self.place(mode, span)? }])
+        };
+        let (assignments, next) = match entry.get_ref() {
+            LimitEntry::Mode(mode) => (&[][..], alone(mode, &entry.span())?),
+            LimitEntry::Table(LimitTable { reset, next }) => {
+                let span = next.span();
+                let next = match next.get_ref() {
+                    NextEntry::Mode(mode) => alone(mode, &span)?,
+                    NextEntry::Modes(list) => self.successors(names, list, &span)?,
+                };
+                (&reset[..], next)
+            }
+        };
+        Ok(Limit { reset: self.reset(names, assignments, dimension)?, next })
+    }
+
+    /// The index of the mode of a name.
+    fn place(&self, mode: &str, span: &Range<usize>) -> Result<usize, SystemError> {
+        let unknown = || unknown_mode(mode, self.places.keys().map(String::as_str));
+        self.places.get(mode).copied().ok_or_else(|| self.file.error(span, &unknown()))
     }
 
     fn successors(
         &self,
         names: &mut Names,
-        table: &UntilTable,
-        here: usize,
+        next: &[NextTable],
+        span: &Range<usize>,
     ) -> Result<Vec<Successor>, SystemError> {
-        let Some(next) = &table.next else { return Ok(vec![Successor { when: None, mode: here }]) };
-        let refuse = |what: &str| Err(self.file.error(&next.span(), what));
-        let count = next.get_ref().len();
+        let refuse = |what: &str| Err(self.file.error(span, what));
+        let count = next.len();
         if count == 0 || count > LARGEST_COUNT {
             return refuse(&format!(
                 "{count} successors are not accepted: 1 to {LARGEST_COUNT} are"
             ));
         }
         let mut successors = Vec::with_capacity(count);
-        for (n, entry) in next.get_ref().iter().enumerate() {
+        for (n, entry) in next.iter().enumerate() {
             if entry.when.is_some() == (n + 1 == count) {
                 return refuse(
                     "every successor but the last has a condition, and the last has none",
                 );
             }
-            let Some(mode) = self.places.get(entry.mode.get_ref()) else {
-                let known = self.places.keys().map(String::as_str);
-                let what = unknown_mode(entry.mode.get_ref(), known);
-                return Err(self.file.error(&entry.mode.span(), &what));
-            };
+            let mode = self.place(entry.mode.get_ref(), &entry.mode.span())?;
             let when = entry.when.as_ref().map(|it| self.condition(names, it)).transpose()?;
-            successors.push(Successor { when, mode: *mode });
+            successors.push(Successor { when, mode });
         }
         Ok(successors)
     }

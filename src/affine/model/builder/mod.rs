@@ -7,7 +7,7 @@ use super::error::SystemError;
 use super::rational::Rational;
 use super::scalar::{Condition, Scalar};
 use super::system::System;
-pub use mode::{ModeBuilder, UntilBuilder};
+pub use mode::{LimitBuilder, ModeBuilder, UntilBuilder};
 
 /// An expression of a system that is built: text, a number, or a row of coefficients.
 ///

@@ -108,6 +108,61 @@ pub struct UntilBuilder {
     pub(super) guard: Condition,
     pub(super) reset: Vec<Assignment>,
     pub(super) next: Vec<(Option<Condition>, String)>,
+    pub(super) limit: Option<LimitBuilder>,
+}
+
+/// The passage from the limit at which an event of a system that is built accumulates.
+///
+/// ```
+/// use percuss::System;
+/// use percuss::system::{LimitBuilder, ModeBuilder, UntilBuilder};
+///
+/// let rest = LimitBuilder::new().reset("x = 0").reset("v = 0").next("rest");
+/// let impact = UntilBuilder::new("impact", "x < 0").reset("v = -v/2").accumulates_to(rest);
+/// let flight = ModeBuilder::new("flight").equation("x' = v").equation("v' = -1").until(impact);
+/// let rest = ModeBuilder::new("rest").equation("x' = 0").equation("v' = 0");
+/// let ball = System::builder("ball").states(["x", "v"]).mode(flight).mode(rest);
+/// let ball = ball.start("flight", [("x", 0), ("v", 1)]).build()?;
+/// let solver = ball.solver::<f64>()?;
+/// let mut events = solver.run().until(5.0)?;
+/// let limit = events.find(|it| it.name() == "accumulation").expect("the limit");
+/// // Flights of 2, 1, 1/2 and so on.
+/// assert!((limit.time() - 4.0).abs() < 1e-15 && limit.mode() == "rest");
+/// assert_eq!(events.next().map(|it| it.name()), Some("end"));
+/// # Ok::<(), percuss::SystemError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+#[must_use = "a limit is added by `UntilBuilder::accumulates_to`"]
+pub struct LimitBuilder {
+    pub(super) reset: Vec<Assignment>,
+    pub(super) next: Vec<(Option<Condition>, String)>,
+}
+
+impl LimitBuilder {
+    /// A limit without a reset and without a successor, of which it needs one.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds an assignment to what happens at the limit. All right sides are taken before it, and
+    /// states that are not assigned stay.
+    pub fn reset(mut self, text: impl Into<String>) -> Self {
+        self.reset.push(Assignment::Text(text.into()));
+        self
+    }
+
+    /// Adds the mode that follows where no condition of [`next_when`](Self::next_when) holds.
+    pub fn next(mut self, mode: impl Into<String>) -> Self {
+        self.next.push((None, mode.into()));
+        self
+    }
+
+    /// Adds a mode that follows where a condition holds just after the reset; the first whose
+    /// condition holds does.
+    pub fn next_when(mut self, condition: impl Into<Expression>, mode: impl Into<String>) -> Self {
+        self.next.push((Some(Condition(condition.into().0)), mode.into()));
+        self
+    }
 }
 
 impl UntilBuilder {
@@ -127,7 +182,7 @@ impl UntilBuilder {
     /// ```
     pub fn new(name: impl Into<String>, guard: impl Into<Expression>) -> Self {
         let (guard, reset, next) = (Condition(guard.into().0), Vec::new(), Vec::new());
-        Self { name: name.into(), guard, reset, next }
+        Self { name: name.into(), guard, reset, next, limit: None }
     }
 
     /// Adds an assignment, such as `v = -v/2`, to what happens at the event. All right sides are
@@ -198,6 +253,11 @@ impl UntilBuilder {
     /// ```
     pub fn next_when(mut self, condition: impl Into<Expression>, mode: impl Into<String>) -> Self {
         self.next.push((Some(Condition(condition.into().0)), mode.into()));
+        self
+    }
+    /// Says what follows where the event accumulates: a run goes on there, and does not end.
+    pub fn accumulates_to(mut self, limit: LimitBuilder) -> Self {
+        self.limit = Some(limit);
         self
     }
 }

@@ -1,11 +1,11 @@
 //! From a builder to the tables that a file has, whose spans are the indices of items.
 
-use super::mode::{ModeBuilder, UntilBuilder};
+use super::mode::{LimitBuilder, ModeBuilder, UntilBuilder};
 use super::{Expression, SystemBuilder};
 use crate::affine::model::error::SystemError;
 use crate::affine::model::file::{
-    ForcingTable, GivenParameter, ModeTable, NextTable, StartChoice, StartTable, SystemFile,
-    Tables, UntilTable, WatchTable,
+    ForcingTable, GivenParameter, LimitEntry, LimitTable, ModeTable, NextEntry, NextTable,
+    StartChoice, StartTable, SystemFile, Tables, UntilTable, WatchTable,
 };
 use crate::affine::model::scalar::{Assignment, Condition, Scalar};
 use crate::affine::model::source::Source;
@@ -163,17 +163,32 @@ impl Items {
         let item = format!("{mode}, until {:?}", until.name);
         let assigned = |it| self.assignment(&item, ["reset", "assignment"], it);
         let reset = until.reset.into_iter().map(assigned).collect();
-        let successors = (1..).zip(until.next).map(|(n, (when, mode))| {
-            let item = format!("{item}, successor {n}");
-            NextTable { when: when.map(|it| self.at(&item, it)), mode: self.at(&item, mode) }
-        });
-        let next: Vec<_> = successors.collect();
+        let next = self.successors(&item, until.next);
+        let limit = until.limit.map(|it| self.limit(&format!("{item}, accumulates_to"), it));
         UntilTable {
             guard: self.at(&format!("{item}, guard"), until.guard),
             reset,
             next: if next.is_empty() { None } else { Some(self.at(&item, next)) },
+            accumulates_to: limit,
             name: self.at(&item, until.name),
         }
+    }
+
+    /// The modes that may follow, with their conditions.
+    fn successors(&mut self, item: &str, next: Vec<(Option<Condition>, String)>) -> Vec<NextTable> {
+        let one = |(n, (when, mode)): (usize, (Option<Condition>, String))| {
+            let item = format!("{item}, successor {n}");
+            NextTable { when: when.map(|it| self.at(&item, it)), mode: self.at(&item, mode) }
+        };
+        (1..).zip(next).map(one).collect()
+    }
+
+    fn limit(&mut self, item: &str, limit: LimitBuilder) -> Spanned<LimitEntry> {
+        let assigned = |it| self.assignment(item, ["reset", "assignment"], it);
+        let reset = limit.reset.into_iter().map(assigned).collect();
+        let next = NextEntry::Modes(self.successors(item, limit.next));
+        let table = LimitTable { reset, next: self.at(item, next) };
+        self.at(item, LimitEntry::Table(table))
     }
 
     fn watch(&mut self, mode: &str, watch: (String, Condition, Direction)) -> WatchTable {

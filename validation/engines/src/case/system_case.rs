@@ -72,6 +72,7 @@ pub fn parse_system_case(file: &str, text: &str, folder: Option<&Path>) -> Resul
     let of_file = |error: percuss::affine::SystemError| FileError(error.to_string());
     read.replace_from(file, text, true).map_err(of_file)?;
     let exact = read.system().map_err(of_file)?;
+    refuse_limits(&exact).map_err(|what| FileError(format!("{file}: {what}")))?;
     let Some(begin) = begin(&exact) else {
         let states = exact.states.join(", ");
         let accepted =
@@ -101,6 +102,20 @@ pub fn parse_system_case(file: &str, text: &str, folder: Option<&Path>) -> Resul
         bounds: each_bound.collect::<Result<_, _>>()?,
         shortcomings: each_shortcoming.collect::<Result<_, _>>()?,
     })
+}
+
+/// Refuses a system that goes on after an accumulation: integrators are not asked for that.
+fn refuse_limits(system: &System) -> Result<(), String> {
+    let named = |mode: &percuss::affine::Mode| {
+        let until = mode.until.iter().find(|it| it.accumulates_to.is_some())?;
+        Some(format!("mode {:?}, until {:?}", mode.name, until.name))
+    };
+    let Some(item) = system.modes.iter().find_map(named) else { return Ok(()) };
+    Err(format!(
+        "the system {}, {item}: accumulates_to is not accepted in a case: accepted are systems \
+         whose runs end where impacts accumulate",
+        system.name
+    ))
 }
 
 /// The clock's time at the start, rounded.

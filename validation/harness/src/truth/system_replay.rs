@@ -122,7 +122,9 @@ impl SystemReplay<'_> {
     /// rounding there. The start has the state after its own events.
     fn refuse_close_instants(&self, events: &[Event<DoubleDouble>]) -> Result<(), String> {
         let (span, nearest) = (self.case.span(), self.nearest());
-        let is_event = |it: &&Event<DoubleDouble>| !matches!(it.what, What::Start | What::End(_));
+        let is_event = |it: &&Event<DoubleDouble>| {
+            !matches!(it.what, What::Start | What::Limit(..) | What::End(_))
+        };
         let times = events.iter().filter(is_event).map(|it| self.elapsed(&it.time).value());
         let times: Vec<f64> = times.collect();
         if times.iter().any(|time| (time - span).abs() <= nearest) {
@@ -222,7 +224,7 @@ impl SystemReplay<'_> {
         match event.what {
             What::Watch(mode, watch) => self.case.system.modes[mode].until.len() + watch,
             What::Until(_, until) => until,
-            What::Start | What::End(_) => 0,
+            What::Start | What::Limit(..) | What::End(_) => 0,
         }
     }
 

@@ -52,7 +52,7 @@ fn name_of<'a, T: Number>(system: &'a System, event: &Event<T>) -> Option<&'a st
     match event.what {
         What::Until(mode, n) => Some(&system.modes[mode].until[n].name),
         What::Watch(mode, n) => Some(&system.modes[mode].watch[n].name),
-        What::Start | What::End(_) => None,
+        What::Start | What::Limit(..) | What::End(_) => None,
     }
 }
 

@@ -78,18 +78,32 @@ impl Equations<'_> {
         let guard = written.map(|it| it.guard.as_str());
         let name = format!("until {}: ", until.name);
         let mut text = condition("  ", &name, guard, &self.form(&until.guard));
-        for (n, state) in self.system.states.iter().enumerate() {
-            let row = &until.reset[n];
-            let assigned = written.and_then(|it| it.reset(state));
-            if assigned.is_some() || !is_unit(row, n) {
-                text.push_str(&both("    ", &format!("{state} = "), assigned, &self.form(row)));
-            }
-        }
+        let assigned = |state: &str| written.and_then(|it| it.reset(state));
+        text.push_str(&self.reset(&until.reset, assigned));
         for (n, successor) in until.next.iter().enumerate() {
             let when = written.and_then(|it| it.when(n));
             text.push_str(&self.choice("to", successor, when));
         }
         text.push_str(&zero_line("    ", "zero after it", &zeros::after(self.system, until)));
+        if let Some(limit) = &until.accumulates_to {
+            text.push_str("    where it accumulates:\n");
+            text.push_str(&self.reset(&limit.reset, |_| None));
+            for successor in &limit.next {
+                text.push_str(&self.choice("to", successor, None));
+            }
+        }
+        text
+    }
+
+    /// The assignments of a reset: those that are written, and those of states that change.
+    fn reset<'b>(&self, reset: &[Row], written: impl Fn(&str) -> Option<&'b str>) -> String {
+        let mut text = String::new();
+        for (n, (state, row)) in self.system.states.iter().zip(reset).enumerate() {
+            let assigned = written(state);
+            if assigned.is_some() || !is_unit(row, n) {
+                text.push_str(&both("    ", &format!("{state} = "), assigned, &self.form(row)));
+            }
+        }
         text
     }
 

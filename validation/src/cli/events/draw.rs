@@ -44,6 +44,7 @@ pub(super) fn in_106_bits(event: &Event<'_, Proved>) -> affine::Event<DoubleDoub
     let what = match event.kind() {
         Kind::Until(mode, index) => What::Until(mode, index),
         Kind::Watch(mode, index) => What::Watch(mode, index),
+        Kind::Limit(mode, index) => What::Limit(mode, index),
         Kind::End(_) => What::End(affine::Ending::Horizon),
         _ => What::Start,
     };

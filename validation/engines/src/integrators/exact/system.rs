@@ -109,7 +109,7 @@ impl Record<'_> {
         let number = match event.what {
             What::Watch(mode, watch) => modes[mode].until.len() + watch,
             What::Until(_, until) => until,
-            What::Start | What::End(_) => return,
+            What::Start | What::Limit(..) | What::End(_) => return,
         };
         self.outcome.events.push(Event {
             event: number,

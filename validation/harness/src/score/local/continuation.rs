@@ -95,7 +95,7 @@ pub(super) fn exact<T: Number>(
     let (mode, place, ends_mode) = match event.what {
         What::Until(mode, place) => (mode, place, true),
         What::Watch(mode, place) => (mode, until + place, false),
-        What::Start | What::End(_) => return None,
+        What::Start | What::Limit(..) | What::End(_) => return None,
     };
     let state = event.state.iter().map(|it| it.to_f64()).collect();
     let named = Named { event: place, next: event.mode };
