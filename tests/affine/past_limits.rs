@@ -87,8 +87,8 @@ fn judge<T: Number>(events: &[Event<T>], numbers: [f64; 4], shares: [f64; 2]) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// A run in f64 rounds some hundred events; enclosed ones hold the closed form within errors
-    /// that are a small multiple of the unit of their arithmetic.
+    /// A run in f64 rounds some hundred events. Enclosed ones hold the closed form; with b bits
+    /// their errors are those of the second order at a limit, 2^-(2 b/3), times some thousand.
     #[test]
     fn a_ball_comes_to_rest_where_the_series_says(
         u in 0.5_f64..20.0, g in 1.0_f64..12.0, e in 0.02_f64..0.95, tau in 0.1_f64..3.0,
@@ -97,8 +97,8 @@ proptest! {
         let numbers = [u, g, e, tau];
         let end = closed_form::<f64>(numbers, 3.0)[0] + 1.0;
         judge(&events::<f64>(&ball, end), numbers, [1e-12, 1e-12]);
-        judge(&enclosed::<DoubleDouble>(&ball, end), numbers, [1e-29, 1e-24]);
-        judge(&enclosed::<Bits212>(&ball, end), numbers, [1e-60, 1e-54]);
+        judge(&enclosed::<DoubleDouble>(&ball, end), numbers, [1e-29, 1e-17]);
+        judge(&enclosed::<Bits212>(&ball, end), numbers, [1e-60, 1e-38]);
         let [f64s, wide] = [names(&ball, &events::<f64>(&ball, end)),
             names(&ball, &enclosed::<Bits212>(&ball, end))];
         prop_assert_eq!(&f64s, &wide);
@@ -181,7 +181,8 @@ fn an_impact_without_restitution_rests_at_once() {
     assert_eq!(all[0].time().midpoint(), all[1].time().midpoint());
     let mut ends = table.clone();
     ends.modes[0].until[0].accumulates_to = None;
-    let last = ends.solver::<Proved>().unwrap().run().until(2.0).unwrap().last().unwrap();
+    let solver = ends.solver::<Proved>().unwrap();
+    let last = solver.run().until(2.0).unwrap().last().unwrap();
     assert_eq!(last.ending(), Some(Ending::NoProgress));
 }
 
@@ -218,9 +219,11 @@ fn limits_that_lead_to_themselves_make_no_progress() {
     let mut ball = ball(EXACT);
     let limit = ball.modes[0].until[0].accumulates_to.as_mut().unwrap();
     limit.next.iter_mut().for_each(|it| it.mode = 0);
-    let last = ball.solver::<f64>().unwrap().run().until(9.0).unwrap().last().unwrap();
+    let solver = ball.solver::<f64>().unwrap();
+    let last = solver.run().until(9.0).unwrap().last().unwrap();
     assert_eq!(last.ending(), Some(Ending::NoProgress));
-    let last = ball.solver::<Proved>().unwrap().run().until(9.0).unwrap().last().unwrap();
+    let solver = ball.solver::<Proved>().unwrap();
+    let last = solver.run().until(9.0).unwrap().last().unwrap();
     assert_eq!(last.ending(), Some(Ending::NoProgress));
 }
 
@@ -236,6 +239,11 @@ fn no_derivative_is_taken_across_a_limit() {
         let reason = event.gradient("g").unwrap().unwrap_err();
         assert_eq!(reason, percuss::NoGradient::Accumulation);
     }
+    // Nor at a horizon that impacts without rows lead to.
+    let before = solver.run().gradients(["g"]).unwrap().until(2.0 - 0.75 / 2_f64.powi(36)).unwrap();
+    let end = before.last().unwrap();
+    assert_eq!(end.ending(), Some(Ending::Horizon));
+    assert_eq!(end.gradient("g").unwrap().unwrap_err(), percuss::NoGradient::Accumulation);
 }
 
 /// A mass that a force P + A cos theta presses against a wall, where it chatters and sticks.

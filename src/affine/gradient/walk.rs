@@ -133,6 +133,8 @@ impl<'a, T: Number> Walk<'a, T> {
             self.refused = self.refused.or(Some(NoGradient::Touch));
         } else if run.work().undecidable > 0 {
             self.refused = self.refused.or(Some(NoGradient::Undecided));
+        } else if run.is_silent() && event.what == What::End(Ending::Horizon) {
+            self.refused = self.refused.or(Some(NoGradient::Accumulation));
         }
         if let Some(refused) = self.refused {
             return Err(refused);

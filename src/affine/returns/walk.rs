@@ -90,7 +90,11 @@ impl<'a, T: Number> Walk<'a, T> {
             passes_limit |= matches!(to.what, What::Limit(..));
             see(from, to);
         })?;
-        if passes_limit { Err(NoReturn::PastAccumulation) } else { Ok(&self.last) }
+        if passes_limit || self.run.is_silent() {
+            Err(NoReturn::PastAccumulation)
+        } else {
+            Ok(&self.last)
+        }
     }
 
     /// Whether the last event is a return.

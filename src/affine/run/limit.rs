@@ -4,7 +4,8 @@
 //! v. The limit is z + T M z + J S with the sum S = u/(1 - e) of the speeds of arrival that follow,
 //! up to terms of second order: M D T, where D bounds how far the state goes, and the error of S. A
 //! tube as wide as D holds the rest of the motion if the rates in it and all jumps reach no farther.
-//! So a run goes on with impacts, without events, until T is the root of the arithmetic's unit.
+//! So a run goes on with impacts, without events, until T is the third root of the arithmetic's
+//! unit; the depth of a flight, of the order of T^2, is then still told from rounding.
 
 use super::Run;
 use super::accumulation::Remaining;
@@ -16,21 +17,25 @@ use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::graph::{Firing, ZeroGuards};
 use crate::numeric::number::{Bound, Number};
 
-/// The bits by which the time left to a limit may exceed the root of the arithmetic's unit.
-const SPARE_BITS: u32 = 3;
+/// The share of an arithmetic's bits by which the time left to a limit is below the system's unit
+/// of time where its first order is taken: the depth of a flight then has a third of them left.
+const NEAR: [u32; 2] = [1, 3];
 
-/// The bits of the time left, in units of the system's, below which a horizon before the limit is
-/// told from one behind it no more: so many fewer than those of the arithmetic.
-const LOST_BITS: u32 = 9;
+/// The share of the bits beyond which errors leave open whether there is another impact at all.
+const LAST: [u32; 2] = [2, 5];
+
+/// The bits by which the time left is below the unit of time in f64, where a horizon before the
+/// limit is told no more from one behind it.
+const LAST_IN_F64: u32 = 44;
 
 /// The largest number of times that a tube is widened until it holds the motion.
 const MOST_WIDENINGS: u32 = 8;
 
 /// The event just passed: an `until`, the state before its reset, and bounds of the errors of that.
-pub(super) struct Jump<T: Number> {
+pub(super) struct Jump<'a, T: Number> {
     pub until: usize,
-    pub before: Vector<T>,
-    pub errors: Vector<T::Bound>,
+    pub before: &'a Vector<T>,
+    pub errors: Option<Vector<T::Bound>>,
 }
 
 /// A limit that lies ahead of the impact just passed.
@@ -56,11 +61,17 @@ struct LimitState<T: Number> {
 }
 
 impl<T: Number> Run<'_, T> {
+    /// Whether impacts go on that are no events of the run, up to a limit or the horizon.
+    #[must_use]
+    pub fn is_silent(&self) -> bool {
+        self.is_silent
+    }
+
     /// Ends the run where impacts accumulate, or remembers that it passes their limit next.
     pub(super) fn accumulate(
         &mut self,
         mode: usize,
-        jump: &Jump<T>,
+        jump: &Jump<'_, T>,
         remaining: Option<Remaining<T>>,
     ) {
         match remaining {
@@ -77,7 +88,7 @@ impl<T: Number> Run<'_, T> {
 
     /// Remembers a limit at the instant of the event just passed, which leaves its guard and the
     /// rate of that at zero, if the event would be the next one again.
-    pub(super) fn rest(&mut self, mode: usize, jump: &Jump<T>) {
+    pub(super) fn rest(&mut self, mode: usize, jump: &Jump<'_, T>) {
         let is_next = self.at_entry != 0 && self.at_entry.trailing_zeros() as usize == jump.until;
         if is_next && self.goes_on_after(mode, jump.until) {
             self.approach(jump, None);
@@ -89,10 +100,11 @@ impl<T: Number> Run<'_, T> {
         self.solver.system.modes[mode].until[until].accumulates_to.is_some()
     }
 
-    fn approach(&mut self, jump: &Jump<T>, remaining: Option<Remaining<T>>) {
+    fn approach(&mut self, jump: &Jump<'_, T>, remaining: Option<Remaining<T>>) {
         let Jump { until, before, errors } = jump;
-        let after = self.enclosure.as_ref().map(Enclosure::state);
-        let after = after.unwrap_or([T::Bound::ZERO; LARGEST_DIMENSION]);
+        let none = [T::Bound::ZERO; LARGEST_DIMENSION];
+        let after = self.enclosure.as_ref().map_or(none, Enclosure::state);
+        let errors = errors.unwrap_or(none);
         let limit = LimitAhead {
             until: *until,
             jump: std::array::from_fn(|n| self.state[n] - before[n]),
@@ -102,63 +114,60 @@ impl<T: Number> Run<'_, T> {
         self.limit_ahead = Some(Box::new(limit));
     }
 
-    /// Passes the limit ahead, if there is one that is known well enough, and says whether it does.
+    /// Passes the limit ahead, if there is one that is known well enough, and says whether it has,
+    /// or has ended the run.
     pub(super) fn pass_limit(&mut self) -> bool {
         let Some(limit) = self.limit_ahead.take() else { return false };
         let Some(remaining) = &limit.remaining else {
-            self.events_in_instant += 1;
             self.fire_limit(&limit, self.entered, self.state);
             return true;
         };
-        let scale = self.solver.system.time_scale;
-        let bits = T::WORDS as u32 * f64::MANTISSA_DIGITS;
-        let is_within =
-            |bits: u32| remaining.latest.bound() <= T::Bound::of(scale).scaled(-i64::from(bits));
-        // In f64 the second order is lost in rounding wherever an accumulation is proved.
-        let is_near = T::WORDS == 1 || is_within(bits / 2 - SPARE_BITS);
+        let last = if T::WORDS == 1 { LAST_IN_F64 } else { share::<T>(LAST) };
+        let is_last = self.is_within(remaining, last);
+        let there = self.limit_state(&limit, remaining);
         let left = self.time_left().value();
         let doubt = T::of_bound(self.enclosure.as_ref().map_or(T::Bound::ZERO, Enclosure::time));
-        if is_near && remaining.latest + doubt <= left {
-            return self.pass_near_limit(&limit, remaining);
+        let is_before_horizon = remaining.latest + doubt <= left;
+        let middle = (remaining.earliest + remaining.latest) * T::exact(0.5);
+        let is_taken = is_last && self.enclosure.is_none() && middle <= left;
+        if let Some(there) = there.filter(|_| is_before_horizon || is_taken) {
+            self.pass_near_limit(&limit, &there);
+            return true;
         }
         self.is_silent = true;
-        if remaining.earliest - doubt > left || !is_within(bits - LOST_BITS) {
+        if !is_last || remaining.earliest - doubt > left {
             return false;
         }
         if self.enclosure.is_some() {
-            self.work.undecidable += 1;
             self.end(Ending::Undecided);
-        } else if (remaining.earliest + remaining.latest) * T::exact(0.5) <= left {
-            return self.pass_near_limit(&limit, remaining);
         } else {
-            let what = What::End(Ending::Horizon);
-            let event = self.event(what, self.horizon, &self.state);
+            let event = self.event(What::End(Ending::Horizon), self.horizon, &self.state);
             self.finish(event);
         }
         true
     }
 
-    fn pass_near_limit(&mut self, limit: &LimitAhead<T>, remaining: &Remaining<T>) -> bool {
-        let Some(there) = self.limit_state(limit, remaining) else {
-            self.end(Ending::Undecided);
-            return true;
-        };
+    /// Whether the time left is so many bits below the system's unit of time.
+    fn is_within(&self, remaining: &Remaining<T>, bits: u32) -> bool {
+        let scale = T::Bound::of(self.solver.system.time_scale);
+        remaining.latest.bound() <= scale.scaled(-i64::from(bits))
+    }
+
+    fn pass_near_limit(&mut self, limit: &LimitAhead<T>, there: &LimitState<T>) {
         let mode = self.graph.node(self.node).mode;
         let solver = self.solver;
-        let phase = solver.phase();
         if let Some(errors) = &mut self.enclosure {
             let own = &solver.modes[mode];
             let rates = rates(&own.flow, &own.matrix, &there.state);
             let mut late = ErrorColumn::ZERO;
             late.delayed(there.late, &rates);
             errors.columns.push(late);
-            errors.anchor(phase, own.flow.dimension - 1, &rates);
+            errors.anchor(solver.phase(), own.flow.dimension - 1, &rates);
             errors.add_box(&there.errors);
             errors.add_box(&solver.phase_roundings(&there.time));
         }
         self.events_in_instant = 0;
         self.fire_limit(limit, there.time, there.state);
-        true
     }
 
     /// Resets the limit of the state and enters the mode that follows.
@@ -178,24 +187,36 @@ impl<T: Number> Run<'_, T> {
         self.fire(firing, time, state);
     }
 
-    /// The state at a limit that is near; none where no tube is found that holds the motion.
+    /// The state at a limit; none where that is too far for the first order.
     fn limit_state(&self, limit: &LimitAhead<T>, left: &Remaining<T>) -> Option<LimitState<T>> {
+        if T::WORDS > 1 && !self.is_within(left, share::<T>(NEAR)) {
+            return None;
+        }
         let mode = self.graph.node(self.node).mode;
         let own = &self.solver.modes[mode];
-        let dimension = own.flow.dimension;
         let (half, one) = (T::exact(0.5), T::one());
         let elapsed = (left.earliest + left.latest) * half;
         let jumps = left.restitution / (one - left.restitution);
         let time = self.entered.after(elapsed);
         let mut state = self.state;
+        if self.enclosure.is_none() {
+            // Without bounds the flow itself serves fast motion of other states.
+            state = own.flow.state(&own.flow.at(&self.segment.entry, elapsed).y);
+        }
         for (n, row) in own.matrix.iter().enumerate() {
-            let rate = row.iter().zip(&self.state).fold(T::zero(), |sum, (a, b)| sum + *a * *b);
-            state[n] = self.state[n] + rate * elapsed + limit.jump[n] * jumps;
+            if self.enclosure.is_some() {
+                let rate = row.iter().zip(&self.state).fold(T::zero(), |sum, (a, b)| sum + *a * *b);
+                state[n] = self.state[n] + rate * elapsed;
+            }
+            state[n] = state[n] + limit.jump[n] * jumps;
         }
         let (sin, cos) = self.solver.sin_cos(&time);
         self.solver.append(&mut state, sin, cos);
         let late = ((left.latest - left.earliest) * half).bound() + left.unknown;
-        let errors = self.limit_errors(limit, left, dimension)?;
+        let errors = match &self.enclosure {
+            Some(enclosure) => self.limit_errors(limit, left, &enclosure.state())?,
+            None => [T::Bound::ZERO; LARGEST_DIMENSION],
+        };
         Some(LimitState { time, state, late, errors })
     }
 
@@ -204,13 +225,12 @@ impl<T: Number> Run<'_, T> {
         &self,
         limit: &LimitAhead<T>,
         left: &Remaining<T>,
-        dimension: usize,
+        off: &Vector<T::Bound>,
     ) -> Option<Vector<T::Bound>> {
         let mode = self.graph.node(self.node).mode;
+        let dimension = self.solver.system.dimension();
         let matrix = &self.solver.modes[mode].matrix;
         let mut all = [T::Bound::ZERO; LARGEST_DIMENSION];
-        let Some(enclosure) = &self.enclosure else { return Some(all) };
-        let off = enclosure.state();
         let time = left.latest.bound() + left.unknown;
         // The sum of the jumps that follow, in jumps of the impact just passed.
         let sum = |e: T| e / (T::one() - e);
@@ -231,7 +251,7 @@ impl<T: Number> Run<'_, T> {
                 rate(n, wide) * time + jump(n) * most_jumps + off[n]
             })
         };
-        let mut tube = reach(&off);
+        let mut tube = reach(off);
         let mut is_held = false;
         for _ in 0..MOST_WIDENINGS {
             let wider = tube.map(|it| it * 2.0);
@@ -245,7 +265,7 @@ impl<T: Number> Run<'_, T> {
         for (n, error) in all.iter_mut().enumerate().take(dimension) {
             let second: T::Bound =
                 matrix[n].iter().zip(&tube).map(|(a, it)| a.bound().abs() * *it).sum();
-            let size = self.state[n].bound().abs() + rate(n, &off) * time + jump(n) * jumps;
+            let size = self.state[n].bound().abs() + rate(n, off) * time + jump(n) * jumps;
             let rounding = T::unit() * 2.0 * (dimension + 4) as f64 * size;
             *error = second * time
                 + jump(n) * apart
@@ -253,6 +273,14 @@ impl<T: Number> Run<'_, T> {
                 + rounding
                 + T::Bound::LAST_WORD * f64::from(u8::from(size > 0.0));
         }
+        // The forcing's phase is computed from the time, and the entry that is 1 has no error.
+        let computed = self.solver.phase().unwrap_or(dimension - 1)..dimension;
+        all[computed].fill(T::Bound::ZERO);
         is_held.then_some(all)
     }
+}
+
+/// A share of the arithmetic's bits.
+fn share<T: Number>([part, whole]: [u32; 2]) -> u32 {
+    T::WORDS as u32 * f64::MANTISSA_DIGITS * part / whole
 }

@@ -5,7 +5,6 @@ use super::Run;
 use super::limit::Jump;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{Vector, twice_summed_rounding};
-use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::exact::Entries;
 use crate::affine::zeros::graph::Firing;
@@ -53,9 +52,9 @@ impl<T: Number> Run<'_, T> {
         self.pass_exactly(mode, firing.until, exact);
         let what = limit.map_or(What::Until(mode, firing.until), |it| What::Limit(mode, it));
         let mut event = self.event(what, time, &self.state);
-        let mut errors_before = [T::Bound::ZERO; LARGEST_DIMENSION];
+        let mut errors_before = None;
         if let Some(errors) = self.enclosure.take() {
-            errors_before = errors.state();
+            errors_before = Some(errors.state());
             let reset = &solver.modes[mode].resets[firing.until];
             let sizes = reset.iter().map(|row| {
                 let terms = row.iter().zip(&before).map(|(a, b)| (a.bound() * b.bound()).abs());
@@ -74,7 +73,7 @@ impl<T: Number> Run<'_, T> {
             self.decided = self.queue.len();
         }
         self.enter();
-        let jump = Jump { until: firing.until, before, errors: errors_before };
+        let jump = Jump { until: firing.until, before: &before, errors: errors_before };
         if impact && next == from {
             let below = solver.modes[mode].flow.co_ordinates(&before);
             let remaining = self.accumulation(mode, firing, &below, successor);
