@@ -3,7 +3,7 @@
 //! After an impact let T be the time left, z the state and J v the jump of an impact of the speed
 //! v. The limit is z + T M z + J S with the sum S = u/(1 - e) of the speeds of arrival that follow,
 //! up to terms of second order: M D T, where D bounds how far the state goes, and the error of S. A
-//! tube as wide as D holds the rest of the motion if the rates in it and all jumps reach no farther.
+//! tube as wide as D holds the rest of the motion if rates in it and all jumps reach no farther.
 //! So a run goes on with impacts, without events, until T is the third root of the arithmetic's
 //! unit; the depth of a flight, of the order of T^2, is then still told from rounding.
 
