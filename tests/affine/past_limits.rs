@@ -88,7 +88,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
     /// A run in f64 rounds some hundred events. Enclosed ones hold the closed form; with b bits
-    /// their errors are those of the second order at a limit, 2^-(2 b/3), times some thousand.
+    /// their errors at a limit are below the second order there, 2^-(2 b/3). A limit multiplies
+    /// what it inherits by at most 1 + 2 e/(1 - e) <= 39, by the jumps that it sums.
     #[test]
     fn a_ball_comes_to_rest_where_the_series_says(
         u in 0.5_f64..20.0, g in 1.0_f64..12.0, e in 0.02_f64..0.95, tau in 0.1_f64..3.0,
@@ -97,8 +98,9 @@ proptest! {
         let numbers = [u, g, e, tau];
         let end = closed_form::<f64>(numbers, 3.0)[0] + 1.0;
         judge(&events::<f64>(&ball, end), numbers, [1e-12, 1e-12]);
-        judge(&enclosed::<DoubleDouble>(&ball, end), numbers, [1e-29, 1e-17]);
-        judge(&enclosed::<Bits212>(&ball, end), numbers, [1e-60, 1e-38]);
+        let most = |bits: f64| 39_f64.powi(2) * (-2.0 * bits / 3.0).exp2();
+        judge(&enclosed::<DoubleDouble>(&ball, end), numbers, [1e-29, most(106.0)]);
+        judge(&enclosed::<Bits212>(&ball, end), numbers, [1e-60, most(212.0)]);
         let [f64s, wide] = [names(&ball, &events::<f64>(&ball, end)),
             names(&ball, &enclosed::<Bits212>(&ball, end))];
         prop_assert_eq!(&f64s, &wide);
@@ -246,13 +248,14 @@ fn no_derivative_is_taken_across_a_limit() {
     assert_eq!(end.gradient("g").unwrap().unwrap_err(), percuss::NoGradient::Accumulation);
 }
 
-/// A mass that a force P + A cos theta presses against a wall, where it chatters and sticks.
+/// A mass that a force P + A cos theta presses against a wall, where it chatters and sticks: it is
+/// back and at rest there long before the force pulls again.
 const PRESSED: &str = r#"
 schema = 1
 name = "pressed"
 states = ["x", "v"]
 forcing = { omega = 1, phi = 0 }
-parameters = { P = 0.5, A = 1.0, r = 0.4 }
+parameters = { P = 0.7, A = 1.0, r = 0.4 }
 [[mode]]
 name = "free"
 equations = ["x' = v", "v' = P + A*cos"]
@@ -281,7 +284,7 @@ fn a_pressed_mass_chatters_and_sticks_in_each_period() {
     let pressed = System::from_toml(PRESSED).unwrap();
     let solver = pressed.solver::<Proved>().unwrap();
     let all: Vec<_> = solver.run().until(60.0).unwrap().collect();
-    let known = |k: usize| (-0.5_f64).acos() + std::f64::consts::TAU * k as f64;
+    let known = |k: usize| (-0.7_f64).acos() + std::f64::consts::TAU * k as f64;
     let times = |name| all.iter().filter(move |it| it.name() == name).map(|it| it.time());
     assert_eq!(times("detach").count(), 10);
     for (k, time) in times("detach").enumerate() {
@@ -310,7 +313,7 @@ fn returns_pass_limits_and_derivatives_do_not() {
     let map = solver.section(&Section::event("detach")).unwrap();
     let mut returns = map.returns(pressed.start().unwrap()).unwrap();
     let first = returns.next().unwrap().unwrap();
-    assert!((first.time - (-0.5_f64).acos()).abs() < 1e-14);
+    assert!((first.time - (-0.7_f64).acos()).abs() < 1e-14);
     let place = returns.place().unwrap();
     assert_eq!(map.passage(&place).err(), Some(NoReturn::PastAccumulation));
     let exponents = map.exponents(&place, 2, 3, &mut |_| ());

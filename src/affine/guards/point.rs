@@ -305,12 +305,22 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         self.followed.is_none() && T::Bound::UNDERFLOW > 0.0
     }
 
-    /// A bound of the error of a guard at a time by errors that were made before the segment.
+    /// A bound of the error of a guard at a time by errors that were made before the segment;
+    /// between two times it is at most the larger of theirs.
     #[inline]
     pub fn inherited_by(&self, n: usize, time: T) -> T::Bound {
-        self.followed.as_ref().map_or(T::Bound::ZERO, |followed| {
-            followed.inherited[n].by(self.flow, &self.rows[n], time.to_f64())
-        })
+        let Some(followed) = &self.followed else { return T::Bound::ZERO };
+        let (row, own, time) = (&self.rows[n], &followed.inherited[n], time.to_f64());
+        let zeros = self.zeros[n];
+        if !has_series(zeros) {
+            return own.by(self.flow, row, time);
+        }
+        if self.is_by_series(n, time) {
+            return own.without(zeros, row, time);
+        }
+        // Between a time of the series and this one the closed form's bound is at most the larger
+        // of those at entry and here.
+        own.by(self.flow, row, time).max(own.by(self.flow, row, 0.0))
     }
 }
 

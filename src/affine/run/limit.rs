@@ -24,6 +24,9 @@ const NEAR: [u32; 2] = [1, 3];
 /// The share of the bits beyond which errors leave open whether there is another impact at all.
 const LAST: [u32; 2] = [2, 5];
 
+/// The most bits of which a share is taken.
+const MOST_BITS: u32 = 848;
+
 /// The bits by which the time left is below the unit of time in f64, where a horizon before the
 /// limit is told no more from one behind it.
 const LAST_IN_F64: u32 = 44;
@@ -280,7 +283,8 @@ impl<T: Number> Run<'_, T> {
     }
 }
 
-/// A share of the arithmetic's bits.
+/// A share of the arithmetic's bits, as far as times that are so short stay far from underflow in
+/// f64.
 fn share<T: Number>([part, whole]: [u32; 2]) -> u32 {
-    T::WORDS as u32 * f64::MANTISSA_DIGITS * part / whole
+    (T::WORDS as u32 * f64::MANTISSA_DIGITS).min(MOST_BITS) * part / whole
 }
