@@ -78,13 +78,13 @@ fn gradient_stops_at_the_limit_and_says_so() {
 fn mistakes_are_named_with_their_line() {
     let table = "{ reset = [\"x = 0\", \"v = 0\"], next = \"rest\" }";
     for (wrong, expected) in [
-        ("\"rset\"", "14: there is no mode \"rset\": accepted is one of flight, rest"),
-        ("{ reset = [] }", "14: missing field `next`"),
-        ("{ next = \"rest\", modes = 1 }", "14: unknown field `modes`"),
-        ("{ next = [], reset = [] }", "14: 0 successors are not accepted: 1 to 64 are"),
+        ("\"rset\"", "13: there is no mode \"rset\": accepted is one of flight, rest"),
+        ("{ reset = [] }", "13: next is missing here"),
+        ("{ next = \"rest\", modes = 1 }", "13: unknown field `modes`"),
+        ("{ next = [], reset = [] }", "13: 0 successors are not accepted: 1 to 64 are"),
         ("{ next = [{ when = \"x > 0\", mode = \"rest\" }] }", "the last has none"),
-        ("{ next = \"rest\", reset = [\"y = 0\"] }", "14: \"y\""),
-        ("{ next = \"rest\", reset = [\"x = 0\", \"x = 1\"] }", "14: x is assigned twice"),
+        ("{ next = \"rest\", reset = [\"y = 0\"] }", "13: \"y\""),
+        ("{ next = \"rest\", reset = [\"x = 0\", \"x = 1\"] }", "13: x is assigned twice"),
         ("5", "expected the name of a mode, or a table"),
     ] {
         let (code, _, said) = verb("events", &BALL.replace(table, wrong), &["--until", "5"]);
