@@ -406,3 +406,21 @@ fn row<T: Number>(event: &Event<T>) -> (String, Vec<(DoubleDouble, f64)>) {
     };
     (name, std::iter::once(time).chain(states).collect())
 }
+
+/// Impacts that come ever faster magnify no errors: the masses stick and leave the wall three
+/// times, and all digits are proved.
+#[test]
+fn two_masses_stick_to_the_wall_again_and_again() {
+    let masses = two_masses([0.7, 0.1, 0.6, 0.3, 0.2]);
+    let solver = masses.solver::<Proved>().unwrap();
+    let proved: Vec<_> = solver.run().until(25.0).unwrap().collect();
+    let named = |name| proved.iter().filter(|it| it.name() == name).count();
+    assert_eq!(["accumulation", "detach", "end"].map(named), [3, 3, 1]);
+    let solver = masses.solver::<f64>().unwrap();
+    let plain: Vec<_> = solver.run().until(25.0).unwrap().collect();
+    assert_eq!(plain.len(), proved.len());
+    for (plain, proved) in plain.iter().zip(&proved) {
+        assert_eq!(plain.name(), proved.name());
+        assert!((plain.time() - proved.time().midpoint()).abs() < 1e-11, "{plain:?} {proved:?}");
+    }
+}

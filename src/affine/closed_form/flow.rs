@@ -288,6 +288,13 @@ impl<T: Number> ModeFlow<T> {
         times(&self.to_modal_rounded, z)
     }
 
+    /// The sums of the terms' sizes in [`modal_rounded`](Self::modal_rounded), for entries of at
+    /// most these sizes.
+    pub fn modal_sizes(&self, z: &Vector<T::Bound>) -> Vector<T::Bound> {
+        let sizes = |column: &Vector<T::Bound>| column.map(Bound::abs);
+        times(&self.to_modal_rounded.iter().map(sizes).collect::<Vec<_>>(), z)
+    }
+
     /// The columns of exp(M t), rounded to the digits of bounds.
     pub fn transition(&self, time: T) -> Vec<Vector<T::Bound>> {
         let column = |n: usize| {

@@ -19,6 +19,11 @@ use crate::affine::guards::row::ModalRow;
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::numeric::number::{Bound, Number};
 
+/// A bound of the rounding errors of a column's entry, relative to the sizes of what it is summed
+/// from: bounds have the digits of f64, and up to four sums of `LARGEST_DIMENSION` products follow
+/// each other. Where terms cancel this is more than [`OUTWARD`] covers.
+const COLUMN_ROUNDING: f64 = 4.0 * (LARGEST_DIMENSION + 2) as f64 * f64::EPSILON;
+
 /// An error of z and of the time, up to an unknown factor between -1 and 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ErrorColumn<B> {
@@ -54,15 +59,40 @@ pub(super) struct EnclosedCrossing<'a, T: Number> {
 }
 
 impl<T: Number> EnclosedCrossing<'_, T> {
-    /// The part of an error at entry in the guard that does not move the crossing, because the
-    /// guard's first orders were not summed but taken for zeros.
-    fn kept(&self, error: &Vector<T::Bound>) -> T::Bound {
+    /// The change of the guard by an error at the entry that is `later` at the crossing. What it
+    /// changes in first orders that were taken for zeros does not move the crossing; the others are
+    /// then summed, because their difference to the whole loses all digits after a short time.
+    fn moved(&self, entry: &Vector<T::Bound>, later: &Vector<T::Bound>) -> T::Bound {
+        let (flow, dimension) = (self.flow, self.flow.dimension);
+        let order = |k: usize| self.guard.orders[k].map(Number::bound);
+        if self.zeros == 0 {
+            return dot(&order(0), &flow.modal_rounded(later), dimension);
+        }
+        let modal = flow.modal_rounded(entry);
+        self.summed(|k| dot(&order(k), &modal, dimension))
+    }
+
+    /// A bound of the error of all such changes as they are computed, from the sizes of errors at
+    /// the entry, and of what those at the crossing are summed from.
+    fn moved_off(&self, entry: &Vector<T::Bound>, later: &Vector<T::Bound>) -> T::Bound {
+        if self.zeros == 0 {
+            let sizes = self.flow.modal_sizes(later);
+            return row_size(&self.guard.orders[0], &sizes) * COLUMN_ROUNDING;
+        }
+        let modal = self.flow.modal_sizes(entry);
         let elapsed = self.elapsed.to_f64();
-        let modal = self.flow.modal_rounded(error);
-        let order =
-            |k: usize| dot(&self.guard.orders[k].map(Number::bound), &modal, self.flow.dimension);
-        let sum = |sum, k| order(k) + sum * elapsed / (k + 1) as f64;
-        (0..self.zeros).rev().fold(T::Bound::ZERO, sum)
+        let norms = self.flow.norms_of_bounds(&modal);
+        let last = self.guard.bound(ORDERS - 1, &norms, elapsed);
+        let rest = (1..ORDERS).fold(last, |term, k| term * elapsed / k as f64);
+        self.summed(|k| row_size(&self.guard.orders[k], &modal)) * COLUMN_ROUNDING + rest
+    }
+
+    /// The sum of the Taylor terms at the crossing with orders that were not taken for zeros, but
+    /// for the last one that is kept.
+    fn summed(&self, order: impl Fn(usize) -> T::Bound) -> T::Bound {
+        let elapsed = self.elapsed.to_f64();
+        let own = |k: usize| if k < self.zeros { T::Bound::ZERO } else { order(k) };
+        (1..ORDERS - 1).rev().fold(T::Bound::ZERO, |sum, k| (sum + own(k)) * elapsed / k as f64)
     }
 }
 
@@ -91,8 +121,9 @@ impl<B: Bound> Enclosure<B> {
         row: &ModalRow<T>,
         order: usize,
     ) -> B {
+        let lost = row_size(&row.orders[order], &flow.modal_sizes(&self.state())) * COLUMN_ROUNDING;
         let row = row.orders[order].map(Number::bound);
-        self.sum(|column| dot(&row, &flow.modal_rounded(&column.state), flow.dimension))
+        self.sum(|column| dot(&row, &flow.modal_rounded(&column.state), flow.dimension)) + lost
     }
 
     /// Bounds of the error of a row at any time after the entry.
@@ -118,6 +149,18 @@ impl<B: Bound> Enclosure<B> {
             let all = sums.orders.iter_mut().zip(orders);
             all.for_each(|(sum, order)| *sum += order.abs() * OUTWARD);
         }
+        let lost = flow.modal_sizes(&self.state()).map(|it| it * COLUMN_ROUNDING);
+        let norms = flow.norms_of_bounds(&lost);
+        for part in &row.parts {
+            if part.growth != BlockGrowth::Polynomial {
+                sums.norms[part.subspace] += norms[part.subspace] * OUTWARD;
+                continue;
+            }
+            for it in &row.columns[part.columns.0..part.columns.1] {
+                let terms = it.orders.iter().map(|order| order.bound().abs() * lost[it.at]);
+                sums.orders.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            }
+        }
         sums
     }
 
@@ -125,9 +168,14 @@ impl<B: Bound> Enclosure<B> {
         self.columns.iter().map(|column| entry(column).abs()).sum::<B>() * OUTWARD
     }
 
-    /// The errors at a fixed time after the entry.
-    pub fn later<T: Number<Bound = B>>(&self, flow: &ModeFlow<T>, elapsed: T) -> Self {
+    /// The errors at a fixed time after the entry, and the sizes of what their entries are summed
+    /// from.
+    fn later<T: Number<Bound = B>>(&self, flow: &ModeFlow<T>, elapsed: T) -> (Self, Vector<B>) {
         let transition = flow.transition(elapsed);
+        let mut sizes = [B::ZERO; LARGEST_DIMENSION];
+        for (error, own) in self.state().into_iter().zip(&transition) {
+            sizes.iter_mut().zip(own).for_each(|(sum, entry)| *sum += error * entry.abs());
+        }
         let later = |column: &ErrorColumn<B>| {
             let mut state = [B::ZERO; LARGEST_DIMENSION];
             for (factor, own) in column.state.iter().zip(&transition) {
@@ -135,29 +183,32 @@ impl<B: Bound> Enclosure<B> {
             }
             ErrorColumn { state, time: column.time }
         };
-        Self { columns: self.columns.iter().map(later).collect() }
+        (Self { columns: self.columns.iter().map(later).collect() }, sizes)
     }
 
-    /// The errors of a state at a time that is given, not found: the errors of the time before it
-    /// are made up for along the flow. The time since the entry is rounded by up to `rounded`.
+    /// The errors of a state at a time that is given, not found, `elapsed` after the entry: the
+    /// errors of the time before it are made up for along the flow.
     pub fn at_given_time<T: Number<Bound = B>>(
-        mut self,
+        &self,
         flow: &ModeFlow<T>,
         matrix: &[Vector<T>],
         state: &Vector<T>,
-        rounded: B,
+        elapsed: T,
     ) -> Self {
+        let (mut later, sizes) = self.later(flow, elapsed);
         let rates = rates(flow, matrix, state);
-        let whole = self.time() + rounded;
-        for column in &mut self.columns {
+        let rounded = T::unit() * 4.0 * elapsed.bound().abs();
+        let shift = self.time();
+        for column in &mut later.columns {
             column.delayed(-column.time, &rates);
         }
         let mut own = ErrorColumn::ZERO;
         own.delayed(rounded, &rates);
-        self.columns.push(ErrorColumn { time: B::ZERO, ..own });
-        self.add_box(&bends(matrix, &rates, whole));
-        self.add_box(&rate_roundings(matrix, state, whole));
-        self
+        later.columns.push(ErrorColumn { time: B::ZERO, ..own });
+        later.add_box(&bends(matrix, &rates, shift + rounded));
+        later.add_box(&rate_roundings(matrix, state, shift + rounded));
+        later.add_box(&column_roundings(&sizes, &rates, shift));
+        later
     }
 
     /// The errors at a crossing, before the reset of the event.
@@ -165,21 +216,23 @@ impl<B: Bound> Enclosure<B> {
         let EnclosedCrossing { flow, guard, y, .. } = crossing;
         let order = |k: usize| dot(&guard.orders[k], y, flow.dimension).bound();
         let (slope, bend) = (order(1), order(2));
-        let [value_row, slope_row] = [0, 1].map(|k| guard.orders[k].map(Number::bound));
-        let mut later = self.later(flow, crossing.elapsed);
+        let slope_row = guard.orders[1].map(Number::bound);
+        let (mut later, sizes) = self.later(flow, crossing.elapsed);
         let rates = rates(flow, crossing.matrix, &crossing.state);
         let margin = sum_rounding::<T>(flow.dimension);
-        let (mut shift, mut slope_error) = (B::ZERO, margin * product_size(&guard.orders[1], y));
+        let modal_sizes = flow.modal_sizes(&sizes);
+        let slope_off = row_size(&guard.orders[1], &modal_sizes) * COLUMN_ROUNDING;
+        let mut slope_error = margin * product_size(&guard.orders[1], y) + slope_off;
+        let mut shift = B::ZERO;
         for (column, entry) in later.columns.iter_mut().zip(&self.columns) {
             let own = flow.modal_rounded(&column.state);
-            let apart = dot(&value_row, &own, flow.dimension) - crossing.kept(&entry.state);
-            let delay = -apart / slope;
+            let delay = -crossing.moved(&entry.state, &column.state) / slope;
             slope_error += dot(&slope_row, &own, flow.dimension).abs();
             shift += delay.abs();
             column.delayed(delay, &rates);
         }
-        let rounded =
-            crossing.slack / slope.abs() + T::unit() * 4.0 * crossing.elapsed.bound().abs();
+        let slack = crossing.slack + crossing.moved_off(&self.state(), &sizes);
+        let rounded = slack / slope.abs() + T::unit() * 4.0 * crossing.elapsed.bound().abs();
         // The second order of the crossing's time, and of the flow over it.
         let whole = shift + rounded;
         let second = whole * 2.0 * (bend.abs() * whole + slope_error) / slope.abs();
@@ -190,8 +243,9 @@ impl<B: Bound> Enclosure<B> {
         let mut rest = crossing.roundings;
         let bends = bends(crossing.matrix, &rates, whole);
         let roundings = rate_roundings(crossing.matrix, &crossing.state, whole);
-        for (sum, (bend, rounding)) in rest.iter_mut().zip(bends.into_iter().zip(roundings)) {
-            *sum += bend + rounding;
+        let columns = column_roundings(&sizes, &rates, shift);
+        for (n, sum) in rest.iter_mut().enumerate().take(flow.dimension) {
+            *sum += bends[n] + roundings[n] + columns[n];
         }
         later.add_box(&rest);
         later
@@ -218,7 +272,10 @@ impl<B: Bound> Enclosure<B> {
             ErrorColumn { state, time: column.time }
         };
         let mut errors = Self { columns: self.columns.iter().map(after).collect() };
-        errors.add_box(roundings);
+        let sizes = self.state();
+        let lost = |row: &Vector<T>| row_size(row, &sizes) * COLUMN_ROUNDING;
+        let all = roundings.iter().zip(reset).map(|(rounding, row)| *rounding + lost(row));
+        errors.add_box(&all.collect::<Vec<_>>());
         errors
     }
 
@@ -262,6 +319,18 @@ fn rate_roundings<T: Number>(
 /// The sum of the sizes of products.
 fn product_size<T: Number>(row: &Vector<T>, state: &Vector<T>) -> T::Bound {
     row.iter().zip(state).map(|(a, b)| (a.bound() * b.bound()).abs()).sum()
+}
+
+/// The sum of the sizes of a row's products with entries of at most these sizes.
+fn row_size<T: Number>(row: &Vector<T>, sizes: &Vector<T::Bound>) -> T::Bound {
+    row.iter().zip(sizes).map(|(a, b)| a.bound().abs() * *b).sum()
+}
+
+/// Bounds of the rounding errors of columns' entries that are summed from these sizes and moved at
+/// these rates, by times whose sizes sum up to `shift`.
+fn column_roundings<B: Bound>(sizes: &Vector<B>, rates: &[B], shift: B) -> Vec<B> {
+    let lost = |(size, rate): (&B, &B)| (*size + rate.abs() * shift) * COLUMN_ROUNDING;
+    sizes.iter().zip(rates).map(lost).collect()
 }
 
 /// Bounds of the change of a state by the flow's second derivative over a time.

@@ -33,9 +33,7 @@ impl<T: Number> Run<'_, T> {
         state: &Vector<T>,
     ) -> Option<Enclosure<T::Bound>> {
         let SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
-        let errors = self.enclosure.as_ref()?.later(flow, elapsed);
-        let rounded = T::unit() * 4.0 * elapsed.bound().abs();
-        let mut errors = errors.at_given_time(flow, matrix, state, rounded);
+        let mut errors = self.enclosure.as_ref()?.at_given_time(flow, matrix, state, elapsed);
         errors.add_box(&roundings(flow, &self.segment.entry, elapsed));
         errors.add_box(&self.solver.phase_roundings(time));
         Some(errors)
