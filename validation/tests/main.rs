@@ -30,6 +30,7 @@ mod formats;
 mod gradient;
 mod growth;
 mod horizon;
+mod independent_orbits;
 #[cfg(unix)]
 mod interrupted;
 mod junit;

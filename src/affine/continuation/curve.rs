@@ -4,6 +4,7 @@ use super::super::returns::shooting::{Change, Derivative, MOST, ReturnMap, Shots
 use super::super::run::place::Place;
 use super::family::{OrbitShots, ReturnFamily};
 use super::point::{CurvePoint, Direction, are_on_one_piece};
+use crate::affine::arithmetic::vector::sum_rounding;
 use crate::dynamics::linear::{apply, product, solve};
 
 /// The family, the parameter's unit of arc length, and those of the states.
@@ -11,6 +12,8 @@ pub(super) struct Curve<'a> {
     pub family: &'a ReturnFamily<'a>,
     pub unit: f64,
     scales: Change,
+    /// The number of entries of z.
+    dimension: usize,
 }
 
 /// Newton's iterations of a corrector: more, and the step was too long.
@@ -59,15 +62,15 @@ fn sum(one: &Change, other: &Change, share: f64) -> Change {
 impl<'a> Curve<'a> {
     /// The curve of a family whose parameter is followed between two values.
     pub fn new(family: &'a ReturnFamily<'a>, [from, to]: [f64; 2]) -> Option<Self> {
-        let scales = family.at(from, |map| {
+        let (scales, dimension) = family.at(from, |map| {
             let system = map.system();
             let mut scales = [1.0; MOST];
             let own = system.scales.iter().chain([&system.time_scale]);
             scales.iter_mut().zip(own).for_each(|(it, own)| *it = *own);
-            Some(scales)
+            Some((scales, system.dimension()))
         })?;
         let unit = if from == to { 1.0 } else { (to - from).abs() };
-        Some(Self { family, unit, scales })
+        Some(Self { family, unit, scales, dimension })
     }
 
     /// The first point of a branch, from an orbit's places, with the parameter's way.
@@ -259,7 +262,8 @@ impl<'a> Curve<'a> {
         Bordered { matrix, offset }
     }
 
-    /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve.
+    /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve:
+    /// each segment rounds as many products as the system has entries.
     pub fn uncertainty(&self, point: &CurvePoint) -> f64 {
         let Bordered { matrix, .. } =
             self.bordered(&point.shots, &point.slopes, &point.tangent, &point.shots);
@@ -270,7 +274,7 @@ impl<'a> Curve<'a> {
         });
         let largest = point.shots.points.iter().fold(1.0, |most, it| self.size(it).max(most));
         let segments: usize = point.shots.images.iter().map(|it| it.segments).sum();
-        let rounding = f64::EPSILON * largest * segments as f64;
+        let rounding = sum_rounding::<f64>(self.dimension) * largest * segments as f64;
         by_row.sum::<f64>() * self.unit * rounding + f64::EPSILON * point.value.abs()
     }
 }
