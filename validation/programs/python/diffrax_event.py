@@ -15,16 +15,23 @@ what an expert adds:
   moved away by more than the tolerance hides.
 - What follows an event is told by the first derivative that is not zero.
 
+Derivatives are diffrax's own along each stretch from event to event, of the time and the state that
+it returns; stretches and resets are joined by the chain rule, as JAX joins them where the loop over
+events is in Python. `METHOD-default` and `tsit5-checkpoint` have the adjoint that diffrax takes where
+none is named, RecursiveCheckpointAdjoint, and reverse mode. The others have forward mode, by
+ForwardMode or, as `tsit5-direct-default`, by DirectAdjoint. `tsit5-backsolve-default` has
+BacksolveAdjoint, which says that it is not compatible with events.
+
 Functions are compiled once for each number of states, of events, and of samples, and kept beside
 the Python environment for the next process.
 """
 
 import sys
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
-from percuss_program import Failure, in_pairs, serve, unavailable
+from percuss_program import Failure, chained, in_pairs, serve, unavailable
 
 try:
     import diffrax
@@ -42,10 +49,22 @@ METHODS = {
     "tsit5": (diffrax.Tsit5, "Tsitouras 5(4)", "explicit", 5, 6),
     "dopri8": (diffrax.Dopri8, "Runge-Kutta 8(7) of Dormand and Prince", "explicit", 8, 13),
 }
+ADJOINTS = {
+    "checkpoint": diffrax.RecursiveCheckpointAdjoint,
+    "forward": diffrax.ForwardMode,
+    "direct": diffrax.DirectAdjoint,
+    "backsolve": diffrax.BacksolveAdjoint,
+}
+# The adjoint of set-ups that are not named after one.
+BY_DEFAULT, BY_EXPERTS = "checkpoint", "forward"
+REVERSE = ("checkpoint", "backsolve")
+FURTHER = ("tsit5-checkpoint", "tsit5-direct-default", "tsit5-backsolve-default")
 MOST_STEPS = 200_000
 FIRST_STEP = 0.1
 # Samples come in so many at a time, so that little is compiled.
 BUCKETS = (16, 128, 1024, 8192)
+# Names by which is differentiated, too.
+NAMES = 12
 
 
 def wide(t, z, given):
@@ -59,59 +78,93 @@ def guard(place):
 
 
 def oriented(t, y, args):
-    """All guards, negative where the run begins; one that was zero there is hidden for a while."""
-    values = args["rows"] @ wide(t, y, args)
-    return jnp.where(jnp.abs(values) <= args["hidden"], -1e-300, -args["signs"] * values)
+    """All guards, negative where the run begins; one that was zero there has to go further than
+    the tolerance hides."""
+    values = -args["signs"] * (args["rows"] @ wide(t, y, args)) - args["hidden"]
+    return jnp.where(args["stays"] > 0, -1.0, values)
+
+
+def event_of(is_default, directions):
+    """The event of a mode whose events have these directions."""
+    if not directions:
+        return None
+    if is_default:
+        conditions = [guard(place) for place in range(len(directions))]
+        root_finder = optimistix.Newton(1e-5, 1e-5, optimistix.rms_norm)
+        return diffrax.Event(conditions, root_finder, list(directions))
+    largest = lambda t, y, args, **_: jnp.max(oriented(t, y, args))
+    return diffrax.Event(largest, optimistix.Bisection(rtol=1e-15, atol=1e-15))
+
+
+def solve(method, is_default, directions, adjoint, given, t0, z, t1, times, tolerance, longest):
+    """A solve to the first event. Without times nothing but the end is saved."""
+    term = diffrax.ODETerm(lambda t, z, given: given["matrix"] @ wide(t, z, given))
+    usual = {"rtol": tolerance, "atol": tolerance}
+    controller = diffrax.PIDController(**usual, **({} if is_default else {"dtmax": longest}))
+    end, saved = diffrax.SubSaveAt(t1=True), diffrax.SaveAt(t1=True)
+    if times is not None:
+        saved = diffrax.SaveAt(subs=[diffrax.SubSaveAt(ts=times), end])
+    return diffrax.diffeqsolve(
+        term,
+        METHODS[method][0](),
+        t0,
+        t1,
+        FIRST_STEP if is_default else None,
+        z,
+        args=given,
+        saveat=saved,
+        stepsize_controller=controller,
+        max_steps=MOST_STEPS,
+        throw=False,
+        event=event_of(is_default, directions),
+        adjoint=ADJOINTS[adjoint](),
+    )
 
 
 @cache
-def solver(name, is_default, directions):
-    """A solve to the first event, compiled where it is needed."""
-    count = len(directions)
-    event = None
-    if count and is_default:
-        conditions = [guard(place) for place in range(count)]
-        root_finder = optimistix.Newton(1e-5, 1e-5, optimistix.rms_norm)
-        event = diffrax.Event(conditions, root_finder, list(directions))
-    elif count:
-        largest = lambda t, y, args, **_: jnp.max(oriented(t, y, args))
-        event = diffrax.Event(largest, optimistix.Bisection(rtol=1e-15, atol=1e-15))
+def solver(*chosen):
+    """A solve, compiled where it is needed."""
+    return jax.jit(partial(solve, *chosen))
 
-    @jax.jit
-    def solve(given, t0, t1, z, times, tolerance, longest):
-        term = diffrax.ODETerm(lambda t, z, given: given["matrix"] @ wide(t, z, given))
-        usual = {"rtol": tolerance, "atol": tolerance}
-        controller = diffrax.PIDController(**usual, **({} if is_default else {"dtmax": longest}))
-        return diffrax.diffeqsolve(
-            term,
-            METHODS[name][0](),
-            t0,
-            t1,
-            FIRST_STEP if is_default else None,
-            z,
-            args=given,
-            saveat=diffrax.SaveAt(
-                subs=[diffrax.SubSaveAt(ts=times), diffrax.SubSaveAt(t1=True)]
-            ),
-            stepsize_controller=controller,
-            max_steps=MOST_STEPS,
-            throw=False,
-            event=event,
-        )
 
-    return solve
+@cache
+def along(*chosen):
+    """Derivatives of where a solve ends along many directions, compiled where they are needed."""
+
+    def end(rest, given, t0, z):
+        t1, tolerance, longest = rest
+        found = solve(*chosen, given, t0, z, t1, None, tolerance, longest)
+        return found.ts[-1], found.ys[-1]
+
+    def forward(begin, changes, *rest):
+        one = lambda change: jax.jvp(partial(end, rest), begin, change)[1]
+        return jax.vmap(one)(changes)
+
+    def reverse(begin, changes, *rest):
+        (_, z), back = jax.vjp(partial(end, rest), *begin)
+        size = len(z)
+        rows = jnp.eye(size + 1)
+        all_ = jax.vmap(back)((rows[:, 0], rows[:, 1:]))
+        product = lambda a, b: jnp.einsum("kx,nx->nk", *(flat(a, size + 1), flat(b, NAMES)))
+        flat = lambda it, count: jnp.reshape(it, (count, it.size // count))
+        found = sum(jax.tree.leaves(jax.tree.map(product, all_, changes)))
+        return found[:, 0], found[:, 1:]
+
+    return jax.jit(reverse if chosen[-1] in REVERSE else forward)
 
 
 def known_guards(course, zeros):
-    """What is hidden of each guard, and the sign that it has where the run begins."""
+    """What is hidden of each guard, the sign that it has where the run begins, and whether it
+    stays zero."""
     events = course.system.modes[course.mode].events
     wide_now = course.system.wide(course.t, course.z)
     signs = np.array([np.sign(event.row @ wide_now) for event in events])
-    hidden = np.full(len(events), -1.0)
+    hidden, stays = np.zeros(len(events)), np.zeros(len(events))
     for place, (order, sign) in zeros.items():
-        hidden[place] = np.inf if order is None else course.hidden(events[place], order, course.z)
-        signs[place] = -1.0 if order is None else sign
-    return hidden, signs
+        signs[place], stays[place] = sign, float(order is None)
+        if order is not None:
+            hidden[place] = course.hidden(events[place], order, course.z)
+    return hidden, signs, stays
 
 
 def padded(times, end):
@@ -120,26 +173,45 @@ def padded(times, end):
     return np.concatenate([times, np.full(size - len(times), end)])
 
 
-def stretch(course, name, is_default, zeros):
+def pushed(course, chosen, given, rest):
+    """The derivatives along a stretch from where the run is."""
+    begin, mode = (given, course.t, course.z), course.mode
+
+    def push(by, times, states):
+        rates = jax.tree.map(lambda it: np.zeros((NAMES, *np.shape(it))), given)
+        changed = np.zeros(NAMES), np.zeros((NAMES, len(begin[2])))
+        for n, name in enumerate(by):
+            rates["matrix"][n], rates["rows"][n] = name.matrices[mode], name.rows[mode]
+            rates["omega"][n], rates["phi"][n] = name.omega, name.phi
+        changed[0][: len(by)], changed[1][: len(by)] = times, states
+        times, states = along(*chosen)(begin, (rates, *changed), *rest)
+        return times[: len(by)], states[: len(by)]
+
+    return push
+
+
+def stretch(course, name, is_default, adjoint, zeros):
     """Runs to the first event, which is returned with what is known of it, or to the horizon."""
     system, mode, size = course.system, course.system.modes[course.mode], len(course.z)
     due = course.pending()
     due = due[due < course.span]
-    hidden, signs = known_guards(course, zeros)
+    hidden, signs, stays = known_guards(course, zeros)
     given = {
         "matrix": mode.wide[:size],
-        "omega": system.omega,
-        "phi": system.phi,
+        "omega": float(system.omega),
+        "phi": float(system.phi),
         "rows": np.array([event.row for event in mode.events]).reshape(-1, size + 3),
         "hidden": hidden,
         "signs": signs,
+        "stays": stays,
     }
     way = {1: True, -1: False, 0: None}
     directions = tuple(way[event.sign] if is_default else None for event in mode.events)
-    solve = solver(name, is_default, directions)
-    tolerance = course.run["tolerance"]["relative"]
+    rest = course.span, course.run["tolerance"]["relative"], course.longest_step()
+    chosen = name, is_default, directions
     times = padded(due, course.span)
-    found = solve(given, course.t, course.span, course.z, times, tolerance, course.longest_step())
+    found = solver(*chosen, BY_DEFAULT)(given, course.t, course.z, rest[0], times, *rest[1:])
+    course.trail.append(pushed(course, (*chosen, adjoint), given, rest))
     steps = int(found.stats["num_steps"])
     course.meter.steps += steps
     course.meter.rhs += METHODS[name][4] * steps
@@ -176,14 +248,27 @@ def take(course, happened, end, sampled, is_default):
 
 
 def make(setup, course):
-    name = setup.removesuffix("-default")
-    if setup == name:
-        course.by_experts(lambda zeros: stretch(course, name, False, zeros))
-    else:
+    name, *words = setup.split("-")
+    is_default = "default" in words
+    named = [word for word in words if word in ADJOINTS]
+    adjoint = (named or [BY_DEFAULT if is_default else BY_EXPERTS])[0]
+    if is_default:
         while course.goes_on():
-            stretch(course, name, True, {})
+            stretch(course, name, True, adjoint, {})
+    else:
+        course.by_experts(lambda zeros: stretch(course, name, False, adjoint, zeros))
+
+
+def gradients(setup, course):
+    return chained(course)
+
+
+def setups():
+    methods = {name: said[1:4] for name, said in METHODS.items()}
+    pairs = in_pairs(methods, gradients=True)
+    usual = next(it for it in pairs if it["name"] == "tsit5")
+    return [*pairs, *(usual | {"name": name} for name in FURTHER)]
 
 
 if __name__ == "__main__":
-    methods = {name: said[1:4] for name, said in METHODS.items()}
-    serve("diffrax", diffrax.__version__, in_pairs(methods), make)
+    serve("diffrax", diffrax.__version__, setups(), make, gradients)

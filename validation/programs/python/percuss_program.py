@@ -166,6 +166,8 @@ class Course:
         self.t, self.mode, self.z = 0.0, run["mode"], np.array(run["state"], dtype=float)
         self.span, self.samples = run["span"], np.array(run["samples"], dtype=float)
         self.events, self.sampled, self.ended = [], [], None
+        # What the derivatives of this run are made of: see `chained`.
+        self.trail = []
         self.crowd = 0
         self.stretches, self.progress = 0, 0.0
         self.sample(self.samples[self.samples <= 0.0], lambda t: self.z)
@@ -244,6 +246,7 @@ class Course:
         self.events.append(
             {"time": float(t), "event": event, "mode": mode, "before": before, "state": z}
         )
+        self.trail.append((self.mode, event, float(t), np.array(before)))
 
     def pass_event(self, t, event, z, switch=None):
         """Goes through an event that ends its mode."""
@@ -338,6 +341,86 @@ def differences(make, setup, course, steps):
         end = slope(first.z, last.z)
         found.append({"wrt": rates["wrt"], "events": events, "end": end})
     return found
+
+
+class Rates:
+    """The derivatives of a system's coefficients by a name."""
+
+    def __init__(self, wire, course):
+        self.wrt, self.omega, self.phi = wire["wrt"], wire["omega"], wire["phi"]
+        self.state = np.array(wire["state"], dtype=float)
+        size = len(self.state)
+        self.matrices, self.rows, self.resets = [], [], []
+        for mode in wire["modes"]:
+            a, b, c = (np.array(mode[key], dtype=float).reshape(size, -1) for key in "ABc")
+            self.matrices.append(np.hstack([a, b, c]))
+            events = mode["events"]
+            rows = np.array([it["guard"] for it in events], dtype=float)
+            self.rows.append(rows.reshape(-1, size + 3))
+            none = np.zeros((size, size + 3))
+            resets = [it["reset"] for it in events]
+            self.resets.append([none if it is None else np.array(it) for it in resets])
+
+    def of_wide(self, system, t, z, dt, dz):
+        """The derivative of (z, cos theta, sin theta, 1) at a time that moves."""
+        wide = system.wide(t, z)
+        angle = self.omega * t + system.omega * dt + self.phi
+        size = len(z)
+        return np.concatenate([dz, [-wide[size + 1] * angle, wide[size] * angle, 0.0]])
+
+
+def finite(value):
+    """What JSON can hold of a number or of numbers: none where one is not finite."""
+    return value.tolist() if np.all(np.isfinite(value)) else None
+
+
+def chained(course):
+    """Derivatives along a run by the chain rule. The trail of the run has, for each stretch, a
+    function that takes the derivatives of the time and of the state where it begins, by each name,
+    and gives those where it ends; and each event. Resets are differentiated here."""
+    system = course.system
+    by = [Rates(it, course) for it in course.run["gradients"]]
+    times, states = np.zeros(len(by)), np.array([it.state for it in by])
+    found = [[] for _ in by]
+    for step in course.trail:
+        if callable(step):
+            times, states = (np.array(it) for it in step(by, times, states))
+            continue
+        mode, event, t, z = step
+        reset = system.modes[mode].events[event].reset[: len(z)]
+        for n, rates in enumerate(by):
+            wide = rates.of_wide(system, t, z, times[n], states[n])
+            states[n] = reset @ wide + rates.resets[mode][event] @ system.wide(t, z)
+            found[n].append({"time": finite(times[n]), "state": finite(states[n])})
+    return [
+        {"wrt": rates.wrt, "events": events, "end": end.tolist()}
+        for rates, events, end in zip(by, found, states)
+        if np.all(np.isfinite(end))
+    ]
+
+
+def by_hand(course, began, ended, place, along):
+    """Derivatives along a stretch that was run without events, for a trail: the jump where an event
+    ends it is added here. `began` and `ended` are time and state; `along` takes the derivatives of
+    the state at the fixed time at which the stretch begins, a row for each name, and gives those at
+    the fixed time at which it ends."""
+    system, mode, (begin, z0), (end, z) = course.system, course.mode, began, ended
+
+    def push(by, times, states):
+        fixed = states - np.outer(times, system.rates(mode, begin, z0))
+        if end > begin:
+            fixed = along(by, fixed)
+        if place is None:
+            return np.zeros(len(by)), fixed
+        event, wide = system.modes[mode].events[place], system.wide(end, z)
+        rate = event.row @ system.modes[mode].wide @ wide
+        times = np.zeros(len(by))
+        for n, rates in enumerate(by):
+            change = event.row @ rates.of_wide(system, end, z, 0.0, fixed[n])
+            times[n] = -(change + rates.rows[mode][place] @ wide) / rate
+        return times, fixed + np.outer(times, system.rates(mode, end, z))
+
+    return push
 
 
 def in_pairs(methods, **more):
