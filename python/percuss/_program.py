@@ -227,11 +227,25 @@ class Course:
             place, stopped = stretch(zeros | stopped)
             passed = None if place is None else events[place]
 
+    def with_guard(self, place):
+        """The events of the mode that have the guard of this one, or a multiple of it."""
+        events = self.system.modes[self.mode].events
+        row = events[place].row
+        alike = lambda it: is_multiple(it.row, row) and it.row @ row > 0
+        return [n for n, it in enumerate(events) if alike(it)]
+
+    def that_counts(self, place, way):
+        """The event that a guard's crossing is: of those with this guard, the one whose direction
+        counts, if there is one."""
+        events = self.system.modes[self.mode].events
+        counts = (n for n in self.with_guard(place) if events[n].sign in (0, way))
+        return next(counts, place)
+
     def crossed(self, place):
-        """What is known of a guard that was crossed where a run stops and goes on."""
+        """What is known of guards that were crossed where a run stops and goes on."""
         mode = self.system.modes[self.mode]
         rate = mode.events[place].row @ mode.wide @ self.system.wide(self.t, self.z)
-        return {place: (1, float(np.sign(rate)))}
+        return {n: (1, float(np.sign(rate))) for n in self.with_guard(place)}
 
     def sample(self, times, state):
         self.sampled.extend(np.array(state(t)).tolist() for t in times)

@@ -223,7 +223,10 @@ def stretch(course, name, is_default, adjoint, zeros):
         happened = [int(np.argmax(oriented(t, z, given)))]
     if not len(happened) and found.result != diffrax.RESULTS.successful:
         raise Failure(diffrax.RESULTS[found.result])
-    way = 0 if is_default or not len(happened) else -signs[happened[0]]
+    way = 0
+    if len(happened) and not is_default:
+        way = -signs[happened[0]]
+        happened = [course.that_counts(happened[0], way)]
     return take(course, happened, (t, z, way), (due, np.array(states)), is_default)
 
 

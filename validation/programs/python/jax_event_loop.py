@@ -246,6 +246,7 @@ def stretch(course, way, zeros):
     if place < 0:
         course.t, course.z = course.span, z
         return None, {}
+    place = course.that_counts(place, -signs[place])
     event = mode.events[place]
     if event.ends:
         course.pass_event(t, place, z)

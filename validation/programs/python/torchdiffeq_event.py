@@ -96,7 +96,9 @@ def oriented(field, end, course, zeros):
     for place, (order, sign) in zeros.items():
         signs[place], stays[place] = sign, order is None
         if order is not None:
-            hidden[place] = course.hidden(events[place], order, course.z)
+            # torchdiffeq places an event within the absolute tolerance.
+            off = 2 * abs(events[place].row @ now)
+            hidden[place] = max(course.hidden(events[place], order, course.z), off)
     ways, hidden, stays = (torch.as_tensor(it) for it in (signs, hidden, stays))
 
     def guards(t, z):
@@ -186,6 +188,8 @@ def sample(course, field, begin, until, options):
 
 def take(course, place, t, z, signs):
     """Takes over what torchdiffeq has found."""
+    if signs is not None:
+        place = course.that_counts(place, -signs[place])
     event = course.system.modes[course.mode].events[place]
     if not course.t <= t <= course.span:
         raise Failure(f"an event is put at {t}, between {course.t} and {course.span}")
