@@ -172,7 +172,8 @@ def with_zeros(course, solver, times):
     Its parameters are the coefficients and by how much it begins later."""
     mode, size = course.system.modes[course.mode], len(course.z)
     z, note, t = ca.SX.sym("z", size), ca.SX.sym("note", 3), ca.SX.sym("t")
-    matrix, rows = ca.SX.sym("matrix", size, size + 3), ca.SX.sym("rows", len(mode.events), size + 3)
+    matrix = ca.SX.sym("matrix", size, size + 3)
+    rows = ca.SX.sym("rows", len(mode.events), size + 3)
     omega, phi, late = (ca.SX.sym(name) for name in ("omega", "phi", "late"))
     given = ca.vertcat(ca.vec(matrix), ca.vec(rows), omega, phi, late)
     theta = omega * (t + late) + phi

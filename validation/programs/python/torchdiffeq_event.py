@@ -160,7 +160,12 @@ def stretch(course, is_default, interface, zeros):
         options["options"] = {"max_step": course.longest_step(), "norm": norm}
     with torch.set_grad_enabled(wanted):
         t, states = odeint_event(
-            field, field.start(begin[1]), begin[0], event_fn=largest, odeint_interface=interface, **options
+            field,
+            field.start(begin[1]),
+            begin[0],
+            event_fn=largest,
+            odeint_interface=interface,
+            **options,
         )
         z = states[-1]
     course.trail.append(pushed(field, begin, (t, z), course.mode))
