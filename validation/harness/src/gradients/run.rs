@@ -53,8 +53,7 @@ pub fn run(
 /// Asks one engine for the derivatives of a case at tolerances, and judges its answers.
 #[must_use]
 pub fn one(reference: &Reference, engine: &dyn Engine, tolerances: &[f64]) -> Vec<Judged> {
-    let answered: Vec<Result<GradientAnswer, Failure>> =
-        tolerances.iter().map(|it| asked(reference, engine, *it)).collect();
+    let answered = answers(reference, engine, tolerances);
     let given: Vec<(f64, Option<&GradientAnswer>)> = tolerances
         .iter()
         .zip(&answered)
@@ -72,6 +71,18 @@ pub fn one(reference: &Reference, engine: &dyn Engine, tolerances: &[f64]) -> Ve
         }));
     }
     judged
+}
+
+/// The answers of an engine at tolerances. One without a tolerance is asked once.
+fn answers(
+    reference: &Reference,
+    engine: &dyn Engine,
+    tolerances: &[f64],
+) -> Vec<Result<GradientAnswer, Failure>> {
+    let is_exact = engine.declaration().stepping == Stepping::Exact;
+    let asked_at = if is_exact { tolerances.len().min(1) } else { tolerances.len() };
+    let asked = tolerances[..asked_at].iter().map(|it| asked(reference, engine, *it));
+    asked.collect::<Vec<_>>().into_iter().cycle().take(tolerances.len()).collect()
 }
 
 /// The answer of an engine at a tolerance, in the rows of the case's table.

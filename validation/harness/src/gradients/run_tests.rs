@@ -8,6 +8,7 @@ use crate::engine::{
 };
 use crate::integrators;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A change of what an engine answers.
 type Change = fn(&mut Outcome, &Task);
@@ -125,4 +126,15 @@ fn what_no_answer_is_says_whose_it_is() {
         each(outcome, |it| it.events.truncate(1));
     });
     assert!(other.starts_with("the run has other events: it has 1, not"), "{other}");
+}
+
+/// An engine without a tolerance answers the same at every one.
+#[test]
+fn an_exact_engine_is_asked_once() {
+    static ASKED: AtomicUsize = AtomicUsize::new(0);
+    let rows = judged(|_, _| {
+        ASKED.fetch_add(1, Ordering::Relaxed);
+    });
+    let names = case("ball-first-impacts").case.by.len();
+    assert_eq!((ASKED.load(Ordering::Relaxed), rows.len()), (1, names * TOLERANCES.len()));
 }
