@@ -37,6 +37,7 @@ fn main() -> ExitCode {
     its_accuracy_is_held_to_a_baseline();
     an_engine_that_is_not_installed_is_unavailable();
     a_wrong_derivative_is_named_and_decides_nothing();
+    a_case_of_derivatives_alone_is_chosen_where_they_are_asked_for();
     the_pages_show_what_it_does();
     ExitCode::SUCCESS
 }
@@ -114,6 +115,19 @@ fn a_wrong_derivative_is_named_and_decides_nothing() {
         assert_eq!(row["verdict"] == "right", is_exact, "{row}");
         assert_eq!(row["missing_term"] == "sign", !is_exact, "{row}");
     }
+}
+
+/// A name that no case of the suite has is one of derivatives, where an engine answers these.
+fn a_case_of_derivatives_alone_is_chosen_where_they_are_asked_for() {
+    let chosen = |engine| {
+        let output = example(&["negated", "validate", "-e", engine, "-c", "^ball-first-impacts$"]);
+        (output.status.code(), text(&output.stdout) + &text(&output.stderr))
+    };
+    let (code, said) = chosen("^negated$");
+    assert!(code == Some(0) && said.contains("sign: ball-first-impacts by g"), "{said}");
+    assert!(said.contains("0 rows"), "{said}");
+    let (code, said) = chosen("^exact$");
+    assert!(code == Some(2) && said.contains("matches no case"), "{said}");
 }
 
 /// Its rows are `unavailable`, which is no failure unless every engine is required.

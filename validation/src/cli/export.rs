@@ -27,7 +27,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let cases = arguments.chosen.open(None)?;
+    let cases = arguments.chosen.open(None, &[])?;
     make_folder(&arguments.out)?;
     let cases = cases.prepare(None)?;
     let mut lines = Vec::new();

@@ -133,7 +133,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     judged.check()?;
     let stepping = arguments.stepping()?;
     let baseline = judged.baseline()?;
-    let cases = judged.open()?;
+    let cases = judged.open(&[])?;
     let answered = answered(&arguments.answers)?;
     // What probes ask needs an engine that is there.
     let cases = cases.prepare(None)?;

@@ -8,6 +8,24 @@ use crate::report::GradientEntry;
 use anyhow::{Result, anyhow};
 use rayon::prelude::*;
 
+/// The names of all cases of derivatives, where the chosen engines are asked for them.
+pub(in crate::cli) fn names(
+    chosen: &CaseFlags,
+    engines: &[&'static dyn Engine],
+) -> Result<Vec<String>> {
+    if chosen.cases.is_some() || answering(engines).is_empty() {
+        return Ok(Vec::new());
+    }
+    Ok(embedded()?.into_iter().map(|it| it.name).collect())
+}
+
+/// The engines that are asked; none where only the reference answers derivatives.
+fn answering(engines: &[&'static dyn Engine]) -> Vec<&'static dyn Engine> {
+    let all: Vec<_> = engines.iter().copied().filter(|it| it.differentiates()).collect();
+    let is_peer = |it: &&dyn Engine| !it.declaration().name.starts_with(REFERENCE);
+    if all.iter().any(|it| is_peer(&(*it as &dyn Engine))) { all } else { Vec::new() }
+}
+
 /// The verdicts on the derivatives of the chosen cases; none where only the reference answers them
 /// or the cases are a user's own. With fewer than two tolerances both of the usual ones are asked.
 pub(in crate::cli) fn judged(
@@ -15,9 +33,8 @@ pub(in crate::cli) fn judged(
     engines: &[&'static dyn Engine],
     tolerances: &[f64],
 ) -> Result<Vec<GradientEntry>> {
-    let answering: Vec<_> = engines.iter().copied().filter(|it| it.differentiates()).collect();
-    let is_peer = |it: &&dyn Engine| !it.declaration().name.starts_with(REFERENCE);
-    if chosen.cases.is_some() || !answering.iter().any(|it| is_peer(&(*it as &dyn Engine))) {
+    let answering = answering(engines);
+    if chosen.cases.is_some() || answering.is_empty() {
         return Ok(Vec::new());
     }
     let mut cases = embedded()?;

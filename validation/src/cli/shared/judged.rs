@@ -82,8 +82,9 @@ enum Format {
 const FEW_CASES: usize = 3;
 
 impl CaseFlags {
-    /// The cases that are chosen.
-    pub(in crate::cli) fn read(&self) -> Result<Vec<Case>> {
+    /// The cases that are chosen; none where patterns match only `others`, which are judged by
+    /// something else.
+    fn read(&self, others: &[String]) -> Result<Vec<Case>> {
         let mut cases = match &self.cases {
             Some(folder) => case::from_directory(folder).context("--cases")?,
             None => case::embedded()?,
@@ -93,7 +94,8 @@ impl CaseFlags {
             Some(folder) => held_by(folder, &names),
             None => CASES.listed.to_owned(),
         };
-        Selection { listed: &listed, ..CASES }.check(&self.case, names)?;
+        let known = names.into_iter().chain(others.iter().map(String::as_str));
+        Selection { listed: &listed, ..CASES }.check(&self.case, known)?;
         cases.retain(|it| self.accepts(&it.name));
         Ok(cases)
     }
@@ -113,9 +115,13 @@ impl CaseFlags {
         })
     }
 
-    /// The chosen cases with their reference data.
-    pub(in crate::cli) fn open(&self, reference: Option<&Path>) -> Result<OpenedCases> {
-        let (cases, library) = (self.read()?, self.library(reference)?);
+    /// The chosen cases with their reference data. Patterns may match `others` instead.
+    pub(in crate::cli) fn open(
+        &self,
+        reference: Option<&Path>,
+        others: &[String],
+    ) -> Result<OpenedCases> {
+        let (cases, library) = (self.read(others)?, self.library(reference)?);
         Ok(OpenedCases { cases, library, are_users: self.cases.is_some() })
     }
 }
@@ -199,9 +205,9 @@ impl JudgedFlags {
     }
 
     /// The chosen cases with their reference data, once the folder of the report is made: to make
-    /// them ready may take long.
-    pub(in crate::cli) fn open(&self) -> Result<OpenedCases> {
-        let cases = self.chosen.open(self.reference.as_deref())?;
+    /// them ready may take long. Patterns may match `others` instead.
+    pub(in crate::cli) fn open(&self, others: &[String]) -> Result<OpenedCases> {
+        let cases = self.chosen.open(self.reference.as_deref(), others)?;
         self.out.as_deref().map(make_folder).transpose()?;
         Ok(cases)
     }
