@@ -103,7 +103,7 @@ const PACKAGES: [Package; 8] = [
     },
     Package {
         sources: "validation/src",
-        rooms: &["provenance", "unfinished", "sweep", "report", "cli"],
+        rooms: &["provenance", "unfinished", "typed", "returns", "sweep", "report", "cli"],
     },
     Package {
         sources: "python/src",

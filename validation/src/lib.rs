@@ -7,7 +7,9 @@
 pub mod cli;
 pub mod provenance;
 pub mod report;
+pub mod returns;
 pub mod sweep;
+pub mod typed;
 mod unfinished;
 
 pub use percuss_engines::case::systems;

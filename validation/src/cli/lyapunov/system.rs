@@ -6,14 +6,12 @@ use crate::cli::shared::drift;
 use crate::cli::shared::long_work;
 use crate::cli::shared::section::{RARELY, tell_no_return, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
+use crate::returns;
 use anyhow::Result;
 use percuss::affine::{Exponents, NoReturn, SectionMap, Solver, System};
 use percuss::dynamics::batches::Stationarity;
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// The most returns of the transient in which the directions of small changes are found.
-const SETTLING: u64 = 200;
 
 #[derive(Serialize)]
 struct Json<'a> {
@@ -61,33 +59,14 @@ fn exponents(
     transient: u64,
     returns: u64,
 ) -> Result<Result<Exponents, (NoReturn, u64)>> {
-    let settling = transient.min(SETTLING);
     let bar = long_work::share_bar();
-    let share = |done: u64| bar.show_share(done as f64 / (transient + returns) as f64);
-    let mut before = map.returns(map.system().start()?)?;
-    let mut passed = 0;
-    // One more, because the run begins at a return.
-    for point in before.by_ref().take((transient - settling) as usize + 1) {
-        if let Err(why) = point {
-            bar.finish_and_clear();
-            return Ok(Err((why, passed)));
-        }
-        passed += 1;
+    let found = returns::exponents(map, transient, returns, &mut |passed| {
         if passed.is_multiple_of(RARELY) {
-            share(passed);
+            bar.show_share(passed as f64 / (transient + returns) as f64);
         }
-    }
-    let begun = passed;
-    let found = before.place().and_then(|place| {
-        map.exponents(&place, settling, returns, &mut |count| {
-            passed = begun + count;
-            if passed.is_multiple_of(RARELY) {
-                share(passed);
-            }
-        })
     });
     bar.finish_and_clear();
-    Ok(found.map_err(|why| (why, passed)))
+    Ok(found?)
 }
 
 /// The JSON; lists are empty and numbers null where the motion does not return as often.

@@ -1,6 +1,8 @@
 //! Values of flags, with errors that say what is accepted.
 
 use crate::case::accepted;
+use crate::typed::{self, number};
+use percuss::affine::Section;
 use percuss::dynamics::attractor::Window;
 use percuss::{Parameter, Phase, UnknownName};
 use regex::Regex;
@@ -40,24 +42,6 @@ pub(in crate::cli) fn named(
         })?;
         Ok(Typed { value, text: text.to_owned() })
     }
-}
-
-/// A number, or a multiple of pi such as `pi/2`, `-pi`, `2pi` or `3*pi/4`: the double nearest to pi
-/// times the factor, over the divisor.
-fn number(text: &str) -> Option<f64> {
-    if let Ok(value) = text.parse() {
-        return Some(value);
-    }
-    let (size, sign) = text.strip_prefix('-').map_or((text, 1.0), |size| (size, -1.0));
-    let (factor, divisor) = size.split_once("pi")?;
-    let plain =
-        |text: &str| text.parse().ok().filter(|_| text.starts_with(|c: char| c.is_ascii_digit()));
-    let factor: f64 = match factor.strip_suffix('*') {
-        None if factor.is_empty() => 1.0,
-        times => plain(times.unwrap_or(factor))?,
-    };
-    let divisor: f64 = if divisor.is_empty() { 1.0 } else { plain(divisor.strip_prefix('/')?)? };
-    Some(sign * factor * std::f64::consts::PI / divisor)
 }
 
 /// An end of an interval of a parameter.
@@ -112,12 +96,6 @@ pub(in crate::cli) fn whole<T: TryFrom<u64>>(
     }
 }
 
-/// An angle, in radians.
-pub(in crate::cli) fn angle(text: &str) -> Result<f64, String> {
-    let angle = number(text).filter(|angle| angle.abs() <= 1e15);
-    angle.ok_or_else(|| "accepted is a number, -1e15 to 1e15".to_owned())
-}
-
 /// A parameter of a system with its value.
 pub(in crate::cli) fn parameter_value(text: &str) -> Result<(String, f64), String> {
     let parsed = text.split_once('=').and_then(|(name, value)| {
@@ -140,35 +118,17 @@ pub(in crate::cli) fn start_value(text: &str) -> Result<[String; 2], String> {
 pub(in crate::cli) enum SectionChoice {
     /// A number alone: an angle of the impact oscillator.
     Angle(f64),
-    /// `strobe`, or `strobe:ANGLE`.
-    Strobe(f64),
-    /// `EVENT`, or `EVENT@MODE`.
-    Event(String, Option<String>),
+    /// A section of a SYSTEM.
+    OfSystem(Section),
 }
 
 /// A section.
 pub(in crate::cli) fn section(text: &str) -> Result<Typed<SectionChoice>, String> {
-    let is_name = |it: &str| {
-        let is_part = |it: char| it.is_ascii_lowercase() || it.is_ascii_digit() || it == '-';
-        it.starts_with(|first: char| first.is_ascii_lowercase()) && it.chars().all(is_part)
-    };
-    let accepted = || {
-        "accepted is a number, -1e15 to 1e15, or with SYSTEM strobe, strobe:ANGLE, EVENT or \
-         EVENT@MODE"
-            .to_owned()
-    };
-    let value = match (text.strip_prefix("strobe:"), text.split_once('@')) {
-        (Some(angle_text), _) => SectionChoice::Strobe(angle(angle_text).map_err(|_| accepted())?),
-        (_, Some((event, mode))) if is_name(event) && is_name(mode) => {
-            SectionChoice::Event(event.to_owned(), Some(mode.to_owned()))
-        }
-        _ if text == "strobe" => SectionChoice::Strobe(0.0),
-        _ => match angle(text) {
-            Ok(angle) => SectionChoice::Angle(angle),
-            Err(_) if is_name(text) => SectionChoice::Event(text.to_owned(), None),
-            Err(_) => return Err(accepted()),
-        },
-    };
+    let of_system = || typed::section(text).map(SectionChoice::OfSystem);
+    let value = typed::angle(text).map(SectionChoice::Angle).or_else(of_system);
+    let accepted = "accepted is a number, -1e15 to 1e15, or with SYSTEM strobe, strobe:ANGLE, \
+                    EVENT or EVENT@MODE";
+    let value = value.ok_or_else(|| accepted.to_owned())?;
     Ok(Typed { value, text: text.to_owned() })
 }
 

@@ -80,9 +80,7 @@ impl ReturnFlags {
             Some((SectionChoice::Angle(_), it)) => bail!(
                 "--section {it} is not accepted with SYSTEM: strobe:{it}, EVENT and EVENT@MODE are"
             ),
-            Some((SectionChoice::Strobe(angle), _)) => Section::strobe(*angle),
-            Some((SectionChoice::Event(name, None), _)) => Section::event(name),
-            Some((SectionChoice::Event(name, Some(mode)), _)) => Section::event(name).in_mode(mode),
+            Some((SectionChoice::OfSystem(section), _)) => section.clone(),
             None => Section::strobe(0.0),
         };
         Ok(section.every(self.every.unwrap_or(1)))
