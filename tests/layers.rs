@@ -110,7 +110,10 @@ const PACKAGES: [Package; 8] = [
         rooms: &[
             "failure",
             "long_work",
+            "arrays",
+            "gradient",
             "collect",
+            "derivatives",
             "solvers",
             "asked",
             "motion",

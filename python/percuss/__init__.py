@@ -28,6 +28,7 @@ A verdict on an integrator:
 from importlib.metadata import version as _version
 
 from percuss._build import Mode, Until, Watch, build
+from percuss._gradient import Derivatives, Gradient
 from percuss._oscillator import Oscillator, Simulation
 from percuss._problem import Answer, EventRule, Happened, ModeRule, Problem, Successor
 from percuss._report import Report, ScoreFailure
@@ -43,9 +44,11 @@ __all__ = [
     "Attractor",
     "Basins",
     "Bifurcation",
+    "Derivatives",
     "Digits",
     "Enclosure",
     "EventRule",
+    "Gradient",
     "Happened",
     "Lyapunov",
     "Mode",

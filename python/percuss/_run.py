@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percuss import _percuss
+from percuss._gradient import Gradient
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -184,15 +186,56 @@ class Run:
         """The choices that rounding leaves open; 0 of a run with proved digits."""
         return self._rows.undecidable
 
+    def gradient(self, wrt: str | Sequence[str]) -> Gradient:
+        """Differentiate the times and states of the run by parameters and by its start.
+
+        The run is made again: in as many bits as its derivatives need for the digits that were
+        asked for, or in f64 for a run in f64.
+
+        Parameters
+        ----------
+        wrt : str or sequence of str
+            Parameters of the system, and ``start.STATE`` for states at the start.
+
+        Returns
+        -------
+        Gradient
+            The derivatives that ``percuss gradient`` prints.
+
+        Raises
+        ------
+        ValueError
+            A name that the system has not, one that is there twice, and a run back in time.
+
+        Examples
+        --------
+        >>> import percuss
+        >>> run = percuss.systems["bouncing-ball"].events(count=1)
+        >>> gradient = run.gradient(["e", "start.v"])
+        >>> print(gradient.digits.time[1])
+        ['0' '1.0000000000000000']
+        >>> gradient.state[1, 0]
+        array([0. , 1.5])
+        """
+        names = [wrt] if isinstance(wrt, str) else list(wrt)
+        if not names or not all(isinstance(name, str) for name in names):
+            raise TypeError(f"wrt = {wrt!r} is not accepted: one name or more are")
+        if len(set(names)) < len(names):
+            raise ValueError(f"wrt = {wrt!r} is not accepted: each name once is")
+        return Gradient(self, self._rows.differentiated(names), names, self._digits)
+
+    @property
+    def columns(self) -> list[str]:
+        """The names of the states' columns in tables: a state named as another column differs."""
+        others = {"n", "time", "mode", "event"}
+        return [f"state.{name}" if name in others else name for name in self.states]
+
     def to_pandas(self) -> pd.DataFrame:
         """Make a table of the run, with the columns of the command; needs pandas."""
         import pandas as pd
 
-        head = {"time": self.time, "event": self.name, "mode": self.mode}
-        columns: dict[str, Any] = dict(head)
-        for place, state in enumerate(self.states):
-            # A state whose name is a column's is named as the command names it.
-            columns[f"state.{state}" if state in {"n", *head} else state] = self.state[:, place]
+        columns: dict[str, Any] = {"time": self.time, "event": self.name, "mode": self.mode}
+        columns |= {name: self.state[:, place] for place, name in enumerate(self.columns)}
         return pd.DataFrame(columns).rename_axis("n")
 
     def plot(self, ax: Any = None, *, points: int = 1000) -> Any:

@@ -2,6 +2,7 @@
 
 use crate::collect::{End, Kept, Limits, walk};
 use crate::failure::value;
+use crate::long_work::Patience;
 use crate::solvers::Solvers;
 use percuss::{Proved, SystemError};
 
@@ -28,25 +29,29 @@ pub(crate) struct Asked {
 }
 
 impl Shared {
-    /// A run in numbers with proved digits, whose rows are given to `keep`.
+    /// A run in numbers with proved digits, differentiated by these names, whose rows are given to
+    /// `keep`.
     pub(crate) fn proved<E: From<SystemError>>(
         &self,
         asked: Asked,
+        names: &[String],
         keep: &mut dyn FnMut(Kept<Proved>) -> Result<(), E>,
     ) -> Result<End, E> {
         let solver = self.solvers(asked.backward).proved(&self.system, asked.backward)?;
         let run = solver.run().digits(asked.digits).max_bits(asked.max_bits);
-        walk(run.until(asked.until)?, asked.limits, keep)
+        walk(run.gradients(names)?.until(asked.until)?, asked.limits, names, keep)
     }
 
-    /// A run in f64, whose rows are given to `keep`.
+    /// A run in f64, differentiated by these names, whose rows are given to `keep`.
     pub(crate) fn plain<E: From<SystemError>>(
         &self,
         asked: Asked,
+        names: &[String],
         keep: &mut dyn FnMut(Kept<f64>) -> Result<(), E>,
     ) -> Result<End, E> {
         let solver = self.solvers(asked.backward).plain(&self.system, asked.backward)?;
-        walk(solver.run().until(asked.until)?, asked.limits, keep)
+        let run = solver.run().gradients(names)?;
+        walk(run.until(asked.until)?, asked.limits, names, keep)
     }
 }
 
@@ -69,4 +74,16 @@ impl From<Failure> for pyo3::PyErr {
             Failure::Python(error) => error,
         }
     }
+}
+
+/// All rows of a run.
+pub(crate) fn all<V>(
+    run: impl FnOnce(&mut dyn FnMut(Kept<V>) -> Result<(), Failure>) -> Result<End, Failure>,
+) -> Result<(Vec<Kept<V>>, End), Failure> {
+    let (mut rows, mut patience) = (Vec::new(), Patience::new());
+    let end = run(&mut |row| {
+        rows.push(row);
+        patience.step().map_err(Failure::Python)
+    })?;
+    Ok((rows, end))
 }

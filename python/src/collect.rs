@@ -1,5 +1,6 @@
 //! The events of a run one by one, ended as the command `events` ends them.
 
+use crate::gradient::{ByName, by_name};
 use percuss::{Answer, Ending, Event, Events, Proved};
 
 /// The number of digits of which a time needs one.
@@ -31,6 +32,8 @@ pub(crate) struct Kept<V> {
     pub(crate) mode: usize,
     pub(crate) time: V,
     pub(crate) state: Vec<V>,
+    /// The derivatives by each name by which the run is differentiated.
+    pub(crate) gradients: Vec<ByName<V>>,
 }
 
 /// The end of a run.
@@ -80,10 +83,12 @@ impl Value for f64 {
     }
 }
 
-/// Goes through a run, its start first, and gives each row to `keep`, which may end it by an error.
+/// Goes through a run that is differentiated by these names, its start first, and gives each row to
+/// `keep`, which may end it by an error.
 pub(crate) fn walk<A, E>(
     mut events: Events<'_, A>,
     limits: Limits,
+    names: &[String],
     keep: &mut dyn FnMut(Kept<A::Value>) -> Result<(), E>,
 ) -> Result<End, E>
 where
@@ -91,7 +96,7 @@ where
     A::Value: Value,
 {
     let mut end = End { is_decided: true, ..End::default() };
-    let mut last = row(&events.start(), String::new());
+    let mut last = row(&events.start(), String::new(), names);
     keep(last.clone())?;
     let mut passed = 0;
     while limits.count.is_none_or(|wanted| passed < wanted) {
@@ -106,7 +111,7 @@ where
             end.name = Some(NO_DIGITS.to_owned());
             break;
         }
-        last = row(&event, event.name().to_owned());
+        last = row(&event, event.name().to_owned(), names);
         if let Some(ending) = event.ending() {
             end.name = Some(ending.as_str().to_owned());
             end.is_decided = ending.is_decided();
@@ -119,9 +124,9 @@ where
     Ok(end)
 }
 
-fn row<V: Clone>(event: &Event<'_, V>, name: String) -> Kept<V> {
+fn row<V: Clone>(event: &Event<'_, V>, name: String, names: &[String]) -> Kept<V> {
     let (time, state) = (event.time().clone(), event.state().to_vec());
-    Kept { name, mode: event.mode_index(), time, state }
+    Kept { name, mode: event.mode_index(), time, state, gradients: by_name(event, names) }
 }
 
 /// The times between which impacts accumulate.

@@ -1,10 +1,10 @@
 //! The oscillator's bifurcation diagrams.
 
+use crate::arrays::table;
 use crate::dynamics::check_periods;
 use crate::failure::value;
 use crate::long_work::interruptible;
 use crate::oscillator::Oscillator;
-use crate::rows::table;
 use numpy::{PyArray1, PyArray2};
 use percuss::Parameter;
 use percuss::dynamics::diagram::{Diagram, Follow};

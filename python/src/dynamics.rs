@@ -1,9 +1,9 @@
 //! The oscillator's sections, exponents and orbits.
 
+use crate::arrays::table;
 use crate::failure::value;
 use crate::long_work::interruptible;
 use crate::oscillator::{MAX_PERIODS, Oscillator};
-use crate::rows::table;
 use numpy::PyArray2;
 use percuss::dynamics::batches::Stationarity;
 use percuss::dynamics::lyapunov::Spectrum;

@@ -4,12 +4,15 @@
 //! Users meet the package in `python/percuss/`, which gives these classes their faces.
 //! Nothing is computed here that the libraries do not compute, so every number is the command's.
 
+mod arrays;
 mod asked;
 mod collect;
 mod command;
+mod derivatives;
 mod diagram;
 mod dynamics;
 mod failure;
+mod gradient;
 mod long_work;
 mod motion;
 mod oscillator;

@@ -1,8 +1,8 @@
 //! The oscillator that is built in: its model, its start, and its run in f64.
 
+use crate::arrays::table;
 use crate::failure::value;
 use crate::long_work::Patience;
-use crate::rows::table;
 use numpy::{PyArray1, PyArray2};
 use percuss::{Endless, Entry, Exit, Instant, Model, Parameters, Phase, Segment, Start};
 use pyo3::IntoPyObject;

@@ -1,10 +1,12 @@
 //! The rows of a run, as arrays and as digits.
 
-use crate::asked::{Asked, Shared};
+use crate::arrays::{Nearest, table};
+use crate::asked::{Asked, Shared, all};
 use crate::collect::{End, Kept};
+use crate::derivatives::{DerivativeDigits, Derivatives, derivatives, digits};
 use crate::failure::value;
 use crate::motion::{Motion, beginning};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
 use percuss::Proved;
 use pyo3::prelude::{Bound, PyResult, Python, pyclass, pymethods};
 use std::sync::{Arc, OnceLock};
@@ -33,33 +35,6 @@ macro_rules! each {
             Numbers::Plain(rows) => rows.iter().map(|$row| $value).collect(),
         }
     };
-}
-
-/// The f64 next to a number.
-trait Nearest {
-    fn nearest(&self) -> f64;
-}
-
-impl Nearest for Proved {
-    fn nearest(&self) -> f64 {
-        self.midpoint()
-    }
-}
-
-impl Nearest for f64 {
-    fn nearest(&self) -> f64 {
-        *self
-    }
-}
-
-/// A table of numbers as an array with so many columns.
-pub(crate) fn table<'py>(
-    py: Python<'py>,
-    numbers: Vec<f64>,
-    columns: usize,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let rows = numbers.len().checked_div(columns).unwrap_or(0);
-    PyArray1::from_vec(py, numbers).reshape([rows, columns])
 }
 
 impl Rows {
@@ -133,6 +108,38 @@ impl Rows {
         let times = PyArray1::from_vec(py, rows.iter().map(|row| row.time.error()).collect());
         let states = rows.iter().flat_map(|row| row.state.iter().map(Proved::error)).collect();
         Ok(Some((times, table(py, states, self.columns())?)))
+    }
+
+    /// The same run, differentiated by these names.
+    fn differentiated(&self, py: Python<'_>, names: Vec<String>) -> PyResult<Self> {
+        let (shared, asked) = (&self.shared, self.asked);
+        let (numbers, end) = py.detach(|| match &self.numbers {
+            Numbers::Proved(_) => all(|keep| shared.proved(asked, &names, keep))
+                .map(|(rows, end)| (Numbers::Proved(rows), end)),
+            Numbers::Plain(_) => all(|keep| shared.plain(asked, &names, keep))
+                .map(|(rows, end)| (Numbers::Plain(rows), end)),
+        })?;
+        Ok(Self::new(Arc::clone(shared), numbers, end, asked))
+    }
+
+    /// The derivatives by so many names on a side, 0 below and 1 above their values, or on both.
+    fn derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        names: usize,
+        side: Option<usize>,
+    ) -> PyResult<Derivatives<'py>> {
+        let shape = [names, self.columns()];
+        match &self.numbers {
+            Numbers::Proved(rows) => derivatives(py, rows, side, shape),
+            Numbers::Plain(rows) => derivatives(py, rows, side, shape),
+        }
+    }
+
+    /// The proved digits of the derivatives, at most so many; none of a run in f64.
+    fn derivative_digits(&self, side: Option<usize>, most: usize) -> Option<DerivativeDigits> {
+        let Numbers::Proved(rows) = &self.numbers else { return None };
+        Some(digits(rows, side, self.columns(), most))
     }
 
     /// The states at times of the run, a row a time.

@@ -54,7 +54,8 @@ impl From<SystemError> for Over {
 }
 
 fn run(shared: &Shared, asked: Asked, rows: &SyncSender<Message>) {
-    let end = shared.proved(asked, &mut |row| rows.send(Message::Row(row)).map_err(|_| Over::Left));
+    let end =
+        shared.proved(asked, &[], &mut |row| rows.send(Message::Row(row)).map_err(|_| Over::Left));
     let last = match end {
         Ok(end) => Message::End(end),
         Err(Over::System(error)) => Message::Failed(error.to_string()),

@@ -1,10 +1,10 @@
 //! The oscillator's attractors and their basins.
 
+use crate::arrays::table;
 use crate::dynamics::MOST_PERIODS_OF_AN_ORBIT;
 use crate::failure::value;
 use crate::long_work::interruptible;
 use crate::oscillator::{MAX_PERIODS, Oscillator};
-use crate::rows::table;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use percuss::dynamics::attractor::{Basins, Grid, Label, SearchLimits, Window};
 use percuss::dynamics::strobe::StrobeMap;

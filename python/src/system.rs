@@ -1,10 +1,8 @@
 //! A system: read, changed, and run.
 
-use crate::asked::{Asked, Failure, Shared};
-use crate::collect::{End, Kept, Limits, Value};
+use crate::asked::{Asked, Shared, all};
+use crate::collect::Limits;
 use crate::failure::{arguments, value};
-use crate::long_work::Patience;
-use crate::motion::Beginning;
 use crate::rows::{Numbers, Rows};
 use crate::stream::Stream;
 use percuss::SystemError;
@@ -74,18 +72,6 @@ impl System {
         let limits = Limits { count, most: max_events, time_scale: system.time_scale };
         Ok(Asked { until, limits, digits, max_bits: bits, backward })
     }
-}
-
-/// All rows of a run.
-fn all<V: Value + Beginning>(
-    run: impl FnOnce(&mut dyn FnMut(Kept<V>) -> Result<(), Failure>) -> Result<End, Failure>,
-) -> Result<(Vec<Kept<V>>, End), Failure> {
-    let (mut rows, mut patience) = (Vec::new(), Patience::new());
-    let end = run(&mut |row| {
-        rows.push(row);
-        patience.step().map_err(Failure::Python)
-    })?;
-    Ok((rows, end))
 }
 
 #[pymethods]
@@ -207,7 +193,7 @@ impl System {
         let asked = self.asked((until, count, max_events), (digits, max_bits), backward)?;
         one_length(until, count)?;
         let shared = &self.shared;
-        let (rows, end) = py.detach(|| all(|keep| shared.proved(asked, keep)))?;
+        let (rows, end) = py.detach(|| all(|keep| shared.proved(asked, &[], keep)))?;
         Ok(Rows::new(Arc::clone(shared), Numbers::Proved(rows), end, asked))
     }
 
@@ -224,7 +210,7 @@ impl System {
         let asked = self.asked((until, count, max_events), (MOST_DIGITS, None), backward)?;
         one_length(until, count)?;
         let shared = &self.shared;
-        let (rows, end) = py.detach(|| all(|keep| shared.plain(asked, keep)))?;
+        let (rows, end) = py.detach(|| all(|keep| shared.plain(asked, &[], keep)))?;
         Ok(Rows::new(Arc::clone(shared), Numbers::Plain(rows), end, asked))
     }
 
