@@ -33,6 +33,16 @@ from percuss._oscillator import Oscillator, Simulation
 from percuss._problem import Answer, EventRule, Happened, ModeRule, Problem, Successor
 from percuss._report import Report, ScoreFailure
 from percuss._results import Attractor, Basins, Bifurcation, Lyapunov, Orbit, Section
+from percuss._returns import (
+    Branch,
+    BranchBifurcation,
+    ReturnAttractor,
+    ReturnBasins,
+    ReturnDiagram,
+    ReturnExponents,
+    ReturnOrbit,
+    Returns,
+)
 from percuss._run import Digits, Enclosure, Run, Sol, Stream
 from percuss._score import case_names, problem, score
 from percuss._system import System, Systems, systems
@@ -44,6 +54,8 @@ __all__ = [
     "Attractor",
     "Basins",
     "Bifurcation",
+    "Branch",
+    "BranchBifurcation",
     "Derivatives",
     "Digits",
     "Enclosure",
@@ -57,6 +69,12 @@ __all__ = [
     "Oscillator",
     "Problem",
     "Report",
+    "ReturnAttractor",
+    "ReturnBasins",
+    "ReturnDiagram",
+    "ReturnExponents",
+    "ReturnOrbit",
+    "Returns",
     "Run",
     "ScoreFailure",
     "Section",

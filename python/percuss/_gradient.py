@@ -26,7 +26,9 @@ class Derivatives:
     that time, which moves with the name too.
     """
 
-    def __init__(self, rows: _percuss.Rows, names: list[str], digits: int, side: int | None) -> None:
+    def __init__(
+        self, rows: _percuss.Rows, names: list[str], digits: int, side: int | None
+    ) -> None:
         self._rows = rows
         self._names = names
         self._digits = digits

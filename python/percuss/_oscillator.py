@@ -10,8 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percuss import _percuss
+from percuss._dynamics import cells_of, name_of, steps_of
+from percuss._progress import Progress, telling
 from percuss._results import Attractor, Basins, Bifurcation, Lyapunov, Orbit, Section
-from percuss._run import Floats, Run, Stream, Texts, real, whole
+from percuss._returns import Branch
+from percuss._run import Floats, Run, Stream, Texts, pair, real, whole
 from percuss._system import System, exact, systems
 
 _STATES = ("p", "y", "q", "v")
@@ -116,13 +119,7 @@ class Oscillator:
             raise TypeError(f"phase = {phase!r} is not accepted: a name is")
         # Given starts are known from those that are not: an orbit is looked for from one.
         self._has_guess = not (p == 0 and y == 0 and q is None and phase is None)
-        self._native = _percuss.Oscillator(
-            self.parameters["a"],
-            self.parameters["b"],
-            self.parameters["xi"],
-            self.parameters["omega"],
-            self.parameters["g"],
-            self.parameters["phi"],
+        self._start = (
             real("tau", tau),
             whole("cycle", cycle, -(2**53), 2**53),
             real("p", p),
@@ -131,6 +128,15 @@ class Oscillator:
             real("v", v),
             phase,
         )
+        self._native = _percuss.Oscillator(list(self.parameters.values()), *self._start)
+
+    def _at(self, parameter: str, value: float) -> _percuss.Oscillator:
+        """The oscillator with another value of a parameter, at the same start."""
+        if parameter not in self.parameters:
+            accepted = ", ".join(self.parameters)
+            raise ValueError(f"parameter = {parameter!r} is not accepted: one of {accepted} is")
+        values = self.parameters | {parameter: value}
+        return _percuss.Oscillator(list(values.values()), *self._start)
 
     @property
     def period(self) -> float:
@@ -192,7 +198,14 @@ class Oscillator:
         )
         return Simulation(found)
 
-    def poincare(self, *, periods: int, transient: int = 0, section: float = 0.0) -> Section:
+    def poincare(
+        self,
+        *,
+        periods: int,
+        transient: int = 0,
+        section: float = 0.0,
+        progress: Progress = None,
+    ) -> Section:
         """Compute the state once a forcing period, as ``percuss poincare`` does.
 
         Parameters
@@ -203,31 +216,39 @@ class Oscillator:
             Forcing periods that are left out.
         section : float, optional
             The forcing angle omega tau of the section, radians.
+        progress : bool or callable, optional
+            True for a bar of tqdm, or a function of the parts that are done and of all.
         """
-        points = _percuss.poincare(
-            self._native,
-            whole("transient", transient),
-            whole("periods", periods),
-            real("section", section),
-        )
-        return Section(points)
+        counts = whole("transient", transient), whole("periods", periods)
+        with telling(progress, "periods") as told:
+            return Section(_percuss.poincare(self._native, *counts, real("section", section), told))
 
-    def lyapunov(self, *, periods: int, transient: int = 0) -> Lyapunov:
-        """Compute the Lyapunov exponents and the drift, as ``percuss lyapunov`` does."""
-        found = _percuss.lyapunov(
-            self._native, whole("transient", transient), whole("periods", periods)
-        )
-        return Lyapunov(found)
+    def lyapunov(self, *, periods: int, transient: int = 0, progress: Progress = None) -> Lyapunov:
+        """Compute the Lyapunov exponents and the drift, as ``percuss lyapunov`` does.
 
-    def orbits(self, period: int) -> list[Orbit]:
+        Parameters
+        ----------
+        periods : int
+            The forcing periods over which they are taken.
+        transient : int, optional
+            Forcing periods that are left out before.
+        progress : bool or callable, optional
+            True for a bar of tqdm, or a function of the parts that are done and of all.
+        """
+        counts = whole("transient", transient), whole("periods", periods)
+        with telling(progress, "periods") as told:
+            return Lyapunov(_percuss.lyapunov(self._native, *counts, told))
+
+    def orbits(self, period: int, *, progress: Progress = None) -> list[Orbit]:
         """Find the periodic orbits of a period by a scan of starts, the stable ones first.
 
         `period` is a number of forcing periods; ``percuss orbit --all`` prints the same orbits.
         """
-        found = _percuss.orbits(self._native, whole("period", period), False)
+        with telling(progress, "permille") as told:
+            found = _percuss.orbits(self._native, whole("period", period), False, told)
         return [Orbit(it) for it in found]
 
-    def orbit(self, period: int) -> Orbit:
+    def orbit(self, period: int, *, progress: Progress = None) -> Orbit:
         """Find one periodic orbit: from this start, if p, y or q was given, or else by a scan.
 
         Raises
@@ -236,10 +257,49 @@ class Oscillator:
             Where no orbit of the period is found.
         """
         number = whole("period", period)
-        found = _percuss.orbits(self._native, number, self._has_guess)
+        with telling(progress, "permille") as told:
+            found = _percuss.orbits(self._native, number, self._has_guess, told)
         if not found:
             raise ValueError(f"no orbit of period {number} was found by a scan of starts")
         return Orbit(found[0])
+
+    def continue_(
+        self,
+        parameter: str,
+        from_: float,
+        to: float,
+        *,
+        period: int,
+        progress: Progress = None,
+    ) -> Branch:
+        """Follow a periodic orbit, stable or not, as ``percuss continue`` does.
+
+        It begins with the orbit of this start, if p, y or q was given, or else of a scan.
+
+        Parameters
+        ----------
+        parameter : {'a', 'b', 'xi', 'omega', 'g', 'phi'}
+            What varies.
+        from_, to : float
+            Its first and its last value.
+        period : int
+            The forcing periods after which the orbit closes.
+        progress : bool or callable, optional
+            True for a bar of tqdm, or a function of the parts that are done and of all.
+
+        Raises
+        ------
+        ValueError
+            Where there is no orbit to begin with, and a value that the model does not accept.
+        """
+        name = name_of("parameter", parameter)
+        ends = real("from_", from_), real("to", to)
+        at_first = self._at(name, ends[0])
+        with telling(progress, "permille") as told:
+            found = _percuss.follow(
+                at_first, name, ends, whole("period", period, 0, 2**32 - 1), self._has_guess, told
+            )
+        return Branch(parameter, found, list(_STATES[:3]))
 
     def bifurcation(
         self,
@@ -249,6 +309,7 @@ class Oscillator:
         periods: int,
         transient: int,
         reset: bool = False,
+        progress: Progress = None,
     ) -> Bifurcation:
         """Make a diagram over equal steps of a parameter, as ``percuss bifurcation`` does.
 
@@ -262,25 +323,20 @@ class Oscillator:
             Points at each value, and forcing periods that are left out before.
         reset : bool, optional
             Begin at each value from this start, not from the last state of the value before.
+        progress : bool or callable, optional
+            True for a bar of tqdm, or a function of the parts that are done and of all.
         """
-        if not isinstance(parameter, str):
-            raise TypeError(f"parameter = {parameter!r} is not accepted: a name is")
-        grid = np.asarray(values, dtype=np.float64)
-        if grid.ndim != 1 or len(grid) == 0:
-            raise ValueError("values are accepted as a list of one number or more")
-        steps = np.linspace(grid[0], grid[-1], len(grid))
-        if not np.allclose(grid, steps, rtol=1e-9, atol=1e-9 * abs(grid[-1] - grid[0])):
-            raise ValueError("values are accepted in equal steps, as of numpy.linspace")
-        found = _percuss.bifurcation(
-            self._native,
-            parameter,
-            float(grid[0]),
-            float(grid[-1]),
-            len(grid),
-            whole("transient", transient),
-            whole("periods", periods, 1, 2**32 - 1),
-            bool(reset),
-        )
+        steps = steps_of(values)
+        with telling(progress, "values") as told:
+            found = _percuss.bifurcation(
+                self._native,
+                name_of("parameter", parameter),
+                *steps,
+                whole("transient", transient),
+                whole("periods", periods, 1, 2**32 - 1),
+                bool(reset),
+                told,
+            )
         return Bifurcation(parameter, found)
 
     def basins(
@@ -291,6 +347,7 @@ class Oscillator:
         grid: int | tuple[int, int],
         transient: int,
         max_period: int = 1024,
+        progress: Progress = None,
     ) -> Basins:
         """Find which start of a grid reaches which attractor, as ``percuss basins`` does.
 
@@ -304,39 +361,26 @@ class Oscillator:
             Forcing periods that a start is followed before it is examined.
         max_period : int, optional
             The longest period of an orbit that is looked for.
+        progress : bool or callable, optional
+            True for a bar of tqdm, or a function of the parts that are done and of all.
         """
-        columns, rows = (grid, grid) if hasattr(grid, "__index__") else tuple(grid)
-        found = _percuss.basins(
-            self._native,
-            (_pair("p", p), _pair("y", y)),
-            (whole("grid", columns, 1, 2**32 - 1), whole("grid", rows, 1, 2**32 - 1)),
-            whole("transient", transient),
-            whole("max_period", max_period, 1, 2**32 - 1),
-        )
+        with telling(progress, "starts") as told:
+            found = _percuss.basins(
+                self._native,
+                (pair("p", p), pair("y", y)),
+                cells_of(grid),
+                whole("transient", transient),
+                whole("max_period", max_period, 1, 2**32 - 1),
+                told,
+            )
         return Basins(found)
 
     def attractors(
-        self,
-        p: tuple[float, float],
-        y: tuple[float, float],
-        *,
-        grid: int | tuple[int, int],
-        transient: int,
-        max_period: int = 1024,
+        self, p: tuple[float, float], y: tuple[float, float], **options: Any
     ) -> list[Attractor]:
         """List the attractors of :meth:`basins`, whose parameters these are."""
-        found = self.basins(p, y, grid=grid, transient=transient, max_period=max_period)
-        return found.attractors
+        return self.basins(p, y, **options).attractors
 
     def __repr__(self) -> str:
         parameters = ", ".join(f"{name}={value:g}" for name, value in self.parameters.items())
         return f"Oscillator({parameters})"
-
-
-def _pair(name: str, ends: Any) -> tuple[float, float]:
-    """The two ends of a range."""
-    try:
-        low, high = ends
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {ends!r} is not accepted: two numbers are") from None
-    return real(name, low), real(name, high)

@@ -1,6 +1,6 @@
 """The native part of the package, in the names of Rust; `percuss` gives it its face."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypedDict
 
 import numpy as np
@@ -172,12 +172,7 @@ class Surveyed(TypedDict):
 class Oscillator:
     def __new__(
         cls,
-        a: float,
-        b: float,
-        xi: float,
-        omega: float,
-        g: float,
-        phi: float,
+        parameters: list[float],
         tau: float,
         cycle: int,
         p: float,
@@ -198,9 +193,16 @@ class Oscillator:
         max_periods: int | None,
     ) -> Simulated: ...
 
-def poincare(oscillator: Oscillator, transient: int, periods: int, section: float) -> Floats: ...
-def lyapunov(oscillator: Oscillator, transient: int, periods: int) -> Exponents: ...
-def orbits(oscillator: Oscillator, period: int, from_start: bool) -> list[FoundOrbit]: ...
+Told = Callable[[int, int], object] | None
+Pairs = list[tuple[float, float]]
+
+def poincare(
+    oscillator: Oscillator, transient: int, periods: int, section: float, told: Told, /
+) -> Floats: ...
+def lyapunov(oscillator: Oscillator, transient: int, periods: int, told: Told, /) -> Exponents: ...
+def orbits(
+    oscillator: Oscillator, period: int, from_start: bool, told: Told, /
+) -> list[FoundOrbit]: ...
 def bifurcation(
     oscillator: Oscillator,
     parameter: str,
@@ -210,6 +212,7 @@ def bifurcation(
     transient: int,
     periods: int,
     reset: bool,
+    told: Told,
     /,
 ) -> Diagrammed: ...
 def basins(
@@ -218,8 +221,147 @@ def basins(
     grid: tuple[int, int],
     transient: int,
     max_period: int,
+    told: Told,
     /,
 ) -> Surveyed: ...
+
+class FoundBifurcation(TypedDict):
+    kind: str
+    value: float
+    error: float
+    event: str | None
+    period: int
+    turns: bool
+
+class FollowedBranch(TypedDict):
+    values: Floats
+    points: Floats
+    multipliers: list[Pairs]
+    stable: list[bool]
+    modes: list[str]
+    times: list[float]
+    events: list[list[str]]
+    drift: list[float]
+    bifurcations: list[FoundBifurcation]
+    period: int
+    complete: bool
+    ending: str
+
+def follow(
+    oscillator: Oscillator,
+    parameter: str,
+    ends: tuple[float, float],
+    period: int,
+    from_start: bool,
+    told: Told,
+    /,
+) -> FollowedBranch: ...
+
+class Section:
+    def __new__(cls, text: str, every: int, max_time: float | None) -> Section: ...
+
+class Points(TypedDict):
+    time: Floats
+    mode: NDArray[np.int64]
+    state: Floats
+
+class Returned(TypedDict):
+    points: Points
+    cause: str | None
+    undecidable: int
+
+class ReturnExponents(TypedDict):
+    exponents_per_return: list[float]
+    exponents_per_time: list[float]
+    standard_error: list[float]
+    mean_return_time: float
+    batches: int
+    stationary: bool | None
+    drift_per_return: dict[str, float]
+    drift_standard_error: dict[str, float]
+    undecidable: int
+
+class ReturnOrbit(TypedDict):
+    points: Points
+    time: float
+    events: list[str]
+    multipliers: Pairs
+    stable: bool
+    residual: float
+    is_decided: bool
+    drift_per_return: dict[str, float]
+
+class ReturnsDiagrammed(TypedDict):
+    values: Floats
+    steps: NDArray[np.int64]
+    points: Points
+    left_out: list[str]
+    undecidable: NDArray[np.int64]
+
+class Reached(TypedDict):
+    kind: str
+    period: int | None
+    fraction: float
+    fraction_error: float
+    points: Points
+    multipliers: Pairs
+    lyapunov_per_return: float
+    lyapunov_error: float
+    drift_per_return: dict[str, float]
+    drift_standard_error: dict[str, float]
+
+class ReturnsSurveyed(TypedDict):
+    across: Floats
+    up: Floats
+    labels: NDArray[np.int32]
+    attractors: list[Reached]
+    escaping: float
+    unresolved: float
+    inadmissible: float
+    ended: float
+
+def system_poincare(
+    system: System, section: Section, transient: int, returns: int, told: Told, /
+) -> Returned: ...
+def system_lyapunov(
+    system: System, section: Section, transient: int, returns: int, told: Told, /
+) -> ReturnExponents: ...
+def system_orbit(
+    system: System, section: Section, transient: int, period: int, /
+) -> ReturnOrbit: ...
+def system_follow(
+    system: System,
+    section: Section,
+    parameter: str,
+    ends: tuple[float, float],
+    transient: int,
+    period: int,
+    told: Told,
+    /,
+) -> FollowedBranch: ...
+def system_bifurcation(
+    system: System,
+    section: Section,
+    parameter: str,
+    ends: tuple[float, float],
+    steps: int,
+    transient: int,
+    returns: int,
+    reset: bool,
+    told: Told,
+    /,
+) -> ReturnsDiagrammed: ...
+def system_basins(
+    system: System,
+    section: Section,
+    axes: tuple[int, int],
+    window: tuple[tuple[float, float], tuple[float, float]],
+    grid: tuple[int, int],
+    transient: int,
+    max_period: int,
+    told: Told,
+    /,
+) -> ReturnsSurveyed: ...
 
 class Cases:
     def __new__(cls, names: set[str]) -> Cases: ...

@@ -8,16 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from percuss import _percuss
+from percuss._pictures import axes_or_new, cells, cloud, named
+from percuss._returns import described
 from percuss._run import Floats
-
-
-def _axes(ax: Any) -> Any:
-    """The axes to draw on: those given, or new ones."""
-    if ax is not None:
-        return ax
-    import matplotlib.pyplot as plt
-
-    return plt.figure().add_subplot()
 
 
 class Section:
@@ -43,11 +36,9 @@ class Section:
 
     def plot(self, ax: Any = None) -> Any:
         """Draw y over p; needs matplotlib. Returns the axes."""
-        ax = _axes(ax)
-        ax.plot(self.points[:, 0], self.points[:, 1], ",k")
-        ax.set_xlabel("p")
-        ax.set_ylabel("y")
-        return ax
+        ax = axes_or_new(ax)
+        cloud(ax, self.points[:, 0], self.points[:, 1])
+        return named(ax, "p", "y")
 
     def __repr__(self) -> str:
         return f"Section({len(self)} points)"
@@ -152,11 +143,9 @@ class Bifurcation:
 
     def plot(self, ax: Any = None) -> Any:
         """Draw p over the parameter; needs matplotlib. Returns the axes."""
-        ax = _axes(ax)
-        ax.plot(self.values[self.steps], self.points[:, 0], ",k")
-        ax.set_xlabel(self.parameter)
-        ax.set_ylabel("p")
-        return ax
+        ax = axes_or_new(ax)
+        cloud(ax, self.values[self.steps], self.points[:, 0])
+        return named(ax, self.parameter, "p")
 
     def __repr__(self) -> str:
         ends = f"{self.values[0]:g} to {self.values[-1]:g}"
@@ -226,18 +215,10 @@ class Basins:
 
         Starts that escape are white, those that are not resolved are grey.
         """
-        from matplotlib.colors import BoundaryNorm, ListedColormap
-
-        ax = _axes(ax)
-        count = max(len(self.attractors), 1)
-        # Okabe and Ito's colours, which the colour-blind tell apart.
-        hues = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442"]
-        colours = ["white", "0.6", *(hues[n % len(hues)] for n in range(count))]
-        norm = BoundaryNorm(np.arange(-2.5, count), len(colours))
-        ax.pcolormesh(self.p, self.y, self.labels, cmap=ListedColormap(colours), norm=norm)
-        ax.set_xlabel("p")
-        ax.set_ylabel("y")
-        return ax
+        ax = axes_or_new(ax)
+        names = [described(it.kind, it.period) for it in self.attractors]
+        cells(ax, self.p, self.y, self.labels, names)
+        return named(ax, "p", "y")
 
     def __repr__(self) -> str:
         rows, columns = self.labels.shape

@@ -333,3 +333,12 @@ def real(name: str, number: Any) -> float:
         raise TypeError(f"{name} = {number!r} is not accepted: a number is") from None
     except OverflowError:
         raise ValueError(f"{name} is not accepted: it is too large for an f64") from None
+
+
+def pair(name: str, ends: Any) -> tuple[float, float]:
+    """The two ends of a range."""
+    try:
+        low, high = ends
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {ends!r} is not accepted: two numbers are") from None
+    return real(name, low), real(name, high)

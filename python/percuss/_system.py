@@ -9,12 +9,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from percuss import _percuss
+from percuss._dynamics import Dynamics
 from percuss._run import Run, Stream, real, whole
 
 _MOST_EVENTS = 1_000_000
 
 
-class System:
+class System(Dynamics):
     """A piecewise-affine system: modes with affine equations, and the guards that end them.
 
     Parameters
@@ -148,16 +149,6 @@ class System:
     def trouble(self) -> list[str]:
         """The kinds of trouble that the system makes for integrators."""
         return self._native.trouble
-
-    @property
-    def states(self) -> list[str]:
-        """The names of the states."""
-        return self._native.states
-
-    @property
-    def modes(self) -> list[str]:
-        """The names of the modes."""
-        return self._native.modes
 
     @property
     def event_names(self) -> list[str]:

@@ -3,16 +3,26 @@
 use crate::arrays::table;
 use crate::dynamics::check_periods;
 use crate::failure::value;
-use crate::long_work::interruptible;
+use crate::long_work::{Progress, interruptible};
 use crate::oscillator::Oscillator;
 use numpy::{PyArray1, PyArray2};
 use percuss::Parameter;
 use percuss::dynamics::diagram::{Diagram, Follow};
 use pyo3::IntoPyObject;
-use pyo3::prelude::{Bound, PyResult, Python, pyfunction};
+use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyfunction};
 
 /// The most points of a diagram.
 const MOST_POINTS: u64 = 10_000_000;
+
+/// Refuses a diagram that has nothing to show, or more points than are kept.
+pub(crate) fn check_points(steps: u32, each: u32) -> PyResult<()> {
+    if steps == 0 || u64::from(steps) * u64::from(each) > MOST_POINTS {
+        return Err(value(format!(
+            "steps = {steps} is not accepted: 1 or more are, and at most {MOST_POINTS} points"
+        )));
+    }
+    Ok(())
+}
 
 /// The strobes at each value of a parameter.
 #[derive(IntoPyObject)]
@@ -42,15 +52,11 @@ pub(crate) fn bifurcation<'py>(
     transient: u64,
     periods: u32,
     reset: bool,
+    told: Option<Py<PyAny>>,
 ) -> PyResult<Diagrammed<'py>> {
     check_periods(transient, u64::from(periods))?;
     let parameter: Parameter = parameter.parse().map_err(value)?;
-    let points = u64::from(steps) * u64::from(periods);
-    if steps == 0 || points > MOST_POINTS {
-        return Err(value(format!(
-            "steps = {steps} is not accepted: 1 or more are, and at most {MOST_POINTS} points"
-        )));
-    }
+    check_points(steps, periods)?;
     let parameters = *oscillator.model.parameters();
     for end in [from, to] {
         parameter.set(parameters, end).check().map_err(value)?;
@@ -59,7 +65,10 @@ pub(crate) fn bifurcation<'py>(
     let start = oscillator.start;
     let diagram =
         Diagram { parameters, start, parameter, from, to, steps, transient, periods, follow };
-    let found = interruptible(py, |stop| diagram.steps(|| stop.look()))?.map_err(value)?;
+    let found = interruptible(py, &Progress { told, all: u64::from(steps) }, |stop| {
+        diagram.steps(|| stop.passed(1))
+    })?
+    .map_err(value)?;
     let each = |value: &dyn Fn(usize) -> f64| (0..found.len()).map(value).collect::<Vec<f64>>();
     let places = found.iter().enumerate();
     let places = places.flat_map(|(n, it)| it.points.iter().map(move |_| n as i64));

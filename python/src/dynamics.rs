@@ -2,7 +2,7 @@
 
 use crate::arrays::table;
 use crate::failure::value;
-use crate::long_work::interruptible;
+use crate::long_work::{Progress, SHARES, interruptible};
 use crate::oscillator::{MAX_PERIODS, Oscillator};
 use numpy::PyArray2;
 use percuss::dynamics::batches::Stationarity;
@@ -12,7 +12,7 @@ use percuss::dynamics::section::Section;
 use percuss::dynamics::strobe::StrobeMap;
 use pyo3::IntoPyObject;
 use pyo3::exceptions::PyValueError;
-use pyo3::prelude::{Bound, PyResult, Python, pyfunction};
+use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyfunction};
 
 /// The longest period of an orbit that is looked for.
 pub(crate) const MOST_PERIODS_OF_AN_ORBIT: u32 = 10_000;
@@ -37,6 +37,7 @@ pub(crate) fn poincare<'py>(
     transient: u64,
     periods: u64,
     section: f64,
+    told: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     check_periods(transient, periods)?;
     // Written so that a NaN is refused.
@@ -45,13 +46,13 @@ pub(crate) fn poincare<'py>(
         return Err(value(format!("section = {section} is not accepted: -1e15 to 1e15 is")));
     }
     let Oscillator { model, entry, .. } = oscillator;
-    let points = interruptible(py, |stop| {
+    let points = interruptible(py, &Progress { told, all: periods }, |stop| {
         let first = entry.instant.after_periods(transient, 1).first_at_angle(section);
         let segments = model.trajectory(*entry).until(first.after_periods(periods, 1));
         let strobes = Section::along(segments.inspect(|_| stop.look()), first);
         let mut points = Vec::new();
         for (_, strobe) in (0..periods).zip(strobes) {
-            stop.look();
+            stop.passed(1);
             points.extend(strobe.point());
             points.push(strobe.v());
         }
@@ -72,6 +73,15 @@ pub(crate) struct Exponents {
     undecidable: bool,
 }
 
+/// Whether a motion is stationary; none where too few batches tell.
+pub(crate) fn stationary(found: Stationarity) -> Option<bool> {
+    match found {
+        Stationarity::Unknown => None,
+        Stationarity::Stationary => Some(true),
+        Stationarity::ChangesAfter(_) => Some(false),
+    }
+}
+
 /// The Lyapunov exponents of the motion, per forcing period.
 #[pyfunction]
 pub(crate) fn lyapunov(
@@ -79,25 +89,35 @@ pub(crate) fn lyapunov(
     oscillator: &Oscillator,
     transient: u64,
     periods: u64,
+    told: Option<Py<PyAny>>,
 ) -> PyResult<Exponents> {
     check_periods(transient, periods)?;
     let Oscillator { model, entry, .. } = oscillator;
-    let found = interruptible(py, |stop| {
-        Spectrum::told(model, *entry, transient, periods, &mut |_| stop.look())
+    let all = transient + periods;
+    let (omega, period) = (model.parameters().omega, model.period());
+    let found = interruptible(py, &Progress { told, all }, |stop| {
+        Spectrum::told(model, *entry, transient, periods, &mut |segment| {
+            let passed = segment.entry().instant.since(&entry.instant, omega).value() / period;
+            stop.reached(passed as u64);
+        })
     })?;
     Ok(Exponents {
         exponents_per_period: found.exponents_per_period.to_vec(),
         standard_error: found.standard_error.to_vec(),
-        stationary: match found.stationarity {
-            Stationarity::Unknown => None,
-            Stationarity::Stationary => Some(true),
-            Stationarity::ChangesAfter(_) => Some(false),
-        },
+        stationary: stationary(found.stationarity),
         contraction_per_period: found.contraction_per_period,
         drift_per_period: found.drift_per_period,
         drift_standard_error: found.drift_standard_error,
         undecidable: found.undecidable,
     })
+}
+
+/// Refuses a period of an orbit that is not looked for.
+pub(crate) fn check_period(period: u32) -> PyResult<()> {
+    if (1..=MOST_PERIODS_OF_AN_ORBIT).contains(&period) {
+        return Ok(());
+    }
+    Err(value(format!("period = {period} is not accepted: 1 to {MOST_PERIODS_OF_AN_ORBIT} are")))
 }
 
 /// A periodic orbit.
@@ -131,16 +151,13 @@ pub(crate) fn orbits<'py>(
     oscillator: &Oscillator,
     period: u32,
     from_start: bool,
+    told: Option<Py<PyAny>>,
 ) -> PyResult<Vec<FoundOrbit<'py>>> {
-    if !(1..=MOST_PERIODS_OF_AN_ORBIT).contains(&period) {
-        return Err(value(format!(
-            "period = {period} is not accepted: 1 to {MOST_PERIODS_OF_AN_ORBIT} are"
-        )));
-    }
+    check_period(period)?;
     let map = StrobeMap::new(oscillator.model, oscillator.entry.instant);
-    let found = interruptible(py, |stop| {
+    let found = interruptible(py, &Progress { told, all: SHARES }, |stop| {
         if !from_start {
-            return Ok(scan(&map, period, &mut |_| stop.look()));
+            return Ok(scan(&map, period, &mut |share| stop.share(share)));
         }
         let orbit = Orbit::find(&map, oscillator.entry.point(), period);
         orbit.map(|it| vec![it]).map_err(|none| none.to_string())

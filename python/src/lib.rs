@@ -6,6 +6,7 @@
 
 mod arrays;
 mod asked;
+mod branches;
 mod collect;
 mod command;
 mod derivatives;
@@ -16,6 +17,9 @@ mod gradient;
 mod long_work;
 mod motion;
 mod oscillator;
+mod return_diagram;
+mod return_survey;
+mod returns;
 mod rows;
 mod scores;
 mod solvers;
@@ -29,6 +33,8 @@ use pyo3::prelude::pymodule;
 #[pymodule]
 mod _percuss {
     #[pymodule_export]
+    use super::branches::{follow, system_follow};
+    #[pymodule_export]
     use super::command::command;
     #[pymodule_export]
     use super::diagram::bifurcation;
@@ -36,6 +42,12 @@ mod _percuss {
     use super::dynamics::{lyapunov, orbits, poincare};
     #[pymodule_export]
     use super::oscillator::Oscillator;
+    #[pymodule_export]
+    use super::return_diagram::system_bifurcation;
+    #[pymodule_export]
+    use super::return_survey::system_basins;
+    #[pymodule_export]
+    use super::returns::{Section, system_lyapunov, system_orbit, system_poincare};
     #[pymodule_export]
     use super::rows::Rows;
     #[pymodule_export]

@@ -1,8 +1,8 @@
-//! Long work: done without Python's lock, and ended by Ctrl-C.
+//! Long work: done without Python's lock, ended by Ctrl-C, and told as it goes on.
 
-use pyo3::prelude::{PyResult, Python};
+use pyo3::prelude::{Py, PyAny, PyResult, Python};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
@@ -42,14 +42,53 @@ impl Patience {
 struct Interrupted;
 
 /// Work that is told of each of its parts, and ends there where Ctrl-C was pressed.
-pub(crate) struct Stop<'a>(&'a AtomicBool);
+pub(crate) struct Stop<'a> {
+    is_asked: &'a AtomicBool,
+    done: &'a AtomicU64,
+}
 
 impl Stop<'_> {
-    /// A part of the work is done.
+    /// A part of the work is done that is none of those that are counted.
     pub(crate) fn look(&self) {
-        if self.0.load(Ordering::Relaxed) {
+        if self.is_asked.load(Ordering::Relaxed) {
             // Without the message of a panic: this is no fault of the program.
             resume_unwind(Box::new(Interrupted));
+        }
+    }
+
+    /// So many more of the counted parts are done.
+    pub(crate) fn passed(&self, count: u64) {
+        self.done.fetch_add(count, Ordering::Relaxed);
+        self.look();
+    }
+
+    /// So many of the counted parts are done by now.
+    pub(crate) fn reached(&self, count: u64) {
+        self.done.store(count, Ordering::Relaxed);
+        self.look();
+    }
+
+    /// This share of work in [`SHARES`] parts is done by now.
+    pub(crate) fn share(&self, share: f64) {
+        self.reached((share * SHARES as f64) as u64);
+    }
+}
+
+/// The number of parts of work that has no parts of its own.
+pub(crate) const SHARES: u64 = 1000;
+
+/// A function of Python that is told how many of all parts are done, if there is one.
+#[derive(Default)]
+pub(crate) struct Progress {
+    pub(crate) told: Option<Py<PyAny>>,
+    pub(crate) all: u64,
+}
+
+impl Progress {
+    fn tell(&self, py: Python<'_>, done: u64) -> PyResult<()> {
+        match &self.told {
+            Some(told) => told.call1(py, (done.min(self.all), self.all)).map(drop),
+            None => Ok(()),
         }
     }
 }
@@ -57,14 +96,17 @@ impl Stop<'_> {
 /// Does work on threads of its own while this one, which alone hears of signals, waits for it.
 pub(crate) fn interruptible<T: Send>(
     py: Python<'_>,
+    progress: &Progress,
     work: impl FnOnce(&Stop<'_>) -> T + Send,
 ) -> PyResult<T> {
-    let stop = AtomicBool::new(false);
+    let (stop, parts) = (AtomicBool::new(false), AtomicU64::new(0));
     let done = py.detach(|| {
         let (sender, receiver) = channel();
         std::thread::scope(|scope| {
             scope.spawn(|| {
-                let result = catch_unwind(AssertUnwindSafe(|| work(&Stop(&stop))));
+                let result = catch_unwind(AssertUnwindSafe(|| {
+                    work(&Stop { is_asked: &stop, done: &parts })
+                }));
                 // The receiver is there until the scope ends.
                 drop(sender.send(result));
             });
@@ -76,13 +118,20 @@ pub(crate) fn interruptible<T: Send>(
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                 }
-                if let Err(interrupt) = Python::attach(|py| py.check_signals()) {
+                let told = Python::attach(|py| {
+                    py.check_signals()?;
+                    progress.tell(py, parts.load(Ordering::Relaxed))
+                });
+                if let Err(interrupt) = told {
                     stop.store(true, Ordering::Relaxed);
                     return Err(interrupt);
                 }
             }
         })
     })?;
+    if done.is_ok() {
+        progress.tell(py, progress.all)?;
+    }
     done.map_err(|payload| {
         if payload.is::<Interrupted>() {
             pyo3::exceptions::PyKeyboardInterrupt::new_err(())

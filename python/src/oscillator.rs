@@ -131,14 +131,9 @@ impl Oscillator {
 impl Oscillator {
     #[new]
     #[expect(clippy::too_many_arguments, reason = "the face in Python gives them names")]
-    #[pyo3(signature = (a, b, xi, omega, g, phi, tau, cycle, p, y, q, v, phase))]
+    #[pyo3(signature = (parameters, tau, cycle, p, y, q, v, phase))]
     fn new(
-        a: f64,
-        b: f64,
-        xi: f64,
-        omega: f64,
-        g: f64,
-        phi: f64,
+        parameters: [f64; 6],
         tau: f64,
         cycle: i64,
         p: f64,
@@ -148,6 +143,7 @@ impl Oscillator {
         phase: Option<&str>,
     ) -> PyResult<Self> {
         let phase = phase.map(str::parse::<Phase>).transpose().map_err(value)?;
+        let [a, b, xi, omega, g, phi] = parameters;
         let model = Model::new(Parameters { a, b, xi, omega, g, phi }).map_err(value)?;
         let start = Start { tau, cycle, p, y, q, v, phase };
         let entry = model.start(&start).map_err(value)?;

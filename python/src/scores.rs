@@ -1,7 +1,7 @@
 //! Cases, what each asks, and the judgement of what was answered.
 
 use crate::failure::value;
-use crate::long_work::interruptible;
+use crate::long_work::{Progress, interruptible};
 use percuss_programs::files::{Answerer, CaseFile, FileEngine};
 use percuss_programs::{NAMES, is_name};
 use percuss_validation::case;
@@ -171,7 +171,7 @@ impl Cases {
     /// Makes the cases of these names ready.
     #[new]
     fn new(py: Python<'_>, names: BTreeSet<String>) -> PyResult<Self> {
-        let all = interruptible(py, |_| {
+        let all = interruptible(py, &Progress::default(), |_| {
             let mut cases = case::embedded()?;
             cases.retain(|it| names.contains(&it.name));
             suite::prepare(cases, &Library::embedded()?, None)
@@ -207,7 +207,7 @@ impl Cases {
         let declared: PyResult<Vec<_>> =
             answers.iter().map(|it| Ok((it.answerer()?, it))).collect();
         let declared = declared?;
-        let written = interruptible(py, |stop| {
+        let written = interruptible(py, &Progress::default(), |stop| {
             let engine =
                 |(answerer, it): &(Answerer, &Answers), case: &str| it.engine(*answerer, case);
             let defaults = case::defaults().map_err(Unjudged::of)?;

@@ -3,13 +3,13 @@
 use crate::arrays::table;
 use crate::dynamics::MOST_PERIODS_OF_AN_ORBIT;
 use crate::failure::value;
-use crate::long_work::interruptible;
+use crate::long_work::{Progress, interruptible};
 use crate::oscillator::{MAX_PERIODS, Oscillator};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use percuss::dynamics::attractor::{Basins, Grid, Label, SearchLimits, Window};
 use percuss::dynamics::strobe::StrobeMap;
 use pyo3::IntoPyObject;
-use pyo3::prelude::{Bound, PyResult, Python, pyfunction};
+use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyfunction};
 
 /// The most cells along a side of a grid.
 const MOST_CELLS: u32 = 65_536;
@@ -42,19 +42,12 @@ pub(crate) struct Found<'py> {
     lyapunov_error: f64,
 }
 
-/// The attractors of a grid of starts, and the label of each start.
-#[pyfunction]
-pub(crate) fn basins<'py>(
-    py: Python<'py>,
-    oscillator: &Oscillator,
-    window: ([f64; 2], [f64; 2]),
-    grid: [u32; 2],
+/// Refuses a grid that is too large, and limits of the search that are.
+pub(crate) fn check_grid(
+    [columns, rows]: [u32; 2],
     transient: u64,
     max_period: u32,
-) -> PyResult<Surveyed<'py>> {
-    let ((p, y), [columns, rows]) = (window, grid);
-    let window = Window { p, y };
-    window.check().map_err(value)?;
+) -> PyResult<()> {
     let is_side = |it: u32| (1..=MOST_CELLS).contains(&it);
     if !(is_side(columns) && is_side(rows) && u64::from(columns) * u64::from(rows) <= MOST_STARTS) {
         return Err(value(format!(
@@ -72,11 +65,32 @@ pub(crate) fn basins<'py>(
             "max_period = {max_period} is not accepted: 1 to {MOST_PERIODS_OF_AN_ORBIT} are"
         )));
     }
+    Ok(())
+}
+
+/// The attractors of a grid of starts, and the label of each start.
+#[pyfunction]
+pub(crate) fn basins<'py>(
+    py: Python<'py>,
+    oscillator: &Oscillator,
+    window: ([f64; 2], [f64; 2]),
+    grid: [u32; 2],
+    transient: u64,
+    max_period: u32,
+    told: Option<Py<PyAny>>,
+) -> PyResult<Surveyed<'py>> {
+    let ((p, y), [columns, rows]) = (window, grid);
+    let window = Window { p, y };
+    window.check().map_err(value)?;
+    check_grid(grid, transient, max_period)?;
     let Oscillator { model, start, entry } = oscillator;
     let map = StrobeMap::new(*model, entry.instant);
     let grid = Grid { window, columns, rows, q: start.q.unwrap_or(0.0) };
     let limits = SearchLimits { transient, max_period };
-    let found = interruptible(py, |stop| Basins::of(&map, &grid, limits, &|_| stop.look()))?;
+    let all = u64::from(columns) * u64::from(rows);
+    let found = interruptible(py, &Progress { told, all }, |stop| {
+        Basins::of(&map, &grid, limits, &|count| stop.passed(count))
+    })?;
     let labels = found.labels.iter().map(|it| it.number()).collect();
     let labels = PyArray1::from_vec(py, labels).reshape([rows as usize, columns as usize])?;
     let attractors = found.attractors.iter().enumerate().map(|(n, it)| {

@@ -21,8 +21,8 @@ const MOST_DIGITS: usize = 300;
 /// A piecewise-affine system.
 #[pyclass(frozen, module = "percuss._percuss")]
 pub(crate) struct System {
-    file: SystemFile,
-    shared: Arc<Shared>,
+    pub(crate) file: SystemFile,
+    pub(crate) shared: Arc<Shared>,
 }
 
 impl System {

@@ -19,7 +19,9 @@ def cells(rows, name, column, side=("",)):
     return [row[column] for row in rows if row["wrt"] == name and row["side"] in side]
 
 
-@pytest.mark.parametrize("name", ["bouncing-ball", "two-state-switching", "rigid-impact-oscillator"])
+@pytest.mark.parametrize(
+    "name", ["bouncing-ball", "two-state-switching", "rigid-impact-oscillator"]
+)
 @pytest.mark.parametrize("digits", [17, 25])
 def test_digits_are_those_that_the_command_prints(command, name, digits):
     names = asked(name)

@@ -1,0 +1,121 @@
+//! The attractors of a system and their basins.
+
+use crate::failure::value;
+use crate::long_work::{Progress, interruptible};
+use crate::returns::{Points, Section, drifts, solver};
+use crate::survey::check_grid;
+use crate::system::System;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use percuss::InputError;
+use percuss::affine::{Plane, ReturnAttractor, ReturnBasins};
+use percuss::dynamics::attractor::{Label, SearchLimits, Window};
+use pyo3::IntoPyObject;
+use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyfunction};
+use std::collections::BTreeMap;
+
+/// The attractor that each start of a grid reaches.
+#[derive(IntoPyObject)]
+pub(crate) struct ReturnsSurveyed<'py> {
+    across: Bound<'py, PyArray1<f64>>,
+    up: Bound<'py, PyArray1<f64>>,
+    labels: Bound<'py, PyArray2<i32>>,
+    attractors: Vec<Reached<'py>>,
+    escaping: f64,
+    unresolved: f64,
+    inadmissible: f64,
+    ended: f64,
+}
+
+/// An attractor.
+#[derive(IntoPyObject)]
+struct Reached<'py> {
+    kind: &'static str,
+    period: Option<usize>,
+    fraction: f64,
+    fraction_error: f64,
+    points: Points<'py>,
+    multipliers: Vec<(f64, f64)>,
+    lyapunov_per_return: f64,
+    lyapunov_error: f64,
+    drift_per_return: BTreeMap<String, f64>,
+    drift_standard_error: BTreeMap<String, f64>,
+}
+
+impl<'py> Reached<'py> {
+    fn of(
+        py: Python<'py>,
+        system: &percuss::System,
+        basins: &ReturnBasins,
+        (id, attractor): (usize, &ReturnAttractor),
+    ) -> PyResult<Self> {
+        let label = Label::Attractor(id);
+        let multipliers = attractor.orbit.iter().flat_map(|it| &it.multipliers);
+        Ok(Self {
+            kind: attractor.kind.as_str(),
+            period: attractor.period(),
+            fraction: basins.fraction(label),
+            fraction_error: basins.fraction_error(label),
+            points: Points::of(py, system, &attractor.points)?,
+            multipliers: multipliers.map(|[re, im]| (*re, *im)).collect(),
+            lyapunov_per_return: attractor.lyapunov_per_return,
+            lyapunov_error: attractor.lyapunov_error,
+            drift_per_return: drifts(system, &attractor.drift_per_return),
+            drift_standard_error: drifts(system, &attractor.drift_standard_error),
+        })
+    }
+}
+
+/// Refuses a range of starts that is empty or not bounded.
+fn check_range(name: &str, [low, high]: [f64; 2]) -> PyResult<()> {
+    let window = Window { p: [low, high], y: [low, high] };
+    window.check().map_err(|error| match error {
+        InputError::OutOfRange { accepted, .. } => {
+            value(format!("{name} = ({low}, {high}) is not accepted: {accepted}"))
+        }
+        error => value(error),
+    })
+}
+
+/// The attractors of a grid of a system's starts in two states, and the label of each start.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the face in Python gives them names")]
+pub(crate) fn system_basins<'py>(
+    py: Python<'py>,
+    system: &System,
+    section: &Section,
+    axes: [usize; 2],
+    window: ([f64; 2], [f64; 2]),
+    grid: [u32; 2],
+    transient: u64,
+    max_period: u32,
+    told: Option<Py<PyAny>>,
+) -> PyResult<ReturnsSurveyed<'py>> {
+    let ((across, up), [columns, rows]) = (window, grid);
+    check_range("across", across)?;
+    check_range("up", up)?;
+    check_grid(grid, transient, max_period)?;
+    let solver = solver(system)?;
+    let (map, system) = (section.map(&solver)?, &system.shared.system);
+    let start = system.start().map_err(value)?;
+    let plane = Plane { axes, window: [across, up], columns, rows };
+    let limits = SearchLimits { transient, max_period };
+    let all = plane.count() as u64;
+    let found = interruptible(py, &Progress { told, all }, |stop| {
+        map.basins(start, &plane, limits, &|count| stop.passed(count))
+    })?;
+    let found = found.map_err(value)?;
+    let labels = found.labels.iter().map(|it| it.number()).collect();
+    let listed = found.attractors.iter().enumerate();
+    Ok(ReturnsSurveyed {
+        across: PyArray1::from_vec(py, plane.centres(0)),
+        up: PyArray1::from_vec(py, plane.centres(1)),
+        labels: PyArray1::from_vec(py, labels).reshape([rows as usize, columns as usize])?,
+        attractors: listed
+            .map(|it| Reached::of(py, system, &found, it))
+            .collect::<PyResult<_>>()?,
+        escaping: found.fraction(Label::Escaping),
+        unresolved: found.fraction(Label::Unresolved),
+        inadmissible: found.fraction(Label::Inadmissible),
+        ended: found.fraction(Label::Ended),
+    })
+}
