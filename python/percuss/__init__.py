@@ -45,6 +45,7 @@ from percuss._returns import (
 )
 from percuss._run import Digits, Enclosure, Run, Sol, Stream
 from percuss._score import case_names, problem, score
+from percuss._sweep import Sweep
 from percuss._system import System, Systems, systems
 
 __version__ = _version("percuss")
@@ -82,6 +83,7 @@ __all__ = [
     "Sol",
     "Stream",
     "Successor",
+    "Sweep",
     "System",
     "Systems",
     "Until",

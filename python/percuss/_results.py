@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from percuss import _percuss
 from percuss._pictures import axes_or_new, cells, cloud, named
-from percuss._returns import described
+from percuss._returns import described, points_over
 from percuss._run import Floats
+from percuss._xarray import dataset
 
 
 class Section:
@@ -141,6 +142,11 @@ class Bifurcation:
         self.escapes = found["escapes"]
         self.undecidable = found["undecidable"]
 
+    def to_xarray(self) -> Any:
+        """Make a data set of the strobes, each with its value of the parameter; needs xarray."""
+        states = ["p", "y", "q"]
+        return points_over(self.parameter, self.values[self.steps], self.points, states)
+
     def plot(self, ax: Any = None) -> Any:
         """Draw p over the parameter; needs matplotlib. Returns the axes."""
         ax = axes_or_new(ax)
@@ -209,6 +215,10 @@ class Basins:
         self.attractors = [Attractor(it) for it in found["attractors"]]
         self.escaping = found["escaping"]
         self.unresolved = found["unresolved"]
+
+    def to_xarray(self) -> Any:
+        """Make a data set of the labels over p and y; needs xarray."""
+        return dataset({"labels": (("y", "p"), self.labels)}, {"p": self.p, "y": self.y})
 
     def plot(self, ax: Any = None) -> Any:
         """Draw the labels over p and y; needs matplotlib. Returns the axes.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from percuss import _percuss
 from percuss._pictures import axes_or_new, cells, cloud, curve, named
 from percuss._run import Floats, Texts
+from percuss._xarray import dataset
 
 
 def _complex(pairs: list[tuple[float, float]]) -> NDArray[np.complex128]:
@@ -198,6 +199,10 @@ class ReturnDiagram:
         self.undecidable = found["undecidable"]
         self.states = states
 
+    def to_xarray(self) -> Any:
+        """Make a data set of the returns, each with its value of the parameter; needs xarray."""
+        return points_over(self.parameter, self.values[self.steps], self.points, self.states)
+
     def plot(self, ax: Any = None) -> Any:
         """Draw the first state over the parameter; needs matplotlib. Returns the axes."""
         ax = axes_or_new(ax)
@@ -207,6 +212,12 @@ class ReturnDiagram:
     def __repr__(self) -> str:
         ends = f"{self.values[0]:g} to {self.values[-1]:g}"
         return f"ReturnDiagram({self.parameter} from {ends}, {len(self.points)} points)"
+
+
+def points_over(parameter: str, values: Floats, points: Floats, states: list[str]) -> Any:
+    """Make a data set of the points of a diagram, along one dimension."""
+    columns = {name: (("point",), points[:, place]) for place, name in enumerate(states)}
+    return dataset(columns, {parameter: ("point", values)})
 
 
 class ReturnAttractor:
@@ -289,6 +300,12 @@ class ReturnBasins:
         self.unresolved = found["unresolved"]
         self.inadmissible = found["inadmissible"]
         self.ended = found["ended"]
+
+    def to_xarray(self) -> Any:
+        """Make a data set of the labels over the two states; needs xarray."""
+        across, up = self.axes
+        labels = {"labels": ((up, across), self.labels)}
+        return dataset(labels, {across: self.across, up: self.up})
 
     def plot(self, ax: Any = None) -> Any:
         """Draw the labels over the two states; needs matplotlib. Returns the axes."""
@@ -399,7 +416,11 @@ class Branch:
             height = self.points[place, 0]
             ax.plot(found.value, height, "o", color="#d55e00", markersize=4)
             ax.annotate(
-                found.kind, (found.value, height), xytext=(4, 4), textcoords="offset points"
+                found.kind,
+                (found.value, height),
+                xytext=(-4, 4),
+                textcoords="offset points",
+                ha="right",
             )
         return named(ax, self.parameter, self.states[0])
 

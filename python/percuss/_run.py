@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from percuss import _percuss
 from percuss._gradient import Gradient
+from percuss._numbers import number_maker
+from percuss._xarray import dataset
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -142,6 +144,45 @@ class Run:
         shape = (len(self), len(self.states))
         return Digits(np.array(time, dtype=np.str_), np.array(state, dtype=np.str_).reshape(shape))
 
+    def digits_as(self, kind: str) -> Digits:
+        """Make numbers of another library of the proved digits; needs that library.
+
+        Parameters
+        ----------
+        kind : {'mpmath', 'flint', 'decimal'}
+            ``mpmath.mpf``, which are rounded to the precision of the longest decimal; ``flint.arb``,
+            balls that hold the true numbers; or ``decimal.Decimal``.
+
+        Returns
+        -------
+        Digits
+            Arrays of objects, shapes (n,) and (n, d).
+
+        Raises
+        ------
+        ValueError
+            An unknown kind.
+        AttributeError
+            Of a run in f64, of which no digit is proved.
+
+        Examples
+        --------
+        >>> import percuss
+        >>> run = percuss.systems["bouncing-ball"].events(count=1, digits=25)
+        >>> run.digits_as("decimal").time[1]
+        Decimal('1.500000000000000000000000')
+        """
+        make = number_maker(kind)
+        time, state = self.digits
+
+        def made(texts: Texts) -> Any:
+            cells = np.empty(texts.shape, dtype=object)
+            for place, text in np.ndenumerate(texts):
+                cells[place] = make(str(text))
+            return cells
+
+        return Digits(made(time), made(state))
+
     @cached_property
     def enclosure(self) -> Enclosure:
         """Numbers between which the true times and states lie.
@@ -237,6 +278,19 @@ class Run:
         columns: dict[str, Any] = {"time": self.time, "event": self.name, "mode": self.mode}
         columns |= {name: self.state[:, place] for place, name in enumerate(self.columns)}
         return pd.DataFrame(columns).rename_axis("n")
+
+    def to_xarray(self, t: ArrayLike) -> Any:
+        """Make a data set of the states at times of the run; needs xarray.
+
+        Parameters
+        ----------
+        t : array_like, shape (m,)
+            Times of the run.
+        """
+        times = np.atleast_1d(np.asarray(t, dtype=np.float64))
+        states = self.sol(times)
+        named = {name: (("time",), states[place]) for place, name in enumerate(self.columns)}
+        return dataset(named, {"time": times}, ending=self.ending or "")
 
     def plot(self, ax: Any = None, *, points: int = 1000) -> Any:
         """Draw the states over the time, with a mark at each event; needs matplotlib.

@@ -1,0 +1,115 @@
+"""Sweeps: a verb of the dynamics at every point of one or two parameters."""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from percuss._dynamics import name_of, steps_of
+from percuss._xarray import dataset
+
+Floats = NDArray[np.float64]
+
+
+class Sweep:
+    """The results of a verb over one or two parameters.
+
+    Attributes
+    ----------
+    axes : dict of str to ndarray
+        The values of the parameters, by name.
+    arrays : dict of str to ndarray
+        The arrays of ``percuss sweep merge``: their first dimensions are those of the axes.
+    """
+
+    def __init__(self, axes: dict[str, Floats], arrays: dict[str, NDArray[Any]]) -> None:
+        self.axes = axes
+        self.arrays = arrays
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self.arrays[name]
+
+    def to_xarray(self) -> Any:
+        """Make a data set over the axes; needs xarray."""
+        shape = tuple(len(values) for values in self.axes.values())
+        variables: dict[str, tuple[tuple[str, ...], Any]] = {}
+        for name, array in self.arrays.items():
+            if array.shape[: len(shape)] == shape:
+                others = tuple(f"{name}_{n}" for n in range(array.ndim - len(shape)))
+                variables[name] = ((*self.axes, *others), array)
+        return dataset(variables, dict(self.axes))
+
+    def __repr__(self) -> str:
+        sizes = ", ".join(f"{name}: {len(values)}" for name, values in self.axes.items())
+        return f"Sweep({sizes}; {', '.join(self.arrays)})"
+
+
+def sweep(
+    verb: str,
+    axes: Mapping[str, Sequence[float] | Floats],
+    fixed: Mapping[str, Any],
+    out: str | Path | None,
+) -> Sweep:
+    """Run the plan of a sweep by the command, and read the arrays that it merges.
+
+    Raises
+    ------
+    ValueError
+        A plan that the command does not accept, with its reason.
+    """
+    plan = _plan(name_of("verb", verb), axes, fixed)
+    with tempfile.TemporaryDirectory(prefix="percuss-") as own:
+        path, merged = Path(own) / "plan.toml", Path(own) / "merged.npz"
+        path.write_text(plan, encoding="utf-8")
+        folder = Path(own) / "shards" if out is None else Path(out)
+        where = ("--plan", str(path), "--out", str(folder))
+        _command("run", *where)
+        _command("merge", *where, "--output", str(merged))
+        with np.load(merged) as stored:
+            arrays = {name: stored[name] for name in stored.files}
+    return Sweep({name: arrays.pop(name) for name in axes}, arrays)
+
+
+def _command(step: str, *words: str) -> None:
+    call = [sys.executable, "-m", "percuss", "--quiet", "sweep", step, *words]
+    done = subprocess.run(call, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        lines = [line for line in done.stderr.splitlines() if line.strip()]
+        raise ValueError(lines[0].removeprefix("percuss: ") if lines else "the sweep failed")
+
+
+def _plan(verb: str, axes: Mapping[str, Any], fixed: Mapping[str, Any]) -> str:
+    if not 1 <= len(axes) <= 2:
+        raise ValueError(f"axes of {len(axes)} parameters are not accepted: one or two are")
+    lines = ["[sweep]", f"verb = {json.dumps(verb)}", "shards = 1", "[fixed]"]
+    for name, value in fixed.items():
+        if name not in axes and value is not None:
+            lines.append(f"{name.replace('_', '-')} = {_toml(name, value)}")
+    for name, values in axes.items():
+        first, last, count = steps_of(values)
+        lines += ["[[axis]]", f"parameter = {json.dumps(name)}"]
+        lines += [f"from = {first!r}", f"to = {last!r}", f"steps = {count}"]
+    return "\n".join(lines) + "\n"
+
+
+def _toml(name: str, value: Any) -> str:
+    """A value as TOML writes it."""
+    if isinstance(value, (bool, str)):
+        return json.dumps(value)
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(_toml(name, it) for it in value)}]"
+    if hasattr(value, "__index__"):
+        return str(value.__index__())
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} = {value!r} is not accepted: a finite number is")
+    return repr(number)

@@ -1,0 +1,96 @@
+"""Results as numbers and data sets of other libraries, and sweeps."""
+
+from decimal import Decimal
+
+import numpy as np
+import pytest
+
+import percuss
+
+
+@pytest.fixture()
+def run():
+    return percuss.systems["rigid-impact-oscillator"].events(count=6, digits=40)
+
+
+def test_digits_are_kept_by_mpmath(run):
+    mpmath = pytest.importorskip("mpmath")
+    found = run.digits_as("mpmath")
+    assert found.state.shape == (7, 2) and isinstance(found.time[1], mpmath.mpf)
+    with mpmath.workdps(60):
+        text = mpmath.nstr(found.time[6], 40, strip_zeros=False)
+    assert Decimal(text) == Decimal(str(run.digits.time[6]))
+
+
+def test_balls_of_flint_hold_the_numbers(run):
+    flint = pytest.importorskip("flint")
+    found = run.digits_as("flint")
+    more = percuss.systems["rigid-impact-oscillator"].events(count=6, digits=60)
+    flint.ctx.prec = 300
+    for ball, text in zip(found.time[1:], more.digits.time[1:]):
+        assert ball.contains(flint.arb(str(text)).mid())
+        assert float(ball.rad()) <= 1e-37 * abs(float(ball.mid()))
+
+
+def test_kinds_that_are_not_known_are_told(run):
+    assert run.digits_as("decimal").time[0] == Decimal(0)
+    with pytest.raises(ValueError, match="kind = 'gmp'"):
+        run.digits_as("gmp")
+    with pytest.raises(AttributeError, match="f64"):
+        percuss.systems["bouncing-ball"].simulate(count=1).digits_as("decimal")
+
+
+def test_data_sets_hold_the_arrays(run):
+    pytest.importorskip("xarray")
+    times = np.linspace(0, run.time[-1], 11)
+    motion = run.to_xarray(times)
+    assert motion["x"].values.tobytes() == run.sol(times)[0].tobytes()
+    oscillator = percuss.Oscillator()
+    basins = oscillator.basins((-1, 1), (-0.5, 0.5), grid=(6, 4), transient=50)
+    labels = basins.to_xarray()["labels"]
+    assert labels.dims == ("y", "p") and (labels.values == basins.labels).all()
+    assert labels.sel(p=basins.p[2], y=basins.y[1]) == basins.labels[1, 2]
+    diagram = oscillator.bifurcation("b", [0.1, 0.2], transient=5, periods=3).to_xarray()
+    assert diagram["p"].sizes == {"point": 6} and diagram["b"].values[-1] == 0.2
+    rig = percuss.systems["rigid-impact-oscillator"]
+    found = rig.basins((-1, 0.1), (-1, 1), grid=3, transient=20).to_xarray()
+    assert found["labels"].dims == ("v", "x")
+    assert rig.bifurcation("A", [0.5, 0.6], returns=2).to_xarray()["x"].sizes == {"point": 4}
+
+
+def test_sweeps_are_those_of_single_runs(tmp_path):
+    axes = {"omega": np.linspace(0.9, 1.1, 3), "b": [0.1, 0.15]}
+    found = percuss.Oscillator(p=0.01).sweep(
+        "lyapunov", axes, transient=20, periods=50, out=tmp_path / "shards"
+    )
+    assert {name: len(values) for name, values in found.axes.items()} == {"omega": 3, "b": 2}
+    for i, omega in enumerate(found.axes["omega"]):
+        for k, b in enumerate(found.axes["b"]):
+            alone = percuss.Oscillator(p=0.01, omega=omega, b=b)
+            spectrum = alone.lyapunov(transient=20, periods=50)
+            assert found["exponents_per_period"][i, k].tolist() == spectrum.exponents.tolist()
+            assert found["drift_per_period"][i, k] == spectrum.drift
+
+
+def test_sweeps_are_data_sets():
+    pytest.importorskip("xarray")
+    found = percuss.Oscillator().sweep("lyapunov", {"b": [0.1, 0.2]}, transient=5, periods=20)
+    data = found.to_xarray()
+    assert data["drift_per_period"].dims == ("b",)
+    assert data["exponents_per_period"].shape == (2, 3)
+
+
+@pytest.mark.parametrize(
+    ("verb", "axes", "flags", "match"),
+    [
+        ("simulate", {"b": [0.1, 0.2]}, {}, "simulate"),
+        ("lyapunov", {}, {}, "one or two"),
+        ("lyapunov", {"z": [0.1, 0.2]}, {"transient": 1, "periods": 2}, "z"),
+        ("lyapunov", {"b": [0.1, 0.2]}, {"no_such": 1}, "no-such"),
+        ("lyapunov", {"b": [0.1, 0.2, 0.4]}, {}, "equal steps"),
+        ("lyapunov", {"b": [0.1, 0.2]}, {"transient": float("nan")}, "finite"),
+    ],
+)
+def test_plans_that_are_not_accepted_are_told(verb, axes, flags, match):
+    with pytest.raises(ValueError, match=match):
+        percuss.Oscillator().sweep(verb, axes, **flags)
