@@ -6,6 +6,7 @@ import html
 import json
 import shutil
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,12 +28,20 @@ class Report:
         The set-ups, the best first, with the keys of ``ranking``.
     summary : dict of str to int
         The number of rows of each verdict.
+    worse : list of str
+        What is worse than in the baseline, a line each.
     folder : pathlib.Path
         The folder with report.json, report.html, errors.csv, junit.xml and pictures.
     """
 
-    def __init__(self, folder: Path, owned: tempfile.TemporaryDirectory[str] | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        owned: tempfile.TemporaryDirectory[str] | None = None,
+        worse: Sequence[str] = (),
+    ) -> None:
         self._owned = owned
+        self.worse = list(worse)
         self.folder = folder
         found: dict[str, Any] = json.loads((folder / "report.json").read_text(encoding="utf-8"))
         self.rows: list[dict[str, Any]] = found["results"]

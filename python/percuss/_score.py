@@ -184,6 +184,7 @@ def score(
     order: int | None = None,
     stepping: str = "adaptive",
     out: str | Path | None = None,
+    baseline: str | Path | Sequence[str | Path] = (),
     progress: Callable[[int, int], object] | None = None,
 ) -> Report:
     """Judge a solver on the cases of percuss.
@@ -214,6 +215,9 @@ def score(
         How the tolerance holds the error.
     out : path, optional
         A folder for the files of the report.
+    baseline : path or sequence of paths, optional
+        An earlier report.json, or several, of which the best counts figure by figure: what is
+        worse stands in ``Report.worse``.
     progress : callable, optional
         Called with the number of answers made and their whole number.
 
@@ -244,6 +248,8 @@ def score(
         Declared(solve, name_, whose.library, whose.version, *whose.traits(kind, order), stepping)
         for solve, name_ in _solvers(solver, whose, setup, options or {}, name)
     ]
+    paths = [baseline] if isinstance(baseline, (str, Path)) else baseline
+    earlier = [Path(path).read_text(encoding="utf-8") for path in paths]
     chosen = _percuss.Cases(set(case_names(cases)))
     for it in declared:
         # What is wrong with it is said before the work begins.
@@ -252,8 +258,8 @@ def score(
         answered = _answers(chosen, declared, tolerances, Path(folder), progress)
         owned = None if out is not None else tempfile.TemporaryDirectory(prefix="percuss-report-")
         target = Path(out if owned is None else owned.name)  # type: ignore[arg-type]
-        chosen.judge([it.told() for it in answered], str(target))
-    return Report(target, owned)
+        worse = chosen.judge([it.told() for it in answered], str(target), earlier)
+    return Report(target, owned, worse)
 
 
 class _Whose:

@@ -37,6 +37,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--percuss-order", metavar="N", type=int, help="the order of the method")
     group.addoption("--percuss-out", metavar="DIR", help="a folder for the files of the report")
     group.addoption(
+        "--percuss-baseline",
+        metavar="FILE",
+        action="append",
+        default=[],
+        help="an earlier report.json: a test fails where a row is worse; given again, the best of"
+        " all counts",
+    )
+    group.addoption(
         "--percuss-known",
         metavar="FILE",
         help="declared shortcomings: lines of CASE or CASE@TOLERANCE, a space, and the reason;"
@@ -86,8 +94,9 @@ def _report(config: pytest.Config) -> Report:
             kind=option("--percuss-kind"),
             order=option("--percuss-order"),
             out=option("--percuss-out"),
+            baseline=option("--percuss-baseline"),
         )
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, OSError) as error:
         raise pytest.UsageError(f"--percuss: {error}") from error
 
 
@@ -95,7 +104,21 @@ class RowFailure(Exception):
     """A row that is out of bounds or gave no result."""
 
 
-class Row(pytest.Item):
+class _Item(pytest.Item):
+    """A test of the plugin, whose failure is a line or more."""
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """Say the reason, without lines of this file."""
+        if isinstance(excinfo.value, RowFailure):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, None, str]:
+        """The place and the name of the test."""
+        return self.path, None, f"percuss: {self.name}"
+
+
+class Row(_Item):
     """A row of the report, as a test."""
 
     def __init__(self, *, row: dict[str, Any], **options: Any) -> None:
@@ -110,24 +133,28 @@ class Row(pytest.Item):
         if verdict in ("not-run", "unavailable", "not-scored"):
             pytest.skip(f"{verdict}: {self.row['why']}")
 
-    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """Say the row's reason, without lines of this file."""
-        if isinstance(excinfo.value, RowFailure):
-            return str(excinfo.value)
-        return super().repr_failure(excinfo, style)
 
-    def reportinfo(self) -> tuple[Path, None, str]:
-        """The place and the name of the test."""
-        return self.path, None, f"percuss: {self.name}"
+class BaselineTest(_Item):
+    """The comparison with the baseline, as a test."""
+
+    def __init__(self, *, worse: list[str], **options: Any) -> None:
+        super().__init__(**options)
+        self.worse = worse
+
+    def runtest(self) -> None:
+        """Fail where a row is worse, or gone."""
+        if self.worse:
+            raise RowFailure("\n".join(f"worse than the baseline: {it}" for it in self.worse))
 
 
 class Rows(pytest.Collector):
     """The rows of the report."""
 
-    def collect(self) -> Iterator[Row]:
-        """One test a row; declared shortcomings are expected to fail."""
+    def collect(self) -> Iterator[pytest.Item]:
+        """One test a row, and one of the baseline; declared shortcomings are expected to fail."""
         known = _known(self.config.getoption("--percuss-known"))
-        for row in _report(self.config).rows:
+        report = _report(self.config)
+        for row in report.rows:
             tolerance = f"{row['tolerance']:g}"
             item = Row.from_parent(
                 self, name=f"{row['case']}[{row['engine']}-{tolerance}]", row=row
@@ -136,6 +163,8 @@ class Rows(pytest.Collector):
             if why is not None:
                 item.add_marker(pytest.mark.xfail(reason=why, strict=True))
             yield item
+        if self.config.getoption("--percuss-baseline"):
+            yield BaselineTest.from_parent(self, name="baseline", worse=report.worse)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -8,7 +8,9 @@ use percuss_validation::case;
 use percuss_validation::engine::{
     Accuracy, Class, Declaration, Engine, Failure, Limits, Outcome, REFERENCE, Stepping, Task, Work,
 };
-use percuss_validation::report::{Report, ReportEvidence, event_pictures, exporters, pictures};
+use percuss_validation::report::{
+    Baseline, Report, ReportEvidence, RowPlace, event_pictures, exporters, pictures,
+};
 use percuss_validation::suite::{self, PreparedCase, Scored, Suite};
 use percuss_validation::truth::Library;
 use pyo3::FromPyObject;
@@ -203,10 +205,19 @@ impl Cases {
     }
 
     /// Judges answers and writes the report into a folder.
-    fn judge(&self, py: Python<'_>, answers: Vec<Answers>, out: PathBuf) -> PyResult<()> {
+    ///
+    /// Returns what is worse than in the best of the earlier reports of these texts, a line each.
+    fn judge(
+        &self,
+        py: Python<'_>,
+        answers: Vec<Answers>,
+        out: PathBuf,
+        baselines: Vec<String>,
+    ) -> PyResult<Vec<String>> {
         let declared: PyResult<Vec<_>> =
             answers.iter().map(|it| Ok((it.answerer()?, it))).collect();
         let declared = declared?;
+        let baseline = best(&baselines)?;
         let written = interruptible(py, &Progress::default(), |stop| {
             let engine =
                 |(answerer, it): &(Answerer, &Answers), case: &str| it.engine(*answerer, case);
@@ -232,10 +243,40 @@ impl Cases {
             let once = declared.iter().filter(|(it, _)| seen.insert(it.name));
             let engines: Vec<_> = once.map(|it| engine(it, "")).collect();
             let engines: Vec<&dyn Engine> = engines.iter().map(|it| it as &dyn Engine).collect();
-            write(&Report::new(SUITE, &engines, &rows), &evidence, &out)
+            let report = Report::new(SUITE, &engines, &rows);
+            if let Some(baseline) = &baseline {
+                let is_asked = |it: &RowPlace<'_>| {
+                    let is_method = |(who, method): &(Answerer, &Answers)| {
+                        who.name == it.engine && Some(method.tolerance) == it.tolerance
+                    };
+                    let is_case = |case: &PreparedCase| case.case.name == it.case;
+                    declared.iter().any(is_method) && self.all.iter().any(is_case)
+                };
+                let compared = baseline.compare(&report, is_asked);
+                if compared.common == 0 {
+                    return Err(Unjudged::of(
+                        "baseline: no row in common: a report of the same rows is accepted",
+                    ));
+                }
+                evidence.worse = compared.worse;
+                evidence.worse.extend(compared.gone.into_iter().map(|it| format!("{it}: gone")));
+                evidence.dearer = compared.dearer;
+            }
+            write(&report, &evidence, &out)?;
+            Ok(evidence.worse)
         })?;
         written.map_err(|Unjudged(error)| error)
     }
+}
+
+/// The best of earlier reports of these texts, if there are any.
+fn best(baselines: &[String]) -> PyResult<Option<Baseline>> {
+    let read = |text: &String| {
+        Baseline::read(text).map_err(|error| {
+            value(format!("baseline: {error}: a report.json of this version is accepted"))
+        })
+    };
+    Ok(Baseline::best(baselines.iter().map(read).collect::<PyResult<Vec<_>>>()?))
 }
 
 /// Why there is no report.

@@ -1,5 +1,7 @@
 """The pytest plugin."""
 
+import json
+
 import pytest
 
 pytest.importorskip("scipy")
@@ -32,6 +34,27 @@ def test_declared_shortcomings_have_to_fail(pytester):
 def test_the_report_is_a_folder(pytester):
     pytester.runpytest_subprocess(SOLVER, *ASKED, "--percuss-out=report").assert_outcomes(passed=1)
     assert (pytester.path / "report/report.html").exists()
+
+
+def test_a_row_that_is_worse_than_the_baseline_fails(pytester):
+    loose = [it.replace("1e-6", "1e-4") for it in ASKED]
+    pytester.runpytest_subprocess(SOLVER, *ASKED, "--percuss-out=first")
+    path = pytester.path / "first/report.json"
+    same = pytester.runpytest_subprocess(SOLVER, *ASKED, f"--percuss-baseline={path}")
+    same.assert_outcomes(passed=2)
+    # The earlier run was better: its errors, made smaller, are what a better method had.
+    better = json.loads(path.read_text())
+    for row in better["results"]:
+        row["state_error"]["max"] *= 1e-3
+    path.write_text(json.dumps(better))
+    worse = pytester.runpytest_subprocess(SOLVER, *ASKED, f"--percuss-baseline={path}")
+    worse.assert_outcomes(passed=1, failed=1)
+    worse.stdout.fnmatch_lines(["*worse than the baseline: table1-first-row*"])
+    other = pytester.runpytest_subprocess(SOLVER, *loose, f"--percuss-baseline={path}")
+    assert other.ret == pytest.ExitCode.USAGE_ERROR
+    gone = pytester.runpytest_subprocess(SOLVER, *ASKED, "--percuss-baseline=no-such.json")
+    assert gone.ret == pytest.ExitCode.USAGE_ERROR
+    gone.stderr.fnmatch_lines(["*no-such.json*"])
 
 
 def test_without_the_option_nothing_changes(pytester):
