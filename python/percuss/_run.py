@@ -96,14 +96,20 @@ class Run:
         where the run has the number of events that was asked for.
     """
 
-    def __init__(
-        self, rows: _percuss.Rows, states: list[str], modes: list[str], digits: int
-    ) -> None:
+    def __init__(self, rows: _percuss.Rows, system: _percuss.System, digits: int) -> None:
         self._rows = rows
-        self._modes = modes
+        self._system = system
         self._digits = digits
-        self.states = states
-        self.ending = rows.ending
+
+    @cached_property
+    def states(self) -> list[str]:
+        """The names of the d states."""
+        return self._system.states
+
+    @cached_property
+    def ending(self) -> str | None:
+        """The name of the ending."""
+        return self._rows.ending
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -121,7 +127,7 @@ class Run:
     @cached_property
     def mode(self) -> Texts:
         """The names of the modes that begin or go on, shape (n,)."""
-        return np.array(self._modes)[self._rows.modes()]
+        return np.array(self._system.modes)[self._rows.modes()]
 
     @cached_property
     def name(self) -> Texts:

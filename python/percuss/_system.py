@@ -223,7 +223,7 @@ class System(Dynamics):
         bits = None if max_bits is None else whole("max_bits", max_bits, most=2**32 - 1)
         until, count, most = length
         rows = self._native.events(until, count, wanted, bits, most, bool(backward))
-        return Run(rows, self.states, self.modes, wanted)
+        return Run(rows, self._native, wanted)
 
     def simulate(
         self,
@@ -247,7 +247,7 @@ class System(Dynamics):
         """
         until, count, most = self._length(until, count, max_events)
         rows = self._native.simulate(until, count, most, bool(backward))
-        return Run(rows, self.states, self.modes, 17)
+        return Run(rows, self._native, 17)
 
     def iterate(
         self,
