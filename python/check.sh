@@ -36,5 +36,7 @@ PERCUSS_ROOT=$root "$python" -m pytest --quiet -p no:cacheprovider --rootdir "$r
 
 step "types"
 "$python" -m mypy --config-file "$root/python/pyproject.toml" -p percuss
+"$python" -m pyright --project "$root/python/pyproject.toml" --pythonpath "$python" \
+    "$("$python" -c 'import percuss; print(*percuss.__path__)')"
 
 step "done"

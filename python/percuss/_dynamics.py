@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -57,7 +57,7 @@ def steps_of(values: Sequence[float] | NDArray[np.float64]) -> tuple[float, floa
 def cells_of(grid: int | tuple[int, int]) -> tuple[int, int]:
     """The cells of a grid across and up."""
     try:
-        columns, rows = (grid, grid) if hasattr(grid, "__index__") else tuple(grid)
+        columns, rows = grid if isinstance(grid, Iterable) else (grid, grid)
     except (TypeError, ValueError):
         raise ValueError(f"grid = {grid!r} is not accepted: one or two integers are") from None
     return whole("grid", columns, 1, _MOST), whole("grid", rows, 1, _MOST)

@@ -129,17 +129,19 @@ class Problem:
         return f"Problem({self.case!r}, tolerance={self.tolerance:g})"
 
 
-def _mode(mode: Mapping[str, Any], names: Sequence[str]) -> ModeRule:
+def _mode(mode: Mapping[str, Any], names: list[str]) -> ModeRule:
     a, b, c = (np.array(mode[key], dtype=np.float64) for key in "ABc")
     events = tuple(_event(event, names) for event in mode["events"])
     return ModeRule(mode["name"], a, b, c, events)
 
 
-def _event(event: Mapping[str, Any], names: Sequence[str]) -> EventRule:
+def _event(event: Mapping[str, Any], names: list[str]) -> EventRule:
     def row(it: Any) -> Floats | None:
         return None if it is None else np.array(it, dtype=np.float64)
 
-    successors = tuple(Successor(row(it["when"]), names[it["mode"]]) for it in event["successors"])
+    successors = tuple(
+        Successor(row(it["when"]), names[int(it["mode"])]) for it in event["successors"]
+    )
     return EventRule(
         event["name"],
         np.array(event["guard"], dtype=np.float64),

@@ -82,7 +82,9 @@ def _report(config: pytest.Config) -> Report:
     """The judgement of the solver on all cases that are asked for."""
     import percuss
 
-    option = config.getoption
+    def option(name: str) -> Any:
+        return config.getoption(name)
+
     tolerances = option("--percuss-rtol")
     try:
         return percuss.score(
