@@ -18,6 +18,7 @@ class Remaining(NamedTuple):
 
     least: arb
     most: arb
+    state: arb_mat  # at that instant, before a reset there
 
 
 def proportion(row: fmpq_mat, unit: fmpq_mat, space: Space) -> fmpq | None:
@@ -55,7 +56,7 @@ class Tube:
         return arb_mat([[self.z[i, 0] + arb(0, radii[i])] for i in range(size)])
 
     def remaining(self):
-        """(enclosure of the time left, sum of all speeds of arrival), if the box holds the rest."""
+        """(bounds of the time left and of the speeds of arrival), if the box holds the rest."""
         acceleration = (self.acceleration * self.box)[0, 0]
         if not acceleration > 0:
             return None
@@ -66,7 +67,8 @@ class Tube:
             return None
         shortest = 2 * self.speed / (most * (1 - self.e / spread))
         longest = 2 * self.speed / (least * (1 - ratio))
-        return Remaining(shortest, longest), self.speed * spread / (1 - ratio)
+        fewest = self.speed / (spread - self.e)
+        return [shortest, longest], [fewest, self.speed * spread / (1 - ratio)]
 
     def reach(self, time: arb, speeds: arb) -> list:
         """How far each entry can go in `time`, with jumps of so much speed in all."""
@@ -84,11 +86,19 @@ class Tube:
             found = self.remaining()
             if found is None:
                 return None
-            reach = self.reach(found[0].most, found[1])
+            times, speeds = found
+            reach = self.reach(times[1], speeds[1])
             if all(r <= allowed for r, allowed in zip(reach, radii, strict=True)):
-                return found[0]
+                return Remaining(*times, self.limit(times, speeds))
             radii = [2 * r for r in reach]
         return None
+
+    def limit(self, times: list, speeds: list) -> arb_mat:
+        """The state where the impacts end: by rates in the box, and jumps of all speeds left."""
+        time, speed = times[0].union(times[1]), speeds[0].union(speeds[1])
+        rates = self.matrix * self.box
+        moved = [rates[i, 0] * time + arb(jump) * speed for i, jump in enumerate(self.jumps)]
+        return arb_mat([[self.z[i, 0] + moved[i]] for i in range(self.z.nrows())])
 
 
 def accumulation(event, mode, matrix: fmpq_mat, space: Space, z: arb_mat, unit: arb, stays):
@@ -119,7 +129,7 @@ def accumulation(event, mode, matrix: fmpq_mat, space: Space, z: arb_mat, unit: 
 
 def worth_proving(tube: Tube, unit: arb) -> bool:
     found = tube.remaining()
-    return found is not None and bool(found[0].most < WORTH_PROVING * LIMIT * unit)
+    return found is not None and bool(found[0][1] < WORTH_PROVING * LIMIT * unit)
 
 
 def nothing_else_fires(event, mode, box: arb_mat, stays) -> bool:

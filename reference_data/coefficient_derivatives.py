@@ -115,6 +115,9 @@ class DualBuilder(Builder):
         split = [[parts(entry) for entry in row] for row in rows]
         return Matrix(*(fmpq_mat([[e[k] for e in row] for row in split]) for k in (0, 1)))
 
+    def check_drift(self, modes: list, start: list) -> None:
+        """A drift is checked where the file is read without derivatives."""
+
     def start_values(self, modes: dict) -> dict:
         found = super().start_values(modes)
         for state, row in zip(self.states, found["state"], strict=True):

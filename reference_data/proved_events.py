@@ -3,6 +3,10 @@
 This is the run of `system_run.py` for systems that are no cases: nothing is refused that a program
 may be asked, and what is proved before a precision gives up is kept. Errors go from event to event
 as columns (`spread.py`), so that a run of some hundred events needs few bits.
+
+Where an event has `accumulates_to`, impacts go on without rows until the time left is a share of
+the bits below the unit of time, or as long as the depth of a flight is clear of errors. The limit
+then follows from bounds of the rates and of the jumps up to it (`accumulation.py`).
 """
 
 from types import SimpleNamespace
@@ -26,15 +30,21 @@ from system_run import (
 )
 
 
+LIMIT_SHARE = 4  # of the bits a fourth: the depth of a flight then has half of them left
+VAGUE = arb(2) ** -20  # error of a state, in depths of a flight, with which the limit is taken
+
+
 class EventRun(Run):
     """All rows up to the horizon, at the present precision."""
 
     def __init__(self, system: System, until: float):
         case = SystemCase(system.name, system, {}, number(until), until, 1, False)
         super().__init__(case)
-        self.spread = Spread.of(self.state.z, arb(0))
+        self.spread, self.silent = Spread.of(self.state.z, arb(0)), False
 
     def add(self, event: str, state: HybridState, _growth=None) -> None:
+        if self.silent and event not in ("accumulation", "end"):
+            return
         self.rows.append(Row(event, state.mode, self.elapsed, state.z, []))
 
     def enter_at_start(self) -> None:
@@ -116,8 +126,46 @@ class EventRun(Run):
     def leave_by(self, events: list) -> None:
         """Ends a segment by the first of `events`; what else fires in the same instant follows."""
         before = self.state
-        if self.fire(events) == 1 and self.state.mode == before.mode:
+        if self.fire(events) != 1 or self.state.mode != before.mode:
+            return
+        if events[0].limit is None:
             self.end_if_accumulating(events[0], before)
+        else:
+            self.approach(events[0], before)
+
+    def approach(self, event: Event, before: HybridState) -> None:
+        """Goes on without rows from an impact next to the limit, or to the limit."""
+        remaining = self.accumulating(event, before)
+        if remaining is None:
+            if self.silent:
+                raise Undecided("an accumulation")
+            return
+        self.silent = True
+        near = arb(2) ** -(ctx.prec // LIMIT_SHARE) * arb(self.system.time_scale)
+        speed = (arb_mat(event.guard * self.matrices[before.mode]) * self.state.z)[0, 0]
+        vaguest = max(entry.rad() for entry in self.state.z.entries())
+        is_vague = not vaguest < abs(speed) * remaining.most * VAGUE
+        left = self.left().ball
+        if not (remaining.most <= near or is_vague) or left < remaining.least:
+            return
+        if not left > remaining.most:
+            raise Undecided("a horizon at an accumulation")
+        self.elapsed = Time(self.elapsed.ball + remaining.least.union(remaining.most), None)
+        self.state.z, self.state.exact = remaining.state, None
+        self.pass_limit(event)
+
+    def pass_limit(self, event: Event) -> None:
+        """Resets the state at a limit, where what is zero after an impact and its rate are zero."""
+        state = self.state
+        rate = event.guard * self.matrices[state.mode]
+        state.space = state.space.with_rows([event.guard, rate])
+        for i in range(self.system.size):
+            unit = fmpq_mat([[int(i == j) for j in range(self.system.size)]])
+            if state.space.holds(unit):
+                state.z[i, 0] = 0
+        self.spread = Spread.of(state.z, self.elapsed.ball)
+        self.silent = False
+        self.fire([event.limit])
 
     def fire(self, events: list) -> int:
         """Fires the first of `events`, then the first that its reset makes fire at once, ..."""
@@ -125,10 +173,19 @@ class EventRun(Run):
         while events:
             if count == MOST_IN_AN_INSTANT:
                 raise Ended("no-progress")
-            self.reset(events[0])
-            self.add(events[0].name, self.state)
+            event, mode = events[0], self.state.mode
+            self.reset(event)
+            self.add(event.name, self.state)
             count, events = count + 1, self.entering(self.state)
+            if events and event is events[0] and self.state.mode == mode and self.rests(event):
+                self.pass_limit(event)
+                return count + 1
         return count
+
+    def rests(self, event: Event) -> bool:
+        """Is the limit at this instant: are the guard and its rate zero after an impact?"""
+        rows = [event.guard, event.guard * self.matrices[self.state.mode]]
+        return event.limit is not None and all(self.state.space.holds(row) for row in rows)
 
     def reset(self, event: Event) -> None:
         self.state = self.fired(event, self.state)

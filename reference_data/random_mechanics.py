@@ -120,6 +120,72 @@ def chattering(c: Chance) -> Draft:
     )  # fmt: skip
 
 
+def sticking(c: Chance) -> Draft:
+    """What chatters until it sticks, and comes loose again: a ball on a table, a pressed mass."""
+    return c.one_of(sticking_ball, pressed_mass)(c)
+
+
+def sticking_ball(c: Chance) -> Draft:
+    """A ball that sticks to a shaking table until that falls faster than the ball would."""
+    g, omega = c.one_of(1, 9.81, 2), c.number(0.5, 12)
+    lifted = c.between(1.02, 1.6) if c.happens(0.8) else c.between(0.2, 0.9)
+    parameters = {"g": g, "A": float(f"{lifted * g / omega**2:.3g}")}
+    parameters["e"] = c.one_of(0, 0.1, 0.25, 0.4, 0.5, 0.6, c.between(0.02, 0.7))
+    force = "-g"
+    if c.happens(0.3):
+        parameters["d"], force = c.number(0.01, 1), "-g - d*v"
+    touching = ["x = A*cos", "v = -A*omega*sin"]
+    reset = [touching[0], "v = -e*v - (1 + e)*A*omega*sin"]
+    states, equations = ["x", "v"], ["x' = v", f"v' = {force}"]
+    stuck = ["x' = v", "v' = -A*omega^2*cos"]
+    start = {"mode": "fly", "x": parameters["A"] * c.between(1.01, 2), "v": c.one_of(0, 0, 0.5)}
+    if c.happens(0.3):
+        # Impacts kick another state, or are counted in it.
+        states = [*states, "u"]
+        equations, stuck = [*equations, c.one_of("u' = -u", "u' = x")], [*stuck, "u' = 0"]
+        reset.append("u = u + 3*(v + A*omega*sin)")
+        start |= {"u": 1}
+    follows = c.one_of("stuck", [("A*omega^2*cos > g", "fly"), (None, "stuck")])
+    limit = (c.one_of([], touching), follows)
+    hit = event("hit", "A*cos > x", reset, limit=limit)
+    loose = event("loose", f"-A*omega^2*cos < {force}", touching, "fly")
+    until = c.horizon(c.between(1, 4) * 2 * math.pi / omega)
+    return Draft(
+        states, [mode("fly", equations, hit), mode("stuck", stuck, loose)], start, until,
+        parameters, omega=omega, phi=c.one_of(None, 0.5, 1),
+    )  # fmt: skip
+
+
+def pressed_mass(c: Chance) -> Draft:
+    """A mass on a spring that a force presses against a stop, beside one that it may pull on."""
+    parameters = {"k": c.number(0.1, 3), "load": c.number(0.3, 1.5), "stop": c.number(0.05, 0.4)}
+    parameters["r"] = c.one_of(0, 0.1, 0.3, 0.5, 0.6, c.between(0.02, 0.7))
+    omega, states = c.number(0.3, 1.5), ["x", "v"]
+    force = "load + cos - k*x"
+    equations, stuck, reset = ["x' = v"], ["x' = 0", "v' = 0"], ["x = stop", "v = -r*v"]
+    start = {"mode": "free", "x": 0, "v": 0}
+    if c.happens(0.5):
+        parameters["kc"], force = c.number(0.1, 1), f"{force} - kc*(x - y)"
+        states, start = [*states, "y", "w"], start | {"y": 0, "w": 0}
+        others = ["y' = w", "w' = kc*(x - y) - y - w/10"]
+        reset += c.one_of([], ["w = w + (1 + r)*v/4"])
+    else:
+        others = []
+    damped = c.one_of("", " - v/5")
+    hit = event(
+        "hit", "x > stop", reset, limit=(
+            c.one_of([], ["x = stop", "v = 0"]),
+            c.one_of("stuck", [(f"{force} > 0", "stuck"), (None, "free")]),
+        ),
+    )  # fmt: skip
+    loose = event("loose", f"{force} < 0", (), "free")
+    free = mode("free", [*equations, f"v' = {force}{damped}", *others], hit)
+    return Draft(
+        states, [free, mode("stuck", [*stuck, *others], loose)], start,
+        c.horizon(c.between(1, 3) * 2 * math.pi / omega), parameters, omega=omega,
+    )  # fmt: skip
+
+
 def chains(c: Chance) -> Draft:
     """Two to four masses in a row on springs and dashpots, with a stop or knocking together."""
     n = c.count(2, 4)

@@ -28,6 +28,7 @@ KINDS = {
     "grazes": aimed.grazes,
     "on-guards": aimed.on_guards,
     "chattering": mechanics.chattering,
+    "sticking": mechanics.sticking,
     "chains": mechanics.chains,
     "stick-slip": mechanics.stick_slip,
     "relays": mechanics.relays,

@@ -42,6 +42,7 @@ class Event:
     direction: str = "rising"
     reset: fmpq_mat | None = None
     successors: list = field(default_factory=list)
+    limit: "Event | None" = None  # its reset and successors, where a run goes on after it
 
 
 @dataclass
@@ -244,10 +245,25 @@ class Builder:
         return self.matrix_of([rows.get(i, self.unit(i)) for i in range(self.size)])
 
     def until(self, table: dict, mode: str) -> Event:
-        only(table, "name guard reset next", f"until of {mode}")
+        only(table, "name guard reset next accumulates_to", f"until of {mode}")
         successors = self.successors(table.get("next", [{"mode": mode}]))
         name, guard = event_name(table, f"until of {mode}"), self.guard(table["guard"])
-        return Event(name, guard, False, "rising", self.reset(table.get("reset", [])), successors)
+        reset, limit = self.reset(table.get("reset", [])), self.limit(table, guard)
+        return Event(name, guard, False, "rising", reset, successors, limit)
+
+    def limit(self, table: dict, guard: fmpq_mat) -> Event | None:
+        """What happens where the event accumulates; none where a run ends there."""
+        if "accumulates_to" not in table:
+            return None
+        given = table["accumulates_to"]
+        given = {"next": given} if isinstance(given, str) else given
+        only(given, "reset next", "accumulates_to")
+        following = given["next"]
+        successors = self.successors(
+            [{"mode": following}] if isinstance(following, str) else following
+        )
+        reset = self.reset(given.get("reset", []))
+        return Event("accumulation", guard, False, "rising", reset, successors)
 
     def successors(self, tables: list) -> list:
         found = []
@@ -275,8 +291,9 @@ class Builder:
         rows = [row for row, _ in start]
         for mode in modes:
             rows += [mode.matrix] + [event.guard for event in mode.until + mode.watch]
-            rows += [row for event in mode.until for row, _ in event.successors]
-            rows += [event.reset - self.identity() for event in mode.until]
+            exits = mode.until + [event.limit for event in mode.until if event.limit is not None]
+            rows += [row for event in exits for row, _ in event.successors]
+            rows += [event.reset - self.identity() for event in exits]
         for name in drift:
             if name not in self.states or drift.count(name) > 1:
                 raise Refused(f"drift: {name!r} is no state, or there twice")
@@ -341,7 +358,8 @@ class Builder:
         if len(by_name) < len(modes) or len(modes) > LARGEST_COUNT:
             raise Refused(f"at most {LARGEST_COUNT} modes, each with a name of its own")
         for mode in modes:
-            for _, name in (s for event in mode.until for s in event.successors):
+            exits = mode.until + [event.limit for event in mode.until if event.limit is not None]
+            for _, name in (s for event in exits for s in event.successors):
                 if name not in by_name:
                     raise Refused(f"mode {mode.name}: {name!r} is not a mode")
         start = self.start_values(by_name)

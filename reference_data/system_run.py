@@ -298,13 +298,19 @@ class Run:
             self.end_if_accumulating(events[0], state)
 
     def end_if_accumulating(self, event: Event, before: HybridState) -> None:
+        if event.limit is not None:
+            raise Refused("tables do not go on after an accumulation")
+        self.remaining = self.accumulating(event, before)
+        if self.remaining is not None:
+            raise Ended("accumulation")
+
+    def accumulating(self, event: Event, before: HybridState) -> Remaining | None:
+        """What remains up to the limit of impacts, after one of them, if that is near."""
         matrix, mode = self.matrices[before.mode], self.system.modes[before.mode]
-        self.remaining = accumulation(
+        return accumulation(
             event, mode, matrix, before.space, self.state.z, arb(self.system.time_scale),
             lambda other: multiplicity(other.guard, matrix, self.state.space) is None,
         )  # fmt: skip
-        if self.remaining is not None:
-            raise Ended("accumulation")
 
     def fired(self, event: Event, state: HybridState) -> HybridState:
         """The state after the reset of an event, in the mode that follows."""

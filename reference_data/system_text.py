@@ -4,10 +4,13 @@ import math
 from dataclasses import dataclass, field
 
 
-def event(name: str, guard: str, reset=(), follows=(), direction: str | None = None) -> dict:
+def event(
+    name: str, guard: str, reset=(), follows=(), direction: str | None = None, limit=None
+) -> dict:
     """An `until`, or with a direction a `watch`.
 
-    `follows` is the name of a mode, or pairs (condition or None, mode).
+    `follows` is the name of a mode, or pairs (condition or None, mode). `limit` is the pair (reset,
+    follows) where the event accumulates.
     """
     pairs = [(None, follows)] if isinstance(follows, str) else list(follows)
     return {
@@ -16,6 +19,7 @@ def event(name: str, guard: str, reset=(), follows=(), direction: str | None = N
         "reset": list(reset),
         "next": pairs,
         "direction": direction,
+        "limit": limit,
     }
 
 
@@ -69,9 +73,18 @@ def event_lines(happening: dict) -> list:
     if happening["reset"]:
         lines.append(f"reset = {listed(happening['reset'])}")
     if happening["next"]:
-        entries = [successor(*pair) for pair in happening["next"]]
-        lines.append(f"next = [{', '.join(entries)}]")
+        lines.append(f"next = {successors(happening['next'])}")
+    if happening["limit"] is not None:
+        reset, follows = happening["limit"]
+        next_modes = quoted(follows) if isinstance(follows, str) else successors(follows)
+        short = not reset and isinstance(follows, str)
+        given = next_modes if short else f"{{ reset = {listed(reset)}, next = {next_modes} }}"
+        lines.append(f"accumulates_to = {given}")
     return lines
+
+
+def successors(pairs: list) -> str:
+    return f"[{', '.join(successor(*pair) for pair in pairs)}]"
 
 
 def successor(condition: str | None, follows: str) -> str:

@@ -3,8 +3,8 @@
     python verify.py [NAME]... [--cases DIR]
 
 Checks every hash, that each case has its files and each file its case, that the cases NAMEd
-(two small ones by default, two of the systems, and two of derivatives) come out the same byte for
-byte, that the pieces integrated from the differential equations agree with the event tables, that
+(two small ones by default, two of the systems, and two of derivatives) and the runs that go on
+after accumulations come out the same byte for byte, that the pieces integrated from the differential equations agree with the event tables, that
 differences of runs agree with the derivatives of the same cases, that Table 1 does, that each kind
 of trouble has two cases of the systems, and that what is known of the systems without their tables
 is met. Exit 1 if any fails.
@@ -24,6 +24,7 @@ from mpmath import mp
 import check_gradients
 import generate_events
 import generate_gradients
+import generate_limits
 import generate_pieces
 import generate_system_pieces
 import generate_systems
@@ -60,8 +61,14 @@ def unpaired(cases: Path) -> list:
     wanted |= {f"{folder}/{name}.csv" for name in generate_system_pieces.PIECES}
     folder = generate_gradients.FOLDER
     wanted |= {f"{folder}/{case.name}.csv" for case in gradient_case.read([])}
+    wanted |= {f"limits/{path.name}" for path in map(generate_limits.table_path, limits())}
     present = {p.relative_to(HERE).as_posix() for p in HERE.glob("*/*.csv")}
     return sorted(wanted ^ present)
+
+
+def limits() -> list:
+    """Systems that go on after accumulations."""
+    return generate_limits.systems()
 
 
 def system_cases(names: list) -> list:
@@ -104,6 +111,10 @@ def irreproducible(cases: Path, names: list) -> list:
             name = made.relative_to(out).as_posix()
             if made.read_bytes() != (HERE / name).read_bytes():
                 different.append(name)
+    for path in limits():
+        made = generate_limits.table_path(path)
+        if generate_limits.table(path)[0] != made.read_text():
+            different.append(made.relative_to(HERE).as_posix())
     return different
 
 

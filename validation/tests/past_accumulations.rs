@@ -1,6 +1,7 @@
 //! Systems that go on after an accumulation, at the command line.
 
 use crate::support::{rows, run, text};
+use std::path::Path;
 
 /// With v = 10, g = 10 and e = 1/2 the ball rests at 4, and is lifted where its table moves.
 const BALL: &str = r#"
@@ -112,4 +113,49 @@ fn cases_refuse_the_key_by_name() {
     let said = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.contains("until \"impact\": accumulates_to is not accepted in a case"), "{said}");
+}
+
+/// A cell as an integer of so many decimal places.
+fn decimal(cell: &str, places: u32) -> i128 {
+    let (number, exponent) = cell.split_once('e').unwrap_or((cell, "0"));
+    let (whole, part) = number.split_once('.').unwrap_or((number, ""));
+    let digits: i128 = format!("{whole}{part}").parse().expect("digits");
+    let exponent: i32 = exponent.parse().expect("an exponent");
+    let power = places as i32 + exponent - part.len() as i32;
+    digits * 10_i128.pow(u32::try_from(power).expect("enough places"))
+}
+
+/// Whether a proved number of 25 digits rounds to a cell that may have fewer.
+fn is_rounded(cell: &str, proved: &str) -> bool {
+    /// Numbers of up to 99 have 36 places in 128 bits.
+    const PLACES: u32 = 36;
+    let (number, exponent) = cell.split_once('e').unwrap_or((cell, "0"));
+    let own = number.split_once('.').map_or(0, |(_, part)| part.len() as i32);
+    let exponent: i32 = exponent.parse().expect("an exponent");
+    let unit = 10_i128.pow(u32::try_from(PLACES as i32 + exponent - own).expect("enough places"));
+    2 * (decimal(cell, PLACES) - decimal(proved, PLACES)).abs() <= unit
+}
+
+#[test]
+fn proved_rows_are_met_through_limits() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference_data/limits");
+    for (name, until) in [("ball-on-a-table", "13"), ("two-masses-at-a-wall", "25")] {
+        let system = folder.join(format!("{name}.system.toml"));
+        let content = std::fs::read_to_string(&system).expect("a system");
+        assert!(content.starts_with(&format!("# until = {until}\n")), "{name}");
+        let proved = std::fs::read_to_string(folder.join(format!("{name}.csv"))).expect("rows");
+        let proved = rows(&proved);
+        assert!(proved.iter().filter(|row| row[2] == "accumulation").count() > 1);
+        let path = system.to_str().expect("UTF-8");
+        let found = run(&["events", path, "--until", until, "--digits", "25"]);
+        let found = rows(&text(&found.stdout));
+        assert_eq!(found.len(), proved.len(), "{name}");
+        for (found, proved) in found.iter().zip(&proved) {
+            assert_eq!((&found[2], &found[3]), (&proved[2], &proved[3]), "{name}");
+            let cells = found[1..2].iter().chain(&found[4..]);
+            for (cell, proved) in cells.zip(proved[1..2].iter().chain(&proved[4..])) {
+                assert!(is_rounded(cell, proved), "{name}: {found:?} for {proved:?}");
+            }
+        }
+    }
 }
