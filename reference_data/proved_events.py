@@ -154,8 +154,10 @@ class EventRun(Run):
         self.state.z, self.state.exact = remaining.state, None
         self.pass_limit(event)
 
-    def pass_limit(self, event: Event) -> None:
-        """Resets the state at a limit, where what is zero after an impact and its rate are zero."""
+    def pass_limit(self, event: Event, count: int = 0) -> None:
+        """Resets the state at a limit, where what is zero after an impact and its rate are zero,
+        as one event more of the instant.
+        """
         state = self.state
         rate = event.guard * self.matrices[state.mode]
         state.space = state.space.with_rows([event.guard, rate])
@@ -165,11 +167,13 @@ class EventRun(Run):
                 state.z[i, 0] = 0
         self.spread = Spread.of(state.z, self.elapsed.ball)
         self.silent = False
-        self.fire([event.limit])
+        self.fire([event.limit], count)
 
-    def fire(self, events: list) -> int:
-        """Fires the first of `events`, then the first that its reset makes fire at once, ..."""
-        count = 0
+    def fire(self, events: list, count: int = 0) -> int:
+        """Fires the first of `events`, then the first that its reset makes fire at once, ...
+
+        The result is the number of events in the instant, of which `count` came before.
+        """
         while events:
             if count == MOST_IN_AN_INSTANT:
                 raise Ended("no-progress")
@@ -178,7 +182,7 @@ class EventRun(Run):
             self.add(event.name, self.state)
             count, events = count + 1, self.entering(self.state)
             if events and event is events[0] and self.state.mode == mode and self.rests(event):
-                self.pass_limit(event)
+                self.pass_limit(event, count)
                 return count + 1
         return count
 
