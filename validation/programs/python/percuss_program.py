@@ -397,7 +397,7 @@ def chained(course):
     times, states = np.zeros(len(by)), np.array([it.state for it in by])
     found = [[] for _ in by]
     for step in course.trail:
-        if callable(step):
+        if not isinstance(step, tuple):
             times, states = (np.array(it) for it in step(by, times, states))
             continue
         mode, event, t, z = step
