@@ -2,6 +2,7 @@
 
 use crate::support::{percuss, refused, run, text};
 use percuss_validation::case::embedded;
+use percuss_validation::gradients;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -12,8 +13,9 @@ fn what_is_exported_is_as_its_schema_says() {
     let out = folder.path().display().to_string();
     let output = run(&["export", "--out", &out]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    let cases = embedded().expect("read");
-    let names: Vec<&str> = cases.iter().map(|it| it.name.as_str()).collect();
+    let (cases, differentiated) = (embedded().expect("read"), gradients::embedded().expect("read"));
+    let own = cases.iter().map(|it| it.name.as_str());
+    let names: Vec<&str> = own.chain(differentiated.iter().map(|it| it.name.as_str())).collect();
     assert_eq!(text(&output.stdout).lines().count(), names.len());
     let schema = schema();
     let read = |name: &str, ending: &str| {
@@ -23,6 +25,10 @@ fn what_is_exported_is_as_its_schema_says() {
         let case: Value = serde_json::from_str(&read(name, "json")).expect("JSON");
         assert!(schema.is_valid(&case), "{name}: {:?}", schema.validate(&case).err());
         assert_eq!(case["case"], **name);
+        let asked = differentiated.iter().find(|it| it.name == **name);
+        let by = |it: &Value| it["wrt"].as_str().map(str::to_owned);
+        let given = case["gradients"]["by"].as_array().map(|it| it.iter().filter_map(by).collect());
+        assert_eq!(given, asked.map(|it| it.names()), "{name}");
         agree(&case, &read(name, "rows.csv"), &read(name, "start.csv"));
         let times: Vec<f64> = read(name, "sample-times.csv")
             .lines()

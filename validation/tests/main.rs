@@ -50,6 +50,7 @@ mod restart_systems;
 mod rig;
 mod rounding_promise;
 mod score;
+mod score_gradients;
 mod score_your_integrator;
 mod scoreboard;
 mod simulate;

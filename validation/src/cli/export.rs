@@ -1,11 +1,11 @@
 //! `export`: what cases ask, as files for readers of any language.
 
 use super::help;
-use super::shared::compact;
 use super::shared::judged::CaseFlags;
 use super::shared::output::{Destination, make_folder, write_whole};
-use crate::suite::PreparedCase;
-use anyhow::{Context, Result};
+use super::shared::{compact, gradients};
+use crate::engine::Task;
+use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use percuss_programs::files::CaseFile;
 use std::io;
@@ -27,12 +27,21 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let cases = arguments.chosen.open(None, &[])?;
+    let differentiated = gradients::cases(&arguments.chosen)?;
+    let names: Vec<String> = differentiated.iter().map(|it| it.name.clone()).collect();
+    let cases = arguments.chosen.open(None, &names)?;
     make_folder(&arguments.out)?;
     let cases = cases.prepare(None)?;
     let mut lines = Vec::new();
     for case in &cases.all {
-        lines.push(write(case, &arguments.out)?);
+        let asked = CaseFile::new(&case.case.name, &case.task, case.parameters());
+        lines.push(write(&asked, &case.task, &arguments.out)?);
+    }
+    for case in &differentiated {
+        let task = case.task().map_err(|failure| anyhow!("{}: {}", case.name, failure.reason))?;
+        let parameters = case.system.parameters.iter().map(|(name, value)| (name.as_str(), *value));
+        let asked = CaseFile::new(&case.name, &task, parameters);
+        lines.push(write(&asked, &task, &arguments.out)?);
     }
     let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
     Destination::Stdout.write(|out| {
@@ -44,11 +53,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// Writes the files of a case, and says what it asks.
-fn write(case: &PreparedCase, folder: &Path) -> Result<(String, String)> {
-    let (name, task) = (case.case.name.as_str(), &case.task);
-    let asked = CaseFile::new(name, task, case.parameters());
+fn write(asked: &CaseFile<'_>, task: &Task, folder: &Path) -> Result<(String, String)> {
+    let name = asked.case();
     write_whole(&folder.join(format!("{name}.json")), |out| {
-        compact::write(&asked, &mut *out).map_err(io::Error::from)?;
+        compact::write(asked, &mut *out).map_err(io::Error::from)?;
         Ok(writeln!(out)?)
     })
     .context("--out")?;
@@ -58,6 +66,11 @@ fn write(case: &PreparedCase, folder: &Path) -> Result<(String, String)> {
     }
     let system = task.system.system();
     let [states, modes] = [system.states.len(), system.modes.len()].map(|it| it.to_string());
-    let asks = format!("{}, {states} states, {modes} modes, time {:.6}", system.name, task.span);
+    let mut asks =
+        format!("{}, {states} states, {modes} modes, time {:.6}", system.name, task.span);
+    if let Some(names) = &task.gradients {
+        let names: Vec<&str> = names.iter().map(|it| it.name.as_str()).collect();
+        asks += &format!(", derivatives by {}", names.join(", "));
+    }
     Ok((name.to_owned(), asks))
 }

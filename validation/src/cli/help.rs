@@ -87,7 +87,7 @@ Examples:
   percuss export --out asked -c '^ball-geometric$' -c '^small-b$'
       two cases
   percuss export --out asked
-      all cases
+      all cases, those of derivatives through events too
 
 Words:
   case    a system with its parameters, a start, a horizon, and what is

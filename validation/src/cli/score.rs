@@ -1,6 +1,7 @@
 //! `score`: answers in files, judged as the runs of `validate` are.
 
 use super::help;
+use super::shared::gradients;
 use super::shared::judged::JudgedFlags;
 use super::shared::long_work;
 use super::shared::names::{CASES, held_by};
@@ -14,7 +15,7 @@ use crate::suite::{self, PreparedCase, Scored, Status, Suite};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use percuss_programs::files::{Answerer, EVENTS, FileEngine, SAMPLES};
+use percuss_programs::files::{Answerer, EVENTS, FileEngine, GRADIENTS, SAMPLES};
 use percuss_programs::{NAMES, is_name};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -53,7 +54,7 @@ pub(super) struct Arguments {
     /// The class of the method
     #[arg(long, value_name = "CLASS", value_parser = one_of(&METHODS))]
     method: Option<Class>,
-    /// The folder of CASE.events.csv and CASE.samples.csv
+    /// The folder of CASE.events.csv, CASE.samples.csv and CASE.gradients.csv
     #[arg(long, value_name = "DIR")]
     answers: PathBuf,
     #[command(flatten)]
@@ -133,12 +134,14 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     judged.check()?;
     let stepping = arguments.stepping()?;
     let baseline = judged.baseline()?;
-    let cases = judged.open(&[])?;
+    let derivatives_of = gradients::answered(&judged.chosen, &arguments.answers)?;
+    let differentiated: Vec<String> = derivatives_of.iter().map(|it| it.name.clone()).collect();
+    let cases = judged.open(&differentiated)?;
     let answered = answered(&arguments.answers)?;
     // What probes ask needs an engine that is there.
     let cases = cases.prepare(None)?;
     let all = &cases.all;
-    check_names(arguments, all, &answered)?;
+    check_names(arguments, all, &differentiated, &answered)?;
     let defaults = judged.defaults()?;
     let pool = long_work::pool(threads)?;
     let bar = long_work::bar(all.len() as u64, "cases");
@@ -159,7 +162,10 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     if judged.out.is_some() {
         evidence.events = pool.install(|| event_pictures(&first_wrong_events(all, &rows)));
     }
-    let report = Report::new(SUITE, &[&arguments.engine("", stepping)], &rows);
+    let engine = |case: &str| arguments.engine(case, stepping);
+    let gradients = gradients::judged_files(derivatives_of, engine, arguments.tolerance);
+    let gradients = pool.install(|| gradients)?;
+    let report = Report { gradients, ..Report::new(SUITE, &[&engine("")], &rows) };
     let asked = |it: &RowPlace<'_>| {
         it.engine == arguments.name
             && judged.chosen.accepts(it.case)
@@ -221,7 +227,8 @@ fn answered(folder: &Path) -> Result<BTreeSet<String>> {
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         let name = entry.map_err(unreadable)?.file_name();
         let name = name.to_string_lossy();
-        let case = [EVENTS, SAMPLES].into_iter().find_map(|ending| name.strip_suffix(ending));
+        let mut endings = [EVENTS, SAMPLES, GRADIENTS].into_iter();
+        let case = endings.find_map(|ending| name.strip_suffix(ending));
         cases.extend(case.map(str::to_owned));
     }
     Ok(cases)
@@ -231,9 +238,11 @@ fn answered(folder: &Path) -> Result<BTreeSet<String>> {
 fn check_names(
     arguments: &Arguments,
     all: &[PreparedCase],
+    differentiated: &[String],
     answered: &BTreeSet<String>,
 ) -> Result<()> {
-    let asked = |name: &String| all.iter().any(|it| it.case.name == *name);
+    let asked =
+        |name: &String| differentiated.contains(name) || all.iter().any(|it| it.case.name == *name);
     if !answered.iter().any(asked) {
         let folder = arguments.answers.display();
         bail!(

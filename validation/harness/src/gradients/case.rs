@@ -1,9 +1,12 @@
 //! A case of derivatives: a system at a start, the names, and the proved table.
 
 use crate::case::FileError;
+use crate::engine::{Failure, Task};
+use crate::system::{Rates, SystemProblem};
 use percuss::affine::{Name, System, SystemFile, Tangent};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 /// The columns before those of the states.
 const FIRST: usize = 6;
@@ -67,6 +70,17 @@ impl GradientCase {
         let tangent = |name: &String| read.tangent(&Name::read(name)).map_err(of_system);
         let by = names.iter().map(tangent).collect::<Result<_, _>>()?;
         Ok(Self { name: setting("case")?.to_owned(), system: exact, until, by, rows })
+    }
+
+    /// The run of the case, with all of its names asked for.
+    ///
+    /// # Errors
+    /// A system that no run can be asked of, such as one without a start.
+    pub fn task(&self) -> Result<Task, Failure> {
+        let problem = Arc::new(SystemProblem::new(self.system.clone(), false)?);
+        let task = Task::of(&problem, self.until - problem.begin(), Vec::new())?;
+        let rates = self.by.iter().map(|it| Rates::of(&problem, it)).collect();
+        Ok(Task { gradients: Some(Arc::new(rates)), ..task })
     }
 
     /// The names by which is differentiated.

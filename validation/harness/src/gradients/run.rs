@@ -8,9 +8,7 @@ use crate::engine::{
     Accuracy, Engine, EventDerivatives, Failure, Limits, Outcome, RunDerivatives, Stepping, Task,
     answer,
 };
-use crate::system::{Rates, SystemProblem};
 use rayon::prelude::*;
-use std::sync::Arc;
 
 /// The loosest tolerance and the tightest at which derivatives are asked for where no others are
 /// chosen.
@@ -99,19 +97,10 @@ fn asked(
         }
         _ => Accuracy::Tolerance(tolerance),
     };
-    let task = task(reference)?;
+    let task = reference.case.task()?;
     engine.takes(&task).map_err(Failure::new)?;
     let outcome = answer(engine, &task, accuracy, &Limits::default())?;
     read(reference, &task, &outcome)
-}
-
-/// The run of a case, with all of its names asked for.
-fn task(reference: &Reference) -> Result<Task, Failure> {
-    let case = &reference.case;
-    let problem = Arc::new(SystemProblem::new(case.system.clone(), false)?);
-    let task = Task::of(&problem, case.until - problem.begin(), Vec::new())?;
-    let rates = case.by.iter().map(|it| Rates::of(&problem, it)).collect();
-    Ok(Task { gradients: Some(Arc::new(rates)), ..task })
 }
 
 /// What a run answers, once its events are known to be those of the table.

@@ -1,8 +1,9 @@
 //! An answer in files, as the reply of a program would say it.
 
+use super::gradients::gradients;
 use super::layout::Layout;
 use super::rows::sample_times;
-use super::table::{Cells, EVENTS, SAMPLES, Table};
+use super::table::{Cells, EVENTS, GRADIENTS, SAMPLES, Table};
 use crate::answer::{AnswerPart, Wrong, checked};
 use crate::text::plain;
 use crate::wire::{BoundedList, Count, EventReply, RunReply, StateReply};
@@ -16,8 +17,8 @@ use std::time::Duration;
 /// How far from the instant asked for a sample's time may be written, relative to the horizon.
 const SAME_TIME: f64 = 1e-9;
 
-/// Reads what was answered to a case and holds it against its task. The file of samples may be
-/// missing.
+/// Reads what was answered to a case and holds it against its task. The files of samples and of
+/// derivatives may be missing, and the latter is read where the task asks for them.
 ///
 /// # Errors
 /// What is wrong, with the file, its line, the value and what is accepted.
@@ -29,8 +30,12 @@ pub(super) fn answer(
 ) -> Result<Outcome, String> {
     let file = |ending: &str| folder.join(format!("{case}{ending}"));
     let events = Table::read(&file(EVENTS))?;
-    let samples = Some(file(SAMPLES)).filter(|it| it.exists());
-    let samples = samples.map(|it| Table::read(&it)).transpose()?;
+    let optional = |ending: &str| {
+        Some(file(ending)).filter(|it| it.exists()).map(|it| Table::read(&it)).transpose()
+    };
+    let samples = optional(SAMPLES)?;
+    let derivatives = if task.gradients.is_some() { optional(GRADIENTS)? } else { None };
+    let derivatives = derivatives.map(|it| gradients(&it, task, limits)).transpose()?;
     let told = Told::read(&events, task, limits)?;
     let is_whole = matches!(told.ended, None | Some((Ending::Horizon, ..)));
     let (asked, (states, lines)) = match &samples {
@@ -53,7 +58,7 @@ pub(super) fn answer(
         ended_at,
         work: Default::default(),
         own_ns: None,
-        gradients: BoundedList::default(),
+        gradients: BoundedList(derivatives.unwrap_or_default()),
     };
     checked(&reply, task, (asked, Duration::ZERO), limits).map_err(
         |Wrong { part, what }| match part {

@@ -2,7 +2,7 @@
 
 use super::equations::equations;
 use super::rows::{rows, sample_times, start};
-use crate::wire::{ModeAsk, TimesAsk};
+use crate::wire::{ModeAsk, RatesAsk, TimesAsk};
 use percuss_engines::engine::Task;
 use percuss_engines::number::shortest;
 use percuss_engines::system::System;
@@ -30,8 +30,19 @@ pub struct CaseFile<'a> {
     time_scale: f64,
     times: TimesAsk,
     modes: Vec<ModeAsk<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gradients: Option<GradientsFile<'a>>,
     #[serde(skip)]
     task: &'a Task,
+}
+
+/// The derivatives that are asked for: of the time of each event and of the state after it, and of
+/// the state at the end, by each of these names.
+#[derive(Serialize)]
+struct GradientsFile<'a> {
+    events: &'static str,
+    end: bool,
+    by: Vec<RatesAsk<'a>>,
 }
 
 #[derive(Serialize)]
@@ -67,8 +78,19 @@ impl<'a> CaseFile<'a> {
             time_scale: system.time_scale,
             times: TimesAsk::of(&task.system),
             modes: system.modes.iter().map(ModeAsk::of).collect(),
+            gradients: task.gradients.as_ref().map(|rates| GradientsFile {
+                events: "all",
+                end: true,
+                by: rates.iter().map(RatesAsk::of).collect(),
+            }),
             task,
         }
+    }
+
+    /// The case's name.
+    #[must_use]
+    pub fn case(&self) -> &str {
+        self.case
     }
 
     /// The other files of the case: the endings of their names after the case's, and their texts.

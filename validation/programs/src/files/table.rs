@@ -10,6 +10,9 @@ pub const EVENTS: &str = ".events.csv";
 /// The ending of the name of a file of samples, after the case's name.
 pub const SAMPLES: &str = ".samples.csv";
 
+/// The ending of the name of a file of derivatives, after the case's name.
+pub const GRADIENTS: &str = ".gradients.csv";
+
 /// The largest file that is read: 100000 events of the largest system, at 25 characters a number,
 /// are half as much.
 const MOST_BYTES: u64 = 64 << 20;

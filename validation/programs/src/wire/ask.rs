@@ -63,7 +63,7 @@ pub(crate) struct RunAsk<'a> {
 
 /// A name by which derivatives are asked for, with those of every coefficient.
 #[derive(Serialize)]
-struct RatesAsk<'a> {
+pub(crate) struct RatesAsk<'a> {
     wrt: &'a str,
     value: f64,
     omega: f64,
@@ -181,7 +181,7 @@ impl<'a> RunAsk<'a> {
 }
 
 impl<'a> RatesAsk<'a> {
-    fn of(rates: &'a Rates) -> Self {
+    pub(crate) fn of(rates: &'a Rates) -> Self {
         Self {
             wrt: &rates.name,
             value: rates.value,

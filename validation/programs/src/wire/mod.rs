@@ -7,7 +7,7 @@ mod reply;
 #[cfg(test)]
 mod schema_tests;
 
-pub(crate) use ask::{Ask, Asked, ModeAsk, RunAsk, TimesAsk, samples};
+pub(crate) use ask::{Ask, Asked, ModeAsk, RatesAsk, RunAsk, TimesAsk, samples};
 pub(crate) use numbers::{BoundedList, Count, StateReply};
 pub use reply::{Capabilities, EventsBy, SetUp};
 pub(crate) use reply::{

@@ -3,10 +3,14 @@
 use super::judged::{CaseFlags, accepts};
 use super::long_work;
 use crate::engine::{Engine, REFERENCE};
-use crate::gradients::{Reference, TOLERANCES, embedded, run};
+use crate::gradients::{
+    GradientCase, GradientJudgement, Reference, TOLERANCES, embedded, one, run,
+};
 use crate::report::GradientEntry;
 use anyhow::{Result, anyhow};
+use percuss_programs::files::{FileEngine, GRADIENTS};
 use rayon::prelude::*;
+use std::path::Path;
 
 /// The names of all cases of derivatives, where the chosen engines are asked for them.
 pub(in crate::cli) fn names(
@@ -37,13 +41,49 @@ pub(in crate::cli) fn judged(
     if chosen.cases.is_some() || answering.is_empty() {
         return Ok(Vec::new());
     }
-    let mut cases = embedded()?;
-    cases.retain(|it| accepts(&chosen.case, &it.name));
-    let ready = cases.into_par_iter().map(Reference::new).collect::<Result<Vec<_>, _>>();
-    let ready = ready.map_err(|failure| anyhow!("the cases of derivatives: {}", failure.reason))?;
+    let ready = ready(cases(chosen)?)?;
     let tolerances = if tolerances.len() < 2 { &TOLERANCES[..] } else { tolerances };
     let bar = long_work::bar((ready.len() * answering.len()) as u64, "derivatives");
     let rows = run(&ready, &answering, tolerances, &|| bar.inc(1));
     bar.finish_and_clear();
     Ok(rows.into_iter().map(GradientEntry::from).collect())
+}
+
+/// The cases of derivatives that are chosen; none where the cases are a user's own.
+pub(in crate::cli) fn cases(chosen: &CaseFlags) -> Result<Vec<GradientCase>> {
+    if chosen.cases.is_some() {
+        return Ok(Vec::new());
+    }
+    let mut cases = embedded()?;
+    cases.retain(|it| accepts(&chosen.case, &it.name));
+    Ok(cases)
+}
+
+/// Those of the chosen cases of derivatives to which a folder has answers.
+pub(in crate::cli) fn answered(chosen: &CaseFlags, folder: &Path) -> Result<Vec<GradientCase>> {
+    let mut cases = cases(chosen)?;
+    cases.retain(|it| folder.join(format!("{}{GRADIENTS}", it.name)).exists());
+    Ok(cases)
+}
+
+/// The verdicts on the answers in files to these cases, made at one tolerance.
+pub(in crate::cli) fn judged_files(
+    cases: Vec<GradientCase>,
+    engine: impl Fn(&str) -> FileEngine + Sync,
+    tolerance: f64,
+) -> Result<Vec<GradientEntry>> {
+    let entries = ready(cases)?.into_par_iter().flat_map_iter(|reference| {
+        let case = reference.case.name.clone();
+        let engine = engine(&case);
+        let name = engine.declaration().name;
+        let judged = one(&reference, &engine, &[tolerance]).into_iter();
+        judged.map(move |judged| GradientJudgement { engine: name, case: case.clone(), judged })
+    });
+    Ok(entries.map(GradientEntry::from).collect())
+}
+
+/// Cases of derivatives made ready to be judged.
+fn ready(cases: Vec<GradientCase>) -> Result<Vec<Reference>> {
+    let ready = cases.into_par_iter().map(Reference::new).collect::<Result<Vec<_>, _>>();
+    ready.map_err(|failure| anyhow!("the cases of derivatives: {}", failure.reason))
 }
