@@ -2,7 +2,7 @@
 
 use super::row::ModalRow;
 use crate::affine::arithmetic::vector::Vector;
-use crate::affine::closed_form::bound::ORDERS;
+use crate::affine::closed_form::bound::{BlockGrowth, ORDERS};
 use crate::affine::closed_form::flow::ModeFlow;
 use crate::numeric::number::{Bound, Number};
 
@@ -20,6 +20,30 @@ pub struct InheritedError<B> {
 }
 
 impl<B: Bound> InheritedError<B> {
+    /// Adds an error by its modal co-ordinates. In polynomial blocks it changes a derivative of the
+    /// row by the sum of `term` of the row's factors and the co-ordinates.
+    pub fn add<T: Number<Bound = B>>(
+        &mut self,
+        flow: &ModeFlow<T>,
+        row: &ModalRow<T>,
+        error: &Vector<B>,
+        term: impl Fn(B, B) -> B,
+    ) {
+        let (norms, mut orders) = (flow.norms_of_bounds(error), [B::ZERO; ORDERS]);
+        for part in &row.parts {
+            if part.growth != BlockGrowth::Polynomial {
+                self.norms[part.subspace] += norms[part.subspace] * OUTWARD;
+                continue;
+            }
+            for it in &row.columns[part.columns.0..part.columns.1] {
+                let terms = it.orders.iter().map(|order| term(order.bound(), error[it.at]));
+                orders.iter_mut().zip(terms).for_each(|(order, term)| *order += term);
+            }
+        }
+        let all = self.orders.iter_mut().zip(orders);
+        all.for_each(|(sum, order)| *sum += order.abs() * OUTWARD);
+    }
+
     /// A bound of the row's error at a time, which is not negative. Between two times it is at most
     /// the larger of theirs, because decays and polynomials of positive terms are convex.
     pub fn by<T: Number<Bound = B>>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>, time: f64) -> B {

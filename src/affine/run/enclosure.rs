@@ -11,7 +11,7 @@
 //! carried along.
 
 use crate::affine::arithmetic::vector::{Vector, dot, sum_rounding};
-use crate::affine::closed_form::bound::{BlockGrowth, ORDERS};
+use crate::affine::closed_form::bound::ORDERS;
 use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::closed_form::modal_state::ModalState;
 use crate::affine::guards::inherited_error::{InheritedError, OUTWARD};
@@ -134,33 +134,10 @@ impl<B: Bound> Enclosure<B> {
     ) -> InheritedError<B> {
         let mut sums = InheritedError::default();
         for column in &self.columns {
-            let own = flow.modal_rounded(&column.state);
-            let (norms, mut orders) = (flow.norms_of_bounds(&own), [B::ZERO; ORDERS]);
-            for part in &row.parts {
-                if part.growth != BlockGrowth::Polynomial {
-                    sums.norms[part.subspace] += norms[part.subspace] * OUTWARD;
-                    continue;
-                }
-                for it in &row.columns[part.columns.0..part.columns.1] {
-                    let terms = it.orders.iter().map(|order| order.bound() * own[it.at]);
-                    orders.iter_mut().zip(terms).for_each(|(order, term)| *order += term);
-                }
-            }
-            let all = sums.orders.iter_mut().zip(orders);
-            all.for_each(|(sum, order)| *sum += order.abs() * OUTWARD);
+            sums.add(flow, row, &flow.modal_rounded(&column.state), |order, error| order * error);
         }
         let lost = flow.modal_sizes(&self.state()).map(|it| it * COLUMN_ROUNDING);
-        let norms = flow.norms_of_bounds(&lost);
-        for part in &row.parts {
-            if part.growth != BlockGrowth::Polynomial {
-                sums.norms[part.subspace] += norms[part.subspace] * OUTWARD;
-                continue;
-            }
-            for it in &row.columns[part.columns.0..part.columns.1] {
-                let terms = it.orders.iter().map(|order| order.bound().abs() * lost[it.at]);
-                sums.orders.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
-            }
-        }
+        sums.add(flow, row, &lost, |order, size| order.abs() * size);
         sums
     }
 

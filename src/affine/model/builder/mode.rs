@@ -255,6 +255,7 @@ impl UntilBuilder {
         self.next.push((Some(Condition(condition.into().0)), mode.into()));
         self
     }
+
     /// Says what follows where the event accumulates: a run goes on there, and does not end.
     pub fn accumulates_to(mut self, limit: LimitBuilder) -> Self {
         self.limit = Some(limit);
