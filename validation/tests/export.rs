@@ -13,7 +13,8 @@ fn what_is_exported_is_as_its_schema_says() {
     let out = folder.path().display().to_string();
     let output = run(&["export", "--out", &out]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    let (cases, differentiated) = (embedded().expect("read"), gradients::embedded().expect("read"));
+    let (cases, differentiated) =
+        (embedded().expect("read"), gradients::embedded(|_| true).expect("read"));
     let own = cases.iter().map(|it| it.name.as_str());
     let names: Vec<&str> = own.chain(differentiated.iter().map(|it| it.name.as_str())).collect();
     assert_eq!(text(&output.stdout).lines().count(), names.len());

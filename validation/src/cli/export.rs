@@ -27,8 +27,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let differentiated = gradients::cases(&arguments.chosen)?;
-    let names: Vec<String> = differentiated.iter().map(|it| it.name.clone()).collect();
+    let differentiated = gradients::cases(&arguments.chosen, |_| true)?;
+    let names: Vec<&str> = differentiated.iter().map(|it| it.name.as_str()).collect();
     let cases = arguments.chosen.open(None, &names)?;
     make_folder(&arguments.out)?;
     let cases = cases.prepare(None)?;

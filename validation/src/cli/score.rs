@@ -135,7 +135,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let stepping = arguments.stepping()?;
     let baseline = judged.baseline()?;
     let derivatives_of = gradients::answered(&judged.chosen, &arguments.answers)?;
-    let differentiated: Vec<String> = derivatives_of.iter().map(|it| it.name.clone()).collect();
+    let differentiated: Vec<&str> = derivatives_of.iter().map(|it| it.name.as_str()).collect();
     let cases = judged.open(&differentiated)?;
     let answered = answered(&arguments.answers)?;
     // What probes ask needs an engine that is there.
@@ -163,8 +163,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         evidence.events = pool.install(|| event_pictures(&first_wrong_events(all, &rows)));
     }
     let engine = |case: &str| arguments.engine(case, stepping);
-    let gradients = gradients::judged_files(derivatives_of, engine, arguments.tolerance);
-    let gradients = pool.install(|| gradients)?;
+    let gradients =
+        pool.install(|| gradients::judged_files(derivatives_of, engine, arguments.tolerance))?;
     let report = Report { gradients, ..Report::new(SUITE, &[&engine("")], &rows) };
     let asked = |it: &RowPlace<'_>| {
         it.engine == arguments.name
@@ -238,11 +238,12 @@ fn answered(folder: &Path) -> Result<BTreeSet<String>> {
 fn check_names(
     arguments: &Arguments,
     all: &[PreparedCase],
-    differentiated: &[String],
+    differentiated: &[&str],
     answered: &BTreeSet<String>,
 ) -> Result<()> {
-    let asked =
-        |name: &String| differentiated.contains(name) || all.iter().any(|it| it.case.name == *name);
+    let asked = |name: &String| {
+        differentiated.contains(&name.as_str()) || all.iter().any(|it| it.case.name == *name)
+    };
     if !answered.iter().any(asked) {
         let folder = arguments.answers.display();
         bail!(

@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let engines = chosen_engines(&arguments.engine)?;
     let wrong = WrongEngines::of(arguments)?;
     let probed = wrong.count() > 0 || suite::probes_any(&engines, &scope);
-    let derivatives_of = gradients::names(&judged.chosen, &engines)?;
+    let derivatives_of = gradients::names(&judged.chosen, &engines);
     let cases = judged.open(&derivatives_of)?.prepare(probed.then_some(arguments.suite))?;
     let all = &cases.all;
     let mut defaults = judged.defaults()?;

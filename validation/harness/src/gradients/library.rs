@@ -6,22 +6,28 @@ use include_dir::{Dir, include_dir};
 
 static GRADIENTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/reference_data/gradients");
 
-/// The cases of derivatives, in the order of their names.
+/// The names of all cases of derivatives, in their order.
+#[must_use]
+pub fn names() -> Vec<&'static str> {
+    let mut names: Vec<_> =
+        GRADIENTS.files().filter_map(|it| it.path().to_str()?.strip_suffix(".csv")).collect();
+    names.sort_unstable();
+    names
+}
+
+/// The cases of derivatives with accepted names, in the order of these.
 ///
 /// # Errors
 /// [`FileError`] if a table cannot be understood; a test shows that all can.
-pub fn embedded() -> Result<Vec<GradientCase>, FileError> {
-    let mut files: Vec<_> = GRADIENTS.files().collect();
-    files.sort_by_key(|it| it.path());
-    let tables = files.iter().filter_map(|it| {
-        let name = it.path().to_str()?;
-        name.ends_with(".csv").then_some((name, it.contents_utf8()?))
-    });
-    tables
-        .map(|(name, text)| {
-            GradientCase::read(&format!("reference_data/gradients/{name}"), text, system)
-        })
-        .collect()
+pub fn embedded(accepts: impl Fn(&str) -> bool) -> Result<Vec<GradientCase>, FileError> {
+    let accepted = names().into_iter().filter(|it| accepts(it));
+    let read = |name| {
+        let file = format!("{name}.csv");
+        let text = GRADIENTS.get_file(&file).and_then(include_dir::File::contents_utf8);
+        let file = format!("reference_data/gradients/{file}");
+        GradientCase::read(&file, text.unwrap_or_default(), system)
+    };
+    accepted.map(read).collect()
 }
 
 /// The text of a system's file: one beside the tables, or one of the suite.

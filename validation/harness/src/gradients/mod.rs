@@ -30,7 +30,7 @@ mod walk;
 pub use answer::{GradientAnswer, NameAnswer};
 pub use case::{GradientCase, GradientRow};
 pub use judge::{ALLOWED_UNITS, judge};
-pub use library::embedded;
+pub use library::{embedded, names};
 pub use mechanism::Mechanism;
 pub use reference::Reference;
 pub use run::{GradientJudgement, TOLERANCES, one, run};

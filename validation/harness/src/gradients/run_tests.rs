@@ -37,7 +37,7 @@ impl Engine for Changed {
 }
 
 fn case(name: &str) -> Reference {
-    let case = embedded().unwrap().into_iter().find(|it| it.name == name);
+    let case = embedded(|it| it == name).unwrap().pop();
     Reference::new(case.unwrap()).unwrap()
 }
 
@@ -59,7 +59,7 @@ fn each(outcome: &mut Outcome, change: impl FnMut(&mut RunDerivatives)) {
 #[test]
 fn the_exact_solver_is_right_in_every_case() {
     let cases: Vec<Reference> =
-        embedded().unwrap().into_par_iter().map(|it| Reference::new(it).unwrap()).collect();
+        embedded(|_| true).unwrap().into_par_iter().map(|it| Reference::new(it).unwrap()).collect();
     let rows = run(&cases, &[exact()], &TOLERANCES, &|| {});
     let is_other = |it: &Verdict| !matches!(it, Verdict::Right | Verdict::NoneAsked);
     let wrong: Vec<_> = rows.iter().filter(|it| is_other(&it.judged.verdict)).collect();

@@ -1,7 +1,7 @@
 //! Answers in files, as an engine that gives them again.
 
 use super::answer::answer;
-use super::table::{EVENTS, GRADIENTS, SAMPLES};
+use super::table::{EVENTS, SAMPLES};
 use percuss_engines::engine::{
     Accuracy, Class, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role,
     Stepping, Task,
@@ -71,10 +71,6 @@ impl Engine for FileEngine {
             return Ok(());
         }
         Err(format!("not answered: there is no {events}"))
-    }
-
-    fn differentiates(&self) -> bool {
-        self.folder.join(format!("{}{GRADIENTS}", self.case)).exists()
     }
 
     fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {

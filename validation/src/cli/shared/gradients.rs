@@ -1,10 +1,10 @@
 //! Derivatives through events, asked of the engines that answer them.
 
-use super::judged::{CaseFlags, accepts};
+use super::judged::CaseFlags;
 use super::long_work;
 use crate::engine::{Engine, REFERENCE};
 use crate::gradients::{
-    GradientCase, GradientJudgement, Reference, TOLERANCES, embedded, one, run,
+    self, GradientCase, GradientJudgement, Reference, TOLERANCES, embedded, one, run,
 };
 use crate::report::GradientEntry;
 use anyhow::{Result, anyhow};
@@ -16,11 +16,9 @@ use std::path::Path;
 pub(in crate::cli) fn names(
     chosen: &CaseFlags,
     engines: &[&'static dyn Engine],
-) -> Result<Vec<String>> {
-    if chosen.cases.is_some() || answering(engines).is_empty() {
-        return Ok(Vec::new());
-    }
-    Ok(embedded()?.into_iter().map(|it| it.name).collect())
+) -> Vec<&'static str> {
+    let is_asked = chosen.cases.is_none() && !answering(engines).is_empty();
+    if is_asked { gradients::names() } else { Vec::new() }
 }
 
 /// The engines that are asked; none where only the reference answers derivatives.
@@ -38,10 +36,10 @@ pub(in crate::cli) fn judged(
     tolerances: &[f64],
 ) -> Result<Vec<GradientEntry>> {
     let answering = answering(engines);
-    if chosen.cases.is_some() || answering.is_empty() {
+    if answering.is_empty() {
         return Ok(Vec::new());
     }
-    let ready = ready(cases(chosen)?)?;
+    let ready = ready(cases(chosen, |_| true)?)?;
     let tolerances = if tolerances.len() < 2 { &TOLERANCES[..] } else { tolerances };
     let bar = long_work::bar((ready.len() * answering.len()) as u64, "derivatives");
     let rows = run(&ready, &answering, tolerances, &|| bar.inc(1));
@@ -49,21 +47,18 @@ pub(in crate::cli) fn judged(
     Ok(rows.into_iter().map(GradientEntry::from).collect())
 }
 
-/// The cases of derivatives that are chosen; none where the cases are a user's own.
-pub(in crate::cli) fn cases(chosen: &CaseFlags) -> Result<Vec<GradientCase>> {
-    if chosen.cases.is_some() {
-        return Ok(Vec::new());
-    }
-    let mut cases = embedded()?;
-    cases.retain(|it| accepts(&chosen.case, &it.name));
-    Ok(cases)
+/// The chosen cases of derivatives with wanted names; none where the cases are a user's own.
+pub(in crate::cli) fn cases(
+    chosen: &CaseFlags,
+    is_wanted: impl Fn(&str) -> bool,
+) -> Result<Vec<GradientCase>> {
+    let is_chosen = |it: &str| chosen.cases.is_none() && chosen.accepts(it) && is_wanted(it);
+    Ok(embedded(is_chosen)?)
 }
 
 /// Those of the chosen cases of derivatives to which a folder has answers.
 pub(in crate::cli) fn answered(chosen: &CaseFlags, folder: &Path) -> Result<Vec<GradientCase>> {
-    let mut cases = cases(chosen)?;
-    cases.retain(|it| folder.join(format!("{}{GRADIENTS}", it.name)).exists());
-    Ok(cases)
+    cases(chosen, |name| folder.join(format!("{name}{GRADIENTS}")).exists())
 }
 
 /// The verdicts on the answers in files to these cases, made at one tolerance.

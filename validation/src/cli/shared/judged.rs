@@ -84,7 +84,7 @@ const FEW_CASES: usize = 3;
 impl CaseFlags {
     /// The cases that are chosen; none where patterns match only `others`, which are judged by
     /// something else.
-    fn read(&self, others: &[String]) -> Result<Vec<Case>> {
+    fn read(&self, others: &[&str]) -> Result<Vec<Case>> {
         let mut cases = match &self.cases {
             Some(folder) => case::from_directory(folder).context("--cases")?,
             None => case::embedded()?,
@@ -94,7 +94,7 @@ impl CaseFlags {
             Some(folder) => held_by(folder, &names),
             None => CASES.listed.to_owned(),
         };
-        let known = names.into_iter().chain(others.iter().map(String::as_str));
+        let known = names.into_iter().chain(others.iter().copied());
         Selection { listed: &listed, ..CASES }.check(&self.case, known)?;
         cases.retain(|it| self.accepts(&it.name));
         Ok(cases)
@@ -119,7 +119,7 @@ impl CaseFlags {
     pub(in crate::cli) fn open(
         &self,
         reference: Option<&Path>,
-        others: &[String],
+        others: &[&str],
     ) -> Result<OpenedCases> {
         let (cases, library) = (self.read(others)?, self.library(reference)?);
         Ok(OpenedCases { cases, library, are_users: self.cases.is_some() })
@@ -206,7 +206,7 @@ impl JudgedFlags {
 
     /// The chosen cases with their reference data, once the folder of the report is made: to make
     /// them ready may take long. Patterns may match `others` instead.
-    pub(in crate::cli) fn open(&self, others: &[String]) -> Result<OpenedCases> {
+    pub(in crate::cli) fn open(&self, others: &[&str]) -> Result<OpenedCases> {
         let cases = self.chosen.open(self.reference.as_deref(), others)?;
         self.out.as_deref().map(make_folder).transpose()?;
         Ok(cases)
