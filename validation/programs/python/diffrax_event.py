@@ -153,20 +153,6 @@ def along(*chosen):
     return jax.jit(reverse if chosen[-1] in REVERSE else forward)
 
 
-def known_guards(course, zeros):
-    """What is hidden of each guard, the sign that it has where the run begins, and whether it
-    stays zero."""
-    events = course.system.modes[course.mode].events
-    wide_now = course.system.wide(course.t, course.z)
-    signs = np.array([np.sign(event.row @ wide_now) for event in events])
-    hidden, stays = np.zeros(len(events)), np.zeros(len(events))
-    for place, (order, sign) in zeros.items():
-        signs[place], stays[place] = sign, float(order is None)
-        if order is not None:
-            hidden[place] = course.hidden(events[place], order, course.z)
-    return hidden, signs, stays
-
-
 def padded(times, end):
     """The samples' times, as many as a bucket holds."""
     size = next(it for it in BUCKETS if it >= len(times))
@@ -195,7 +181,7 @@ def stretch(course, name, is_default, adjoint, zeros):
     system, mode, size = course.system, course.system.modes[course.mode], len(course.z)
     due = course.pending()
     due = due[due < course.span]
-    hidden, signs, stays = known_guards(course, zeros)
+    hidden, signs, stays = course.known_guards(zeros)
     given = {
         "matrix": mode.wide[:size],
         "omega": float(system.omega),
@@ -203,7 +189,7 @@ def stretch(course, name, is_default, adjoint, zeros):
         "rows": np.array([event.row for event in mode.events]).reshape(-1, size + 3),
         "hidden": hidden,
         "signs": signs,
-        "stays": stays,
+        "stays": stays.astype(float),
     }
     way = {1: True, -1: False, 0: None}
     directions = tuple(way[event.sign] if is_default else None for event in mode.events)

@@ -179,20 +179,6 @@ def along(way):
     return jax.jit(push)
 
 
-def known_guards(course, zeros):
-    """What is hidden of each guard, the sign that it has where the run begins, and whether it
-    stays zero."""
-    events = course.system.modes[course.mode].events
-    now = course.system.wide(course.t, course.z)
-    signs = np.array([np.sign(event.row @ now) for event in events])
-    hidden, stays = np.zeros(len(events)), np.zeros(len(events))
-    for place, (order, sign) in zeros.items():
-        signs[place], stays[place] = sign, float(order is None)
-        if order is not None:
-            hidden[place] = course.hidden(events[place], order, course.z)
-    return hidden, signs, stays
-
-
 def stacked(by, given, mode):
     """The derivatives of what a stretch is given, by each name, padded."""
     zeros = jax.tree.map(lambda it: np.zeros((NAMES, *np.shape(it))), given)
@@ -213,7 +199,7 @@ def stretch(course, way, zeros):
     system, mode, size = course.system, course.system.modes[course.mode], len(course.z)
     due = course.pending()
     due = due[due < course.span]
-    hidden, signs, stays = known_guards(course, zeros)
+    hidden, signs, stays = course.known_guards(zeros)
     given = {
         "matrix": mode.wide[:size],
         "omega": float(system.omega),
@@ -221,7 +207,7 @@ def stretch(course, way, zeros):
         "rows": np.array([event.row for event in mode.events]).reshape(-1, size + 3),
         "hidden": hidden,
         "signs": signs,
-        "stays": stays,
+        "stays": stays.astype(float),
     }
     times = padded(due, next(it for it in BUCKETS if it >= len(due)), np.inf)
     tolerance = course.run["tolerance"]["relative"]

@@ -234,6 +234,19 @@ class Course:
         alike = lambda it: is_multiple(it.row, row) and it.row @ row > 0
         return [n for n, it in enumerate(events) if alike(it)]
 
+    def known_guards(self, zeros):
+        """What is hidden of each guard, the sign that it has where the run begins, and whether it
+        stays zero."""
+        events = self.system.modes[self.mode].events
+        now = self.system.wide(self.t, self.z)
+        signs = np.array([np.sign(event.row @ now) for event in events])
+        hidden, stays = np.zeros(len(events)), np.zeros(len(events), dtype=bool)
+        for place, (order, sign) in zeros.items():
+            signs[place], stays[place] = sign, order is None
+            if order is not None:
+                hidden[place] = self.hidden(events[place], order, self.z)
+        return hidden, signs, stays
+
     def that_counts(self, place, way):
         """The event that a guard's crossing is: of those with this guard, the one whose direction
         counts, if there is one."""

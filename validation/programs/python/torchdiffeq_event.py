@@ -89,16 +89,13 @@ def plain(field, end):
 
 def oriented(field, end, course, zeros):
     """The guards, positive where the run begins."""
+    hidden, signs, stays = course.known_guards(zeros)
     events = course.system.modes[course.mode].events
     now = course.system.wide(course.t, course.z)
-    signs = np.array([np.sign(event.row @ now) for event in events])
-    hidden, stays = np.zeros(len(events)), np.zeros(len(events), dtype=bool)
-    for place, (order, sign) in zeros.items():
-        signs[place], stays[place] = sign, order is None
+    for place, (order, _) in zeros.items():
         if order is not None:
             # torchdiffeq places an event within the absolute tolerance.
-            off = 2 * abs(events[place].row @ now)
-            hidden[place] = max(course.hidden(events[place], order, course.z), off)
+            hidden[place] = max(hidden[place], 2 * abs(events[place].row @ now))
     ways, hidden, stays = (torch.as_tensor(it) for it in (signs, hidden, stays))
 
     def guards(t, z):
