@@ -30,6 +30,7 @@ def printed(ball: arb) -> str:
 
 
 def systems() -> list:
+    """Paths of the systems that go on after accumulations."""
     return sorted(FOLDER.glob("*.system.toml"))
 
 

@@ -54,6 +54,7 @@ class Orbit:
     section: str = "strobe"
     period: int = 1
     parameters: dict = field(default_factory=dict)
+    on_guard: str = ""  # a state that the guard of the section's event, zero there, gives
 
 
 @dataclass
@@ -77,7 +78,8 @@ def buck(period: int, supply: float, v: float, i: float) -> Orbit:
 def relay(k: float, *guess: float) -> Orbit:
     states = ("x1", "x2", "x3")
     guess = dict(zip(states, guess, strict=True))
-    return Orbit("relay-feedback", "down", guess, ("x2", "x3"), "switch-down", 1, {"k": k})
+    section, values = ("switch-down", 1), {"k": k}
+    return Orbit("relay-feedback", "down", guess, ("x2", "x3"), *section, values, "x1")
 
 
 def rig(system: str, frequency: float, x: float, v: float) -> Orbit:
@@ -137,8 +139,7 @@ class Motion:
         base = orbit.parameters.get(name, 0)
         by = exact(value - mpf(base)) if value is not None else fmpq(0)
         table = tomllib.loads(path.read_text())
-        builder = MovedBuilder(table, orbit.parameters, None, name, by)
-        self.system, self.known = builder.system(), builder.known
+        self.system = MovedBuilder(table, orbit.parameters, None, name, by).system()
         self.states = self.system.states
         self.matrices = {n: self.rows(mode.matrix) for n, mode in self.system.modes.items()}
         self.norms = {n: max(sum(map(abs, row)) for row in m) for n, m in self.matrices.items()}
@@ -175,6 +176,11 @@ class Motion:
             if row is None or self.leading(self.rows(row)[0], mode, z)[1] > 0:
                 return mode, z
         raise ValueError("the last successor has no condition")
+
+    def guard(self, name: str) -> list:
+        """The guard of an event."""
+        events = (pair for mode in self.system.modes for pair in self.until(mode))
+        return next(row for event, row in events if event.name == name)
 
     def until(self, mode: str) -> list:
         return [(it, self.rows(it.guard)[0]) for it in self.system.modes[mode].until]
@@ -242,12 +248,14 @@ def returned(motion: Motion, orbit: Orbit, point: list) -> tuple:
 
 
 def start(motion: Motion, orbit: Orbit, free: list) -> list:
-    """The point with these free states; of the relay the section is the guard's plane."""
+    """The point with these free states."""
     own = dict(orbit.guess) | dict(zip(orbit.free, free, strict=True))
     point = [mpf(own[name]) for name in motion.states]
-    if orbit.system == "relay-feedback":
-        k, delta = (real(motion.known[name][-1]) for name in ("k", "delta"))
-        point[0] = delta - k * point[2]
+    if orbit.on_guard:
+        n = motion.states.index(orbit.on_guard)
+        row = motion.guard(orbit.section)
+        point[n] = mpf(0)
+        point[n] = -dot(row, motion.appended(point, real(motion.system.phi))) / row[n]
     return point
 
 

@@ -54,6 +54,11 @@ class Mode:
     until: list
     watch: list
 
+    @property
+    def exits(self) -> list:
+        """All that has a reset and successors: the events of `until` and their limits."""
+        return self.until + [event.limit for event in self.until if event.limit is not None]
+
 
 @dataclass
 class System:
@@ -291,9 +296,8 @@ class Builder:
         rows = [row for row, _ in start]
         for mode in modes:
             rows += [mode.matrix] + [event.guard for event in mode.until + mode.watch]
-            exits = mode.until + [event.limit for event in mode.until if event.limit is not None]
-            rows += [row for event in exits for row, _ in event.successors]
-            rows += [event.reset - self.identity() for event in exits]
+            rows += [row for event in mode.exits for row, _ in event.successors]
+            rows += [event.reset - self.identity() for event in mode.exits]
         for name in drift:
             if name not in self.states or drift.count(name) > 1:
                 raise Refused(f"drift: {name!r} is no state, or there twice")
@@ -358,8 +362,7 @@ class Builder:
         if len(by_name) < len(modes) or len(modes) > LARGEST_COUNT:
             raise Refused(f"at most {LARGEST_COUNT} modes, each with a name of its own")
         for mode in modes:
-            exits = mode.until + [event.limit for event in mode.until if event.limit is not None]
-            for _, name in (s for event in exits for s in event.successors):
+            for _, name in (s for event in mode.exits for s in event.successors):
                 if name not in by_name:
                     raise Refused(f"mode {mode.name}: {name!r} is not a mode")
         start = self.start_values(by_name)

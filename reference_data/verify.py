@@ -61,14 +61,10 @@ def unpaired(cases: Path) -> list:
     wanted |= {f"{folder}/{name}.csv" for name in generate_system_pieces.PIECES}
     folder = generate_gradients.FOLDER
     wanted |= {f"{folder}/{case.name}.csv" for case in gradient_case.read([])}
-    wanted |= {f"limits/{path.name}" for path in map(generate_limits.table_path, limits())}
+    tables = map(generate_limits.table_path, generate_limits.systems())
+    wanted |= {f"limits/{path.name}" for path in tables}
     present = {p.relative_to(HERE).as_posix() for p in HERE.glob("*/*.csv")}
     return sorted(wanted ^ present)
-
-
-def limits() -> list:
-    """Systems that go on after accumulations."""
-    return generate_limits.systems()
 
 
 def system_cases(names: list) -> list:
@@ -111,7 +107,7 @@ def irreproducible(cases: Path, names: list) -> list:
             name = made.relative_to(out).as_posix()
             if made.read_bytes() != (HERE / name).read_bytes():
                 different.append(name)
-    for path in limits():
+    for path in generate_limits.systems():
         made = generate_limits.table_path(path)
         if generate_limits.table(path)[0] != made.read_text():
             different.append(made.relative_to(HERE).as_posix())
