@@ -110,7 +110,7 @@ impl Rows {
         Ok(Some((times, table(py, states, self.columns())?)))
     }
 
-    /// The same run, differentiated by these names.
+    /// This run made again with its derivatives by these names.
     fn differentiated(&self, py: Python<'_>, names: Vec<String>) -> PyResult<Self> {
         let (shared, asked) = (&self.shared, self.asked);
         let (numbers, end) = py.detach(|| match &self.numbers {

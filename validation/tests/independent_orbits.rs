@@ -83,7 +83,7 @@ fn orbits_and_multipliers_are_confirmed_to_twelve_digits() {
         assert_near(&list(&point["state"]), &state, &what);
         let time = found["time"].as_f64().expect("a time");
         assert_near(&[time], &numbers(&row["time"]), &what);
-        // Of a pair either may come first.
+        // The two of a complex pair come in either order.
         let pair = |it: Vec<f64>| [it[0], it[1].abs()];
         let known = row["multipliers"].split("; ").flat_map(|it| pair(numbers(it)));
         let own = found["multipliers"].as_array().expect("multipliers").iter();
