@@ -193,6 +193,23 @@ fn a_buck_converter_doubles_where_a_multiplier_is_minus_one() {
     }
 }
 
+/// At A = 3 the mass no longer sticks, and a multiplier comes to 1 there: what rounding leaves
+/// uncertain of the orbit decides where the last sticking is found.
+#[test]
+fn a_last_sticking_at_which_a_multiplier_is_one_is_within_its_error() {
+    let text = system!("dry-friction-oscillator");
+    let slipping = text.replace("mode = \"stick\"\nt = 2.0", "mode = \"right\"\nt = 0");
+    assert_ne!(slipping, text);
+    let varied = Varied::new(&slipping, Section::strobe(0.0), "A", &[]);
+    for from in [2.9, 2.8] {
+        let branch = varied.follow(&varied.settled(from, 50), 1, [from, 3.0]);
+        let lost = only(&branch, BifurcationKind::EventLost);
+        assert!((lost.value - 3.0).abs() <= lost.error, "{} +- {}", lost.value, lost.error);
+        // A rounding of the orbit over 1 less a multiplier is as large there as 3 - A.
+        assert!(lost.error < 1e-6, "{}", lost.error);
+    }
+}
+
 /// The oscillator's own branch, and that of its system: the points at the same values, and the
 /// bifurcations.
 fn beside_the_oscillators(period: u32, ends: [f64; 2], text: &[(&str, f64)]) {

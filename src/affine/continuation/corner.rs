@@ -1,5 +1,6 @@
 //! From one smooth piece of the map to the next.
 
+use super::super::returns::newton::polished;
 use super::super::returns::shooting::{ReturnMap, Shots};
 use super::curve::Curve;
 use super::family::OrbitShots;
@@ -47,7 +48,7 @@ impl Curve<'_> {
     /// from the other side if it is, but at least what is looked for.
     pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
         let Approach { last: before, rest, .. } = self.approached(base, distance);
-        let least = SHARP * before.value.abs() + self.uncertainty(&before);
+        let least = SHARP * before.value.abs() + self.uncertainty(&before) + self.blur(&before);
         let own = rest * before.tangent.rate.abs();
         let mut best = Corner { before, beyond: None, error: f64::INFINITY };
         for step in BEYOND {
@@ -82,11 +83,28 @@ impl Curve<'_> {
     fn approached(&self, base: &CurvePoint, distance: f64) -> Approach {
         let is_lost = Cell::new(false);
         let (last, rest) = last_along(base, distance, REACHED, &|from, step| {
-            let there = self.corrected(from, step);
+            let there = self.corrected(from, step).or_else(|| self.at_value(from, step));
             is_lost.set(there.is_none());
             there.filter(|it| it.is_on_piece_of(from))
         });
         Approach { last, rest, is_lost: is_lost.get() }
+    }
+
+    /// The orbit at the parameter's value a step along the curve, by Newton's method there.
+    ///
+    /// The corrector does not close where a multiplier comes to 1 and the orbit's change with the
+    /// parameter vanishes with it: the derivative by the parameter is a difference, whose error is
+    /// no small share of it then.
+    fn at_value(&self, base: &CurvePoint, step: f64) -> Option<CurvePoint> {
+        let value = base.value + step * base.tangent.rate;
+        let shots = self.shifted(base, &base.tangent, step)?;
+        let shots = self.family.at(value, |map| Some(polished(map, shots)))?;
+        if !shots.is_closed() || !self.is_near(value, &shots, base, step) {
+            return None;
+        }
+        let point = self.point(value, shots, &base.tangent)?;
+        // A direction that rests on such a difference is no better than that of the point before.
+        Some(CurvePoint { slopes: base.slopes.clone(), tangent: base.tangent.clone(), ..point })
     }
 
     /// The curve a step beyond the corner at `before`. Its direction there is that of the other

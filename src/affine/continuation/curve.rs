@@ -251,10 +251,8 @@ impl<'a> Curve<'a> {
         let Around { offset: by_value, .. } = around(shots, slopes);
         let (scales, weight) = (&self.scales, self.weight(weighed));
         let mut matrix = [[0.0; BORDERED]; BORDERED];
-        for i in 0..MOST {
-            for j in 0..MOST {
-                matrix[i][j] = (own[i][j] - if i == j { 1.0 } else { 0.0 }) * scales[j] / scales[i];
-            }
+        for (i, row) in self.less_identity(&own).iter().enumerate() {
+            matrix[i][..MOST].copy_from_slice(row);
             matrix[i][MOST] = by_value[i] * self.unit / scales[i];
             matrix[MOST][i] = weight * along.points[0][i] / scales[i];
         }
@@ -262,8 +260,17 @@ impl<'a> Curve<'a> {
         Bordered { matrix, offset }
     }
 
-    /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve:
-    /// each segment rounds as many products as the system has entries.
+    /// A derivative less the identity, in units of the states.
+    fn less_identity(&self, derivative: &Derivative) -> Derivative {
+        let one = identity();
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                (derivative[i][j] - one[i][j]) * self.scales[j] / self.scales[i]
+            })
+        })
+    }
+
+    /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve.
     pub fn uncertainty(&self, point: &CurvePoint) -> f64 {
         let Bordered { matrix, .. } =
             self.bordered(&point.shots, &point.slopes, &point.tangent, &point.shots);
@@ -272,9 +279,34 @@ impl<'a> Curve<'a> {
             right[row] = 1.0;
             solve(matrix, right)[MOST].abs()
         });
-        let largest = point.shots.points.iter().fold(1.0, |most, it| self.size(it).max(most));
-        let segments: usize = point.shots.images.iter().map(|it| it.segments).sum();
-        let rounding = sum_rounding::<f64>(self.dimension) * largest * segments as f64;
-        by_row.sum::<f64>() * self.unit * rounding + f64::EPSILON * point.value.abs()
+        by_row.sum::<f64>() * self.unit * self.rounding(&point.shots)
+            + f64::EPSILON * point.value.abs()
+    }
+
+    /// The distance in the parameter along the curve that is as long as what rounding of the map
+    /// leaves uncertain of the orbit at one value.
+    ///
+    /// A corner is where the orbit touches another piece of the map, so that the corner is found
+    /// where an uncertain orbit touches it. The orbit is uncertain where a multiplier is near 1.
+    pub fn blur(&self, point: &CurvePoint) -> f64 {
+        let Around { matrix, .. } = around(&point.shots, &point.shots.defects);
+        let apart = self.less_identity(&matrix);
+        let by_row = (0..MOST).map(|row| {
+            let mut right = [0.0; MOST];
+            right[row] = 1.0;
+            solve(apart, right).iter().map(|it| it * it).sum::<f64>().sqrt()
+        });
+        let Direction { points, rate } = &point.tangent;
+        let by_state = points[0].iter().zip(&self.scales).map(|(it, scale)| (it / scale).powi(2));
+        let length = (by_state.sum::<f64>() + (rate / self.unit).powi(2)).sqrt();
+        by_row.sum::<f64>() * self.rounding(&point.shots) * rate.abs() / length
+    }
+
+    /// The rounding of the points' images, in units of the states: each segment rounds as many
+    /// products as the system has entries.
+    fn rounding(&self, shots: &OrbitShots) -> f64 {
+        let largest = shots.points.iter().fold(1.0, |most, it| self.size(it).max(most));
+        let segments: usize = shots.images.iter().map(|it| it.segments).sum();
+        sum_rounding::<f64>(self.dimension) * largest * segments as f64
     }
 }
