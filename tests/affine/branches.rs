@@ -46,14 +46,14 @@ v = 0
 "#;
 
 /// A system at the values of a parameter, with others set.
-struct Varied {
+pub struct Varied {
     file: SystemFile,
     parameter: &'static str,
     section: Section,
 }
 
 impl Varied {
-    fn new(text: &str, section: Section, parameter: &'static str, set: &[(&str, f64)]) -> Self {
+    pub fn new(text: &str, section: Section, parameter: &'static str, set: &[(&str, f64)]) -> Self {
         let mut file = SystemFile::read("test.system.toml", text).unwrap();
         for (name, value) in set {
             file.set(name, *value, "here").unwrap();
@@ -68,13 +68,13 @@ impl Varied {
     }
 
     /// What the return map at a value has.
-    fn map<R>(&self, value: f64, then: impl FnOnce(&SectionMap<'_, f64>) -> R) -> R {
+    pub fn map<R>(&self, value: f64, then: impl FnOnce(&SectionMap<'_, f64>) -> R) -> R {
         let solver = Solver::new(&self.at(value).unwrap()).unwrap();
         then(&SectionMap::new(&solver, &self.section).unwrap())
     }
 
     /// The return after so many others.
-    fn settled(&self, value: f64, transient: usize) -> Place<f64> {
+    pub fn settled(&self, value: f64, transient: usize) -> Place<f64> {
         self.map(value, |map| {
             let mut returns = map.returns(map.system().start().unwrap()).unwrap();
             returns.by_ref().take(transient + 1).for_each(|it| drop(it.unwrap()));
@@ -82,14 +82,14 @@ impl Varied {
         })
     }
 
-    fn follow(&self, guess: &Place<f64>, period: u32, ends: [f64; 2]) -> ReturnBranch {
+    pub fn follow(&self, guess: &Place<f64>, period: u32, ends: [f64; 2]) -> ReturnBranch {
         let at = |value: f64| self.at(value);
         let family = ReturnFamily::new(self.section.clone(), None, &at);
         ReturnBranch::follow(&family, guess, period, ends, &mut |_| {}).unwrap()
     }
 }
 
-fn only(branch: &ReturnBranch, kind: BifurcationKind) -> &ReturnBifurcation {
+pub fn only(branch: &ReturnBranch, kind: BifurcationKind) -> &ReturnBifurcation {
     let mut found = branch.bifurcations.iter().filter(|it| it.kind == kind);
     let first = found.next().unwrap_or_else(|| panic!("{:?}", told(branch)));
     assert!(found.next().is_none(), "{:?}", told(branch));
@@ -102,7 +102,7 @@ fn told(branch: &ReturnBranch) -> Vec<(BifurcationKind, f64, f64, bool)> {
 
 /// Ten digits are asked for; the error that is stated has to hold, with the roundings of the value
 /// it is held to.
-fn assert_value(found: &ReturnBifurcation, value: f64) {
+pub fn assert_value(found: &ReturnBifurcation, value: f64) {
     let off = (found.value - value).abs();
     assert!(found.error <= 1e-10 * value.abs(), "{} +- {}", found.value, found.error);
     assert!(off <= found.error + 4.0 * f64::EPSILON * value.abs(), "{} {value}", found.value);

@@ -23,6 +23,7 @@ mod known;
 mod limits;
 mod oscillator;
 mod past_limits;
+mod published;
 mod random;
 mod return_attractors;
 mod return_orbits;
