@@ -19,8 +19,8 @@
 
 pub use crate::affine::{
     Direction, Exponents, Expression, Forcing, Guard, LARGEST_DIMENSION, LeftOut, Limit,
-    LimitBuilder, Mode, ModeBuilder, Name, NoOrbit, NoReturn, Orbit, Passage, Place, Plane,
-    RationalError, Return, ReturnAttractor, ReturnBasins, ReturnBifurcation, ReturnBranch,
+    LimitBuilder, Mode, ModeBuilder, Name, NoOrbit, NoReturn, Observable, Orbit, Passage, Place,
+    Plane, RationalError, Return, ReturnAttractor, ReturnBasins, ReturnBifurcation, ReturnBranch,
     ReturnDiagram, ReturnDiagramStep, ReturnFamily, Returns, Row, Section, SectionMap, StartPoint,
     Successor, SystemBuilder, SystemFile, TROUBLE, Tangent, UnresolvedReturn, Until, UntilBuilder,
     ValueError, Watch,

@@ -36,6 +36,7 @@ pub use guards::track::SearchWork;
 pub use model::builder::{Expression, LimitBuilder, ModeBuilder, SystemBuilder, UntilBuilder};
 pub use model::error::SystemError;
 pub use model::file::SystemFile;
+pub use model::observable::Observable;
 pub use model::rational::{Rational, RationalError};
 pub use model::system::{
     Direction, Forcing, LARGEST_DIMENSION, Limit, Mode, Row, StartPoint, Successor, System,

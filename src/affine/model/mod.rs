@@ -7,7 +7,8 @@
 //! [`mod@rational`] numbers), and what is refused becomes an [`error`] with its place in the
 //! [`source`]. [`check`] refuses systems that were changed by hand and are none any more. Read
 //! `system` first, then `file` and `build`. Coefficients are read with their derivatives
-//! ([`dual`]), which [`tangent`] gives out. [`drift`] says on which states nothing depends.
+//! ([`dual`]), which [`tangent`] gives out. [`drift`] says on which states nothing depends, and an
+//! [`observable`] is a function of the state.
 
 mod build;
 pub mod builder;
@@ -20,6 +21,7 @@ mod expression;
 pub mod file;
 mod form;
 mod naming;
+pub mod observable;
 pub mod rational;
 mod scalar;
 mod source;

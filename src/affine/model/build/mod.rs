@@ -8,9 +8,10 @@ use crate::affine::model::dual::Dual;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::file::{GivenParameter, StartTable, SystemFile};
 use crate::affine::model::naming::unknown_mode;
+use crate::affine::model::observable::Observable;
 use crate::affine::model::scalar::Scalar;
 use crate::affine::model::system::{
-    LARGEST_COUNT, LARGEST_DIMENSION, Origin, StartPoint, System, TROUBLE,
+    LARGEST_COUNT, LARGEST_DIMENSION, Origin, Row, StartPoint, System, TROUBLE,
 };
 use crate::affine::model::tangent::Name;
 use mode::ModeReader;
@@ -26,6 +27,32 @@ impl SystemFile {
     /// Whatever does not make sense, with its place and what is accepted.
     pub fn system(&self) -> Result<System, SystemError> {
         system(self, None)
+    }
+
+    /// Reads an affine expression of the file's names, as those of its equations; `place` says in
+    /// errors where the text is from.
+    ///
+    /// ```
+    /// use percuss::{gallery, system::SystemFile};
+    ///
+    /// let ball = SystemFile::read("ball", gallery::BOUNCING_BALL)?;
+    /// let observable = ball.observable("x - 2*v", "the axis")?;
+    /// assert_eq!(observable.value(0.0, &[1.0, 3.0]), -5.0);
+    /// let error = ball.observable("x - w", "the axis").unwrap_err();
+    /// assert!(error.to_string().starts_with("the axis: w is not known: accepted are x, v"));
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// An expression that is not affine, and unknown names with those that are accepted.
+    pub fn observable(&self, text: &str, place: &str) -> Result<Observable, SystemError> {
+        let mut names = Names::of(self, None)?;
+        let forcing = names.forcing()?;
+        let form = names.affine(&Scalar::Text(text.to_owned()));
+        let form = form.map_err(|what| SystemError::at(place, &what))?;
+        let factors: Row = form.0.into_iter().map(|it| it.value).collect();
+        let forcing = forcing.map_or([0.0; 2], |it| [it.omega.to_f64(), it.phi.to_f64()]);
+        Ok(Observable::new(&factors, forcing))
     }
 
     /// The system with the derivatives by a name in the place of its coefficients.
