@@ -2,10 +2,11 @@
 
 use super::canvas::{At, Canvas, TextSide};
 use super::colour::{Colour, WHITE};
+use super::fitted::{APART, BELOW, BESIDE, MARGIN, NAME_BELOW, TALL, fewer_ticks};
 use super::frame::{Panel, Ruler};
 use super::key::{KeyItem, KeyLayout, key};
 use super::look::Marker;
-use super::{Drawing, palette};
+use super::{Drawing, font, palette};
 use percuss::dynamics::attractor::Label;
 
 /// A basin picture.
@@ -55,6 +56,12 @@ const FROM: At = (140.0, 64.0);
 const TO: At = (900.0, 824.0);
 const KEY: At = (926.0, 84.0);
 const TEXT: f64 = 20.0;
+const KEY_TEXT: f64 = TEXT - 3.0;
+
+/// The smallest map with its key, and the room around a map that fills a size.
+const LEAST: (u32, u32) = (360, 200);
+/// The width of a key's sample, with the space before its name.
+const KEY_ROOM: f64 = 64.0;
 
 impl Drawing for BasinMap {
     fn size(&self) -> (u32, u32) {
@@ -67,15 +74,41 @@ impl Drawing for BasinMap {
             let at = (24.0, 916.0 + 26.0 * k as f64);
             canvas.text(line, at, TEXT - 2.0, TextSide::Left, palette::INK);
         }
-        self.cells(canvas);
         let [x, y] = self.window.map(|[from, to]| Ruler::between(from, to));
         let panel = Panel { from: FROM, to: TO, x, y };
         let [across, up] = &self.axes;
-        panel.draw_over(canvas, across, up);
-        for shown in &self.attractors {
-            shown.draw(canvas, &panel);
-        }
-        self.key(canvas);
+        self.fill(canvas, &panel, |canvas| panel.draw_over(canvas, across, up));
+        self.key(canvas, KEY, KeyLayout::Column(40.0), str::to_owned);
+    }
+
+    fn least_size(&self) -> (u32, u32) {
+        LEAST
+    }
+
+    /// Draws the map and short names of its colours: a paper has its own caption.
+    fn draw_within(&self, canvas: &mut Canvas, size: (u32, u32)) {
+        let first_line = |name: &str| name.lines().next().unwrap_or_default().to_owned();
+        let names = self.attractors.iter().map(|it| first_line(&it.name));
+        let others = self.others().into_iter().map(|it| it.0.to_owned());
+        let widths = names.chain(others).map(|it| font::width(&it, KEY_TEXT));
+        let key = KEY_ROOM + widths.fold(0.0, f64::max);
+        let y = fewer_ticks(self.ruler(1), |ticks| {
+            (f64::from(size.1) - MARGIN - BELOW) / ticks.len().max(1) as f64 > TALL
+        });
+        let left = BESIDE + y.ticks.iter().map(|it| font::width(&it.1, TEXT)).fold(0.0, f64::max);
+        let from = (left, MARGIN);
+        let to = (f64::from(size.0) - key - MARGIN, f64::from(size.1) - BELOW);
+        let x = fewer_ticks(self.ruler(0), |ticks| {
+            let room = (to.0 - from.0) / ticks.len().max(1) as f64;
+            ticks.iter().all(|it| font::width(&it.1, TEXT) + APART < room)
+        });
+        let panel = Panel { from, to, x, y };
+        let [across, up] = &self.axes;
+        self.fill(canvas, &panel, |canvas| {
+            panel.draw_named(canvas, (across, NAME_BELOW), (up, left - MARGIN));
+        });
+        let at = (to.0 + MARGIN, from.1 + MARGIN);
+        self.key(canvas, at, KeyLayout::Column(30.0), first_line);
     }
 }
 
@@ -90,30 +123,53 @@ impl BasinMap {
         }
     }
 
-    fn cells(&self, canvas: &mut Canvas) {
-        let colours: Vec<_> = self.cells.iter().map(|cell| self.paper(*cell)).collect();
-        canvas.cells(FROM, TO, colours.chunks_exact(self.columns.max(1)));
+    fn ruler(&self, axis: usize) -> Ruler {
+        let [from, to] = self.window[axis];
+        Ruler::between(from, to)
     }
 
-    fn key(&self, canvas: &mut Canvas) {
-        let attractors = self.attractors.iter().map(|shown| {
-            let (light, dark) = shown.colours();
-            KeyItem::new(&shown.name, move |canvas, at| {
-                swatch(canvas, at, light);
-                canvas.marker(Marker::Circle, (at.0 + 13.0, at.1), 5.0, dark);
-            })
-        });
+    /// Draws the cells, the frame and the attractors above them.
+    fn fill(&self, canvas: &mut Canvas, panel: &Panel, frame: impl FnOnce(&mut Canvas)) {
+        let colours: Vec<_> = self.cells.iter().map(|cell| self.paper(*cell)).collect();
+        canvas.cells(panel.from, panel.to, colours.chunks_exact(self.columns.max(1)));
+        frame(canvas);
+        for shown in &self.attractors {
+            shown.draw(canvas, panel);
+        }
+    }
+
+    /// The names and colours of the labels of no attractor that occur.
+    fn others(&self) -> Vec<(&'static str, Colour)> {
         let others = [
             (Label::Unresolved, "unresolved", palette::UNRESOLVED),
             (Label::Escaping, "escaping (white)", WHITE),
             (Label::Inadmissible, "no start", palette::NO_START),
             (Label::Ended, "the run ends", palette::ENDED),
         ];
-        let others = others.into_iter().filter(|(cell, ..)| self.cells.contains(cell));
-        let others = others.map(|(_, name, colour)| {
-            KeyItem::new(name, move |canvas, at| swatch(canvas, at, colour))
+        let occur = others.into_iter().filter(|(cell, ..)| self.cells.contains(cell));
+        occur.map(|(_, name, colour)| (name, colour)).collect()
+    }
+
+    fn key(
+        &self,
+        canvas: &mut Canvas,
+        from: At,
+        layout: KeyLayout,
+        shown: impl Fn(&str) -> String,
+    ) {
+        let names: Vec<_> = self.attractors.iter().map(|it| shown(&it.name)).collect();
+        let attractors = self.attractors.iter().zip(&names).map(|(shown, name)| {
+            let (light, dark) = shown.colours();
+            KeyItem::new(name, move |canvas, at| {
+                swatch(canvas, at, light);
+                canvas.marker(Marker::Circle, (at.0 + 13.0, at.1), 5.0, dark);
+            })
         });
-        key(canvas, KEY, KeyLayout::Column(40.0), TEXT - 3.0, attractors.chain(others));
+        let others = self
+            .others()
+            .into_iter()
+            .map(|(name, colour)| KeyItem::new(name, move |canvas, at| swatch(canvas, at, colour)));
+        key(canvas, from, layout, KEY_TEXT, attractors.chain(others));
     }
 }
 

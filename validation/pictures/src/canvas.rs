@@ -112,11 +112,26 @@ fn style(colour: Colour, width: f64) -> ShapeStyle {
     RGBColor::from(colour).stroke_width(units(width).unsigned_abs())
 }
 
+/// The size of a canvas in pixels, and where it is printed in millimetres.
+#[derive(Clone, Copy)]
+pub(super) struct Sheet {
+    pub(super) size: (u32, u32),
+    pub(super) size_mm: Option<[f64; 2]>,
+}
+
 impl Canvas {
     pub(super) fn new(size: (u32, u32), letters: Letters) -> Self {
+        Self::on(Sheet { size, size_mm: None }, letters)
+    }
+
+    pub(super) fn on(sheet: Sheet, letters: Letters) -> Self {
+        let size = sheet.size;
         let mut canvas = Self { size, svg: String::new(), letters };
-        let (width, height) = size;
-        let to = place((f64::from(width), f64::from(height)));
+        let to = place((f64::from(size.0), f64::from(size.1)));
+        let [width, height] = match sheet.size_mm {
+            Some(size_mm) => size_mm.map(|it| format!("{it}mm")),
+            None => [size.0, size.1].map(|it| it.to_string()),
+        };
         canvas.add(format_args!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
              viewBox=\"0 0 {} {}\" stroke-linejoin=\"round\">",
@@ -144,6 +159,11 @@ impl Canvas {
         self.add(format_args!("<g {attribute}>"));
         draw(self);
         self.add(format_args!("</g>"));
+    }
+
+    /// Draws larger or smaller by a factor.
+    pub(super) fn scaled(&mut self, factor: f64, draw: impl FnOnce(&mut Self)) {
+        self.with(format_args!("transform=\"scale({factor})\""), draw);
     }
 
     fn add(&mut self, element: fmt::Arguments<'_>) {

@@ -138,6 +138,12 @@ impl Panel {
     }
 
     pub fn draw(&self, canvas: &mut Canvas, below: &str, beside: &str) {
+        self.grid(canvas);
+        self.draw_over(canvas, below, beside);
+    }
+
+    /// Draws lines across at the ticks.
+    pub fn grid(&self, canvas: &mut Canvas) {
         let (from, to) = (self.from, self.to);
         for (placed, _) in &self.x.ticks {
             let x = from.0 + self.x.fraction(*placed) * (to.0 - from.0);
@@ -147,11 +153,20 @@ impl Panel {
             let y = to.1 - self.y.fraction(*placed) * (to.1 - from.1);
             canvas.line((from.0, y), (to.0, y), 1.0, palette::GRID);
         }
-        self.draw_over(canvas, below, beside);
     }
 
     /// Frame, labels and names without lines across: what is drawn already stays.
     pub fn draw_over(&self, canvas: &mut Canvas, below: &str, beside: &str) {
+        self.draw_named(canvas, (below, 52.0), (beside, 96.0));
+    }
+
+    /// Frame, labels and names, which stand so far below the panel and beside it.
+    pub fn draw_named(
+        &self,
+        canvas: &mut Canvas,
+        (below, down): (&str, f64),
+        (beside, left): (&str, f64),
+    ) {
         let (from, to) = (self.from, self.to);
         for (placed, label) in &self.x.ticks {
             let x = from.0 + self.x.fraction(*placed) * (to.0 - from.0);
@@ -164,9 +179,9 @@ impl Panel {
             canvas.text(label, (from.0 - 10.0, y), TEXT, TextSide::Right, palette::INK);
         }
         canvas.frame(from, to);
-        let middle = ((from.0 + to.0) / 2.0, to.1 + 52.0);
+        let middle = ((from.0 + to.0) / 2.0, to.1 + down);
         canvas.text(below, middle, TEXT + 2.0, TextSide::Middle, palette::INK);
-        canvas.upright(beside, (from.0 - 96.0, (from.1 + to.1) / 2.0), TEXT + 2.0);
+        canvas.upright(beside, (from.0 - left, (from.1 + to.1) / 2.0), TEXT + 2.0);
     }
 }
 

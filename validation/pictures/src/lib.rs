@@ -10,6 +10,7 @@ mod colour;
 mod curves;
 mod encounter;
 mod figure;
+mod fitted;
 mod font;
 mod frame;
 mod heat_map;
@@ -19,6 +20,7 @@ mod look;
 mod motion;
 mod palette;
 mod piece;
+mod print;
 mod simplify;
 mod system_motion;
 
@@ -35,7 +37,8 @@ pub use histograms::{HistogramRow, Histograms};
 pub use look::{Look, Marker, looks};
 pub use motion::DrawnMotion;
 pub use piece::MotionPiece;
-pub use system_motion::{MOST_STATES, SystemMotion};
+pub use print::{LAYOUT_DPI, Print, USUAL_DPI};
+pub use system_motion::{MOST_STATES, SampledSegment, SystemMotion, sampled};
 
 use canvas::Letters;
 use resvg::tiny_skia::{Pixmap, Transform};
@@ -45,6 +48,12 @@ use resvg::usvg::{self, Tree};
 #[must_use]
 pub const fn phase_colour(phase: percuss::Phase) -> Colour {
     palette::phase(phase)
+}
+
+/// The colour of the motion in a mode of a system.
+#[must_use]
+pub fn mode_colour(mode: usize) -> Colour {
+    palette::mode(mode).0
 }
 
 /// The colour of text.
@@ -71,7 +80,25 @@ pub trait Drawing {
 
     /// Draws on a canvas of the picture's size.
     fn draw(&self, canvas: &mut Canvas);
+
+    /// The smallest size at which [`Drawing::draw_within`] is legible, in pixels of the layout.
+    fn least_size(&self) -> (u32, u32) {
+        let (width, height) = self.size();
+        let least = |it: u32| (f64::from(it) * LEAST_SCALE).ceil() as u32;
+        (least(width), least(height))
+    }
+
+    /// Draws on a canvas of another size: the whole picture, larger or smaller, unless its layout
+    /// has a better way.
+    fn draw_within(&self, canvas: &mut Canvas, size: (u32, u32)) {
+        let own = self.size();
+        let scales = [f64::from(size.0) / f64::from(own.0), f64::from(size.1) / f64::from(own.1)];
+        canvas.scaled(scales[0].min(scales[1]), |canvas| self.draw(canvas));
+    }
 }
+
+/// The scale at which letters of a whole picture are as small as those of a formula's indices.
+const LEAST_SCALE: f64 = 0.7;
 
 /// A drawing as an SVG.
 #[must_use]
@@ -86,11 +113,20 @@ pub fn svg(drawing: &impl Drawing) -> String {
 pub fn png(drawing: &impl Drawing) -> Result<Vec<u8>, DrawError> {
     // The library's own fonts would triple the time that it takes to compile.
     let svg = drawn(drawing, Letters::Outlines);
-    let tree = Tree::from_str(&svg, &usvg::Options::default()).map_err(DrawError::new)?;
-    let (width, height) = drawing.size();
+    rendered(&svg, drawing.size(), (1.0, 1.0))
+}
+
+/// An SVG in so many pixels across and down, each of its own being so many of these.
+fn rendered(
+    svg: &str,
+    (width, height): (u32, u32),
+    scale: (f64, f64),
+) -> Result<Vec<u8>, DrawError> {
+    let tree = Tree::from_str(svg, &usvg::Options::default()).map_err(DrawError::new)?;
     let no_area = || DrawError::new("it has no area");
     let mut pixels = Pixmap::new(width, height).ok_or_else(no_area)?;
-    resvg::render(&tree, Transform::identity(), &mut pixels.as_mut());
+    let transform = Transform::from_scale(scale.0 as f32, scale.1 as f32);
+    resvg::render(&tree, transform, &mut pixels.as_mut());
     pixels.encode_png().map_err(DrawError::new)
 }
 

@@ -1,9 +1,10 @@
 //! The layers of a figure's panel.
 
 use super::super::canvas::{At, Canvas, Stroke, TextSide};
+use super::super::colour::WHITE;
 use super::super::frame::Panel;
 use super::super::key::{KeyItem, KeyLayout, key};
-use super::super::{Colour, palette};
+use super::super::{Colour, font, palette};
 
 /// Cells of equal size over a window, coloured by label.
 #[derive(Clone, Debug)]
@@ -50,6 +51,15 @@ pub enum Layer {
         /// The colour of the words.
         colour: Colour,
     },
+    /// A mark with a name beside it, on the side that has the room.
+    Named {
+        /// The place.
+        at: [f64; 2],
+        /// The name.
+        name: String,
+        /// The colour of both.
+        colour: Colour,
+    },
     /// The panel's key, above it where it hides nothing: names in a row.
     Key(Vec<KeyEntry>),
 }
@@ -66,6 +76,8 @@ pub struct KeyEntry {
 }
 
 const TEXT: f64 = 18.0;
+/// Half the width of a mark that has a name.
+const NAMED: f64 = 4.5;
 
 impl Layer {
     /// Points as small as their number asks for: few are drawn so that they show.
@@ -97,6 +109,7 @@ impl Layer {
             }
             Self::Raster(raster) => vec![raster.window[axis].0, raster.window[axis].1],
             Self::Guide(x) if axis == 0 => vec![*x],
+            Self::Named { at, .. } => vec![at[axis]],
             _ => Vec::new(),
         }
     }
@@ -125,18 +138,38 @@ impl Layer {
                     canvas.text(text, (at.0 + 8.0, at.1 - 12.0), TEXT, TextSide::Left, *colour);
                 }
             }
+            Self::Named { at, name, colour } => {
+                if let Some(at) = panel.at((at[0], at[1])) {
+                    named(canvas, at, name, *colour, panel.to.0);
+                }
+            }
             Self::Key(entries) => {
-                let from = (panel.from.0, panel.from.1 - 18.0);
-                let items = entries
-                    .iter()
-                    .map(|entry| KeyItem::new(&entry.name, |canvas, at| entry.sample(canvas, at)));
-                key(canvas, from, KeyLayout::Row, TEXT, items);
+                KeyEntry::draw_row(entries, canvas, (panel.from.0, panel.from.1 - 18.0));
             }
         }
     }
 }
 
+/// Draws a mark and its name, on white, up to the right edge of the panel.
+fn named(canvas: &mut Canvas, (x, y): At, name: &str, colour: Colour, right: f64) {
+    canvas.fill((x - NAMED, y - NAMED), (x + NAMED, y + NAMED), colour);
+    let (width, up) = (font::width(name, TEXT), y - 16.0);
+    let left = if x + 10.0 + width > right { x - 10.0 - width } else { x + 10.0 };
+    if !name.is_empty() {
+        canvas.fill((left - 2.0, up - 9.0), (left + width + 2.0, up + 9.0), WHITE);
+    }
+    canvas.text(name, (left, up), TEXT, TextSide::Left, colour);
+}
+
 impl KeyEntry {
+    /// Draws entries beside each other, from the place of the first sample on.
+    pub(super) fn draw_row(entries: &[Self], canvas: &mut Canvas, from: At) {
+        let items = entries
+            .iter()
+            .map(|entry| KeyItem::new(&entry.name, |canvas, at| entry.sample(canvas, at)));
+        key(canvas, from, KeyLayout::Row, TEXT, items);
+    }
+
     fn sample(&self, canvas: &mut Canvas, (x, y): At) {
         match self.stroke {
             None => canvas.fill((x + 24.0, y - 4.0), (x + 32.0, y + 4.0), self.colour),

@@ -1,5 +1,6 @@
 //! A figure: panels of layers under a title, with a caption; what the paper's figures are drawn as.
 
+mod fitted;
 mod layer;
 mod plot;
 
@@ -70,6 +71,23 @@ impl Figure {
 }
 
 impl Drawing for Figure {
+    fn least_size(&self) -> (u32, u32) {
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let (columns, rows) = (count(self.columns.max(1)), count(self.rows()));
+        (fitted::LEAST.0.saturating_mul(columns), fitted::LEAST.1.saturating_mul(rows))
+    }
+
+    /// Draws the panels alone: a paper has its own caption.
+    fn draw_within(&self, canvas: &mut Canvas, size: (u32, u32)) {
+        let columns = self.columns.max(1);
+        let width = f64::from(size.0) / columns as f64;
+        let height = f64::from(size.1) / self.rows().max(1) as f64;
+        for (i, plot) in self.plots.iter().enumerate() {
+            let corner = (width * (i % columns) as f64, height * (i / columns) as f64);
+            plot.draw_within(canvas, corner, (width, height));
+        }
+    }
+
     fn size(&self) -> (u32, u32) {
         let (width, height) = self.size_of_panels();
         let lines = u32::try_from(self.lines().len()).unwrap_or(u32::MAX);

@@ -2,7 +2,7 @@
 
 use super::super::canvas::{At, Canvas, TextSide};
 use super::super::frame::{AxisScale, Panel, Ruler};
-use super::super::palette;
+use super::super::{axes::around, palette};
 use super::layer::Layer;
 
 /// The window of a panel; where an end is not finite the data decide.
@@ -32,29 +32,37 @@ impl Plot {
         let from = (corner.0 + LEFT, corner.1 + TOP);
         let to = (corner.0 + width - RIGHT, corner.1 + height - BOTTOM);
         canvas.text(&self.title, (from.0, from.1 - 18.0), TEXT, TextSide::Left, palette::INK);
-        let ruler = |axis: usize| match self.window {
-            Some(window) => {
-                let (from, to) = window[axis];
-                (from < to).then(|| Ruler::between(from, to))
-            }
-            None => {
-                let all = self.layers.iter().flat_map(|layer| layer.extent(axis));
-                Ruler::over(AxisScale::Linear, all)
-            }
-        };
-        let (Some(x), Some(y)) = (ruler(0), ruler(1)) else {
+        let (Some(x), Some(y)) = (self.ruler(0), self.ruler(1)) else {
             return canvas.text("nothing to show", from, TEXT, TextSide::Left, palette::INK);
         };
         let panel = Panel { from, to, x, y };
+        let [below, beside] = &self.axes;
+        self.fill(canvas, &panel, |canvas| panel.draw_over(canvas, below, beside));
+    }
+
+    /// The axis of the panel: over its window, and where that has no end over the data.
+    pub(super) fn ruler(&self, axis: usize) -> Option<Ruler> {
+        let all = || self.layers.iter().flat_map(|layer| layer.extent(axis));
+        let Some(window) = self.window else { return Ruler::over(AxisScale::Linear, all()) };
+        let (mut from, mut to) = window[axis];
+        if !from.is_finite() || !to.is_finite() {
+            let range = around(all());
+            from = if from.is_finite() { from } else { range.start };
+            to = if to.is_finite() { to } else { range.end };
+        }
+        (from < to).then(|| Ruler::between(from, to))
+    }
+
+    /// Draws the layers, with the frame between those that fill the panel and those above it.
+    pub(super) fn fill(&self, canvas: &mut Canvas, panel: &Panel, frame: impl FnOnce(&mut Canvas)) {
         let (below, above): (Vec<&Layer>, Vec<&Layer>) =
             self.layers.iter().partition(|layer| matches!(layer, Layer::Raster(_)));
         // A raster fills the panel: it would hide the grid.
-        below.iter().for_each(|layer| layer.draw(canvas, &panel));
+        below.iter().for_each(|layer| layer.draw(canvas, panel));
         if below.is_empty() {
-            panel.draw(canvas, &self.axes[0], &self.axes[1]);
-        } else {
-            panel.draw_over(canvas, &self.axes[0], &self.axes[1]);
+            panel.grid(canvas);
         }
-        above.iter().for_each(|layer| layer.draw(canvas, &panel));
+        frame(canvas);
+        above.iter().for_each(|layer| layer.draw(canvas, panel));
     }
 }

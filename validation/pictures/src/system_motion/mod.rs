@@ -14,7 +14,8 @@ use super::{Drawing, font, palette};
 use layout::Layout;
 use percuss::affine::{Event, Solver, System};
 use percuss::number::Number;
-use sampled::{Mark, SampledSegment, event_names, marks, pieces};
+pub use sampled::SampledSegment;
+use sampled::{Mark, event_names, marks, pieces};
 use std::collections::BTreeMap;
 
 /// The largest number of states that one picture shows.
@@ -33,6 +34,13 @@ const TITLE: f64 = 30.0;
 const KEY_ROOM: f64 = 70.0;
 /// The width of the curves.
 const CURVE: f64 = 2.0;
+
+/// The motion of a run between its events, with all states.
+#[must_use]
+pub fn sampled<T: Number>(solver: &Solver<T>, run: &[Event<T>]) -> Vec<SampledSegment> {
+    let all: Vec<usize> = (0..solver.system().states.len()).collect();
+    pieces(solver, run, &all)
+}
 
 /// A run ready to be drawn.
 pub struct SystemMotion {

@@ -16,8 +16,10 @@ const MOST_NAMES: usize = 12;
 const OTHERS: &str = "other events";
 
 /// The motion between two events: time and the states that are shown, several times.
-pub(super) struct SampledSegment {
+pub struct SampledSegment {
+    /// The mode of the motion.
     pub mode: usize,
+    /// Time and states, from the one event to the other.
     pub points: Vec<Vec<f64>>,
 }
 
