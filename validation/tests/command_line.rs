@@ -66,7 +66,7 @@ fn flags_are_those_of_the_program() {
     command.build();
     let shared = flags(&Command::new("shared").args(command.get_arguments().cloned()));
     let model = command.find_subcommand("simulate").expect("a verb");
-    let common = ["Model and start", "SYSTEM and its start"];
+    let common = ["Model and start", "SYSTEM and its start", "Pictures"];
     let model = model
         .get_arguments()
         .filter(|it| it.get_help_heading().is_some_and(|heading| common.contains(&heading)));

@@ -264,7 +264,7 @@ fn what_is_not_accepted_is_one_line() {
         (poincare(&["--section", "nan"]), "--section"),
         (["poincare", "--transient", "999999999", "--periods", "2"].to_vec(), "1000000000"),
         (["poincare", "--transient", "1", "--periods", "0"].to_vec(), "--periods"),
-        (poincare(&["--output", "x.svg"]), "csv, npy, png"),
+        (poincare(&["--output", "x.xls"]), "csv, npy, npz, png, svg"),
         (
             ["poincare", "--transient", "1", "--periods", "5000001", "--format", "png"].to_vec(),
             "5000000",

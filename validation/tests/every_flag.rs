@@ -165,6 +165,12 @@ const ROWS: &[Row] = &[
     (&["attractors", "basins"], "--transient", INTEGERS, "1 to 10000000"),
     (&["attractors", "basins"], "--grid", &["", "x", "-5x5", "5", "1e3x1e3"], "NXxNY"),
     (&["attractors", "basins"], "--window", &["", "1,2", "1,0,0,1", "nan,1,0,1"], "pmin,pmax"),
+    (&[], "--size", &["", "80", "80x", "nanx60", "80x5000", "-80x60"], "WxH in millimetres"),
+    (&["reproduce"], "--size", WORDS, "default, full"),
+    (&[], "--dpi", NUMBERS, "accepted is a number, 30 to 2400"),
+    (&[], "--dpi", &["29", "2401", "-300"], "accepted is a number, 30 to 2400"),
+    (&[], "--range", &["", "1", "1,0", "0,1,2", "nan,1", "0,inf"], "LO,HI"),
+    (&[], "--show", &["x,v"], "png and svg"),
     (&["poincare"], "--section", NUMBERS, "-1e15 to 1e15"),
     (&["bifurcation"], "--steps", INTEGERS, "1 to 1000000"),
     (&["bifurcation", "continue"], "--parameter", WORDS, "a, b, xi, omega, g, phi"),
@@ -175,7 +181,6 @@ const ROWS: &[Row] = &[
     (&[], "--format", WORDS, "possible values"),
     (&["validate"], "--suite", WORDS, "quick, full"),
     (&["validate"], "--tolerance", NUMBERS, "accepted is a tolerance"),
-    (&["reproduce"], "--size", WORDS, "default, full"),
     (&["reproduce"], "--only", WORDS, "accepted are"),
     (&["bench", "bench record"], "--rounds", INTEGERS, "1 to 1000"),
     (&["bench compare"], "--slowdown", NUMBERS, "0 to 1"),
@@ -399,8 +404,49 @@ fn flags_without_effect() {
             &["--transient 1", "not forced", "--until"],
         ),
         (
-            vec!["simulate", "bouncing-ball", "--until", "1", "--format", "png"],
-            &["--format png", "npz", "events"],
+            vec!["simulate", "bouncing-ball", "--until", "1", "--format", "png", "--show", "x - w"],
+            &["--show \"x - w\"", "w is not known", "x, v"],
+        ),
+        (
+            vec!["simulate", "bouncing-ball", "--until", "1", "--format", "png", "--show", "x,v,x"],
+            &["--show x,v,x", "one or two"],
+        ),
+        (
+            [&RIG[..], &["--returns", "2", "--format", "png", "--show", "x,v"]].concat(),
+            &["--show x,v", "one expression"],
+        ),
+        ([&RIG[..], &["--returns", "2", "--size", "80x60"]].concat(), &["--size 80x60", "png"]),
+        (
+            [&RIG[..], &["--returns", "2", "--format", "svg", "--dpi", "300"]].concat(),
+            &["--dpi 300", "png"],
+        ),
+        (
+            [&RIG[..], &["--returns", "2", "--format", "png", "--size", "20x20"]].concat(),
+            &["--size 20x20", "too small", "at least 35 x 29 mm"],
+        ),
+        (
+            vec!["simulate", "--periods", "1", "--format", "png", "--range", "0,1"],
+            &["--range 0,1", "with SYSTEM"],
+        ),
+        (
+            vec!["simulate", "--periods", "1", "--format", "png", "--show", "p,y"],
+            &["--show p,y", "without SYSTEM"],
+        ),
+        (
+            vec!["poincare", "--transient", "1", "--periods", "1", "--format", "npz"],
+            &["npz", "without SYSTEM", "npy"],
+        ),
+        (
+            [&RIG[..], &["--returns", "2", "--output", "a.png", "--output", "./a.png"]].concat(),
+            &["--output ./a.png", "given twice"],
+        ),
+        (
+            [&RIG[..], &["--returns", "2", "--output", "-", "--output", "-"]].concat(),
+            &["--output -", "given twice"],
+        ),
+        (
+            [&RIG[..], &["--returns", "2", "--output", "a.png", "--output", "a.xls"]].concat(),
+            &["--output a.xls", "csv, png, svg"],
         ),
         (SECTION.to_vec(), &["--periods 3", "--returns"]),
         ([&RELAY[..], &["--section", "0.5"]].concat(), &["--section 0.5", "strobe:0.5"]),
@@ -443,7 +489,7 @@ fn flags_without_effect() {
         ),
         (
             [&basins[..], &["--output", "a", "--format", "png", "--format", "npz"]].concat(),
-            &["--format", "one of npz, png"],
+            &["--format", "one of npz, png, svg"],
         ),
         (
             [&["attractors"], &grid[..], &["--output", "a.json", "--format", "table"]].concat(),

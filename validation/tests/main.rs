@@ -38,6 +38,7 @@ mod motions_told;
 mod orbits;
 mod own_cases;
 mod past_accumulations;
+mod pictures;
 mod power;
 mod project;
 mod readme;

@@ -235,7 +235,7 @@ fn states_with_the_names_of_columns_keep_theirs_apart() {
 }
 
 /// An array of an archive, as its file.
-fn array(path: &Path, name: &str) -> Vec<u8> {
+pub fn array(path: &Path, name: &str) -> Vec<u8> {
     let file = std::fs::File::open(path).expect("a file");
     let mut archive = zip::ZipArchive::new(file).expect("an archive");
     let mut bytes = Vec::new();

@@ -209,6 +209,11 @@ Examples:
       a picture of forty forcing periods
   percuss simulate rigid-impact-oscillator --transient 500 --events 4
       any system, after 500 forcing periods
+  percuss simulate rigid-impact-oscillator --transient 500 \\
+      --returns 30 --show x-d,v --size 80x60 --output plane.png \\
+      --output plane.npz
+      its phase plane from the stop, for a column of a paper, and the
+      run's arrays
 
 Words:
   phase           no-contact (the mass flies), contact (it presses the
@@ -231,6 +236,10 @@ Examples:
   percuss poincare relay-feedback --section switch-up --transient 5 \\
       --returns 3
       a system's states just after an event
+  percuss poincare rigid-impact-oscillator --transient 500 \\
+      --returns 2000 --show x-d,v --output stop.svg \\
+      --output stop.csv
+      a picture and its data, of one run
 
 Words:
   strobe          the state once a forcing period, where the forcing
@@ -284,6 +293,10 @@ Examples:
       --from 0.2 --to 0.3 --steps 100 --transient 200 --returns 20 \\
       --output stops.png
       of a system, over any of its parameters
+  percuss bifurcation rigid-impact-oscillator --parameter d \\
+      --from 0.2 --to 0.3 --steps 100 --transient 200 --returns 20 \\
+      --show x-d --size 80x60 --output gap.png --output gap.csv
+      the distance from the stop, as a picture for a paper and as data
 
 Words:
   strobe          the state once a forcing period, where the forcing
@@ -385,6 +398,10 @@ Examples:
   percuss continue buck-converter --section clock --transient 200 \\
       --parameter Vin --from 24 --to 25 --period 1 --output buck.json
       a SYSTEM: where a converter's orbit doubles
+  percuss continue buck-converter --section clock --transient 200 \\
+      --parameter Vin --from 22 --to 26 --period 1 --show v-Vref \\
+      --size 80x60 --output doubling.png --output doubling.json
+      a picture of the branch, and its data
 
 Words:
   branch          the orbits that one orbit becomes as the parameter

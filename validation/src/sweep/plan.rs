@@ -13,7 +13,10 @@ const MOST_POINTS: u64 = 1 << 24;
 const MOST_SHARDS: u32 = 100_000;
 
 /// Flags of a verb that say where and how it writes, which the sweep decides.
-const NOT_FIXED: [&str; 7] = ["output", "format", "threads", "quiet", "color", "help", "version"];
+const NOT_FIXED: [&str; 11] = [
+    "output", "format", "show", "range", "size", "dpi", "threads", "quiet", "color", "help",
+    "version",
+];
 
 /// A plan as its file has it.
 #[derive(Clone, Debug, Deserialize)]

@@ -2,16 +2,15 @@
 
 use super::Survey;
 use crate::picture::{self, BASIN_COLOURS, BasinMap, ShownAttractor};
-use anyhow::Result;
 use percuss::dynamics::attractor::{Attractor, AttractorKind, Basins, Label};
 
-pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
+pub(super) fn map(survey: &Survey) -> BasinMap {
     let Survey { problem, limits, basins, .. } = survey;
     let transient = limits.transient;
     let grid = &basins.grid;
     let colours = colours(basins.attractors.iter().map(|it| it.kind));
     let shown = basins.attractors.iter().enumerate().zip(colours);
-    let map = BasinMap {
+    BasinMap {
         title: picture::caption(problem.model.parameters()),
         note: format!(
             "{} x {} starts at the centres of cells, q = {} or on the slider where p > q + g;\n\
@@ -23,8 +22,7 @@ pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
         columns: grid.columns as usize,
         cells: basins.labels.clone(),
         attractors: shown.map(|((id, it), colour)| shown_as(basins, id, it, colour)).collect(),
-    };
-    Ok(picture::png(&map)?)
+    }
 }
 
 /// The first chaotic attractor is orange on yellow, as in the paper; all others take the colours

@@ -7,11 +7,13 @@ mod system;
 mod table;
 
 use super::help;
-use super::shared::format::{self, OutputFlags};
+use super::shared::format::OutputFlags;
 use super::shared::long_work;
 use super::shared::model::ModelFlags;
 use super::shared::output::Destination;
+use super::shared::outputs::Outputs;
 use super::shared::parse::{self, MAX_TRANSIENT};
+use super::shared::picture::{PictureFormat, PrintFlags};
 use super::shared::section::{SectionFlags, without_system};
 use super::shared::system_choice::SystemChoice;
 use crate::case::Problem;
@@ -64,10 +66,13 @@ pub(super) struct BasinArguments {
     pub(super) grid: GridFlags,
     #[command(flatten)]
     section: SectionFlags,
-    /// Where the labels go; its extension (npz, png) is its format
+    /// Where the labels go; its extension (npz, png, svg) is its format. Given again, the same
+    /// labels go there, too
     #[arg(long, value_name = "FILE")]
-    output: Option<PathBuf>,
-    /// npz or png where --output has no extension; table or json for the attractors on stdout
+    output: Vec<PathBuf>,
+    #[command(flatten)]
+    print: PrintFlags,
+    /// npz, png or svg where --output has no extension; table or json for the attractors on stdout
     #[arg(long, value_enum)]
     format: Vec<BasinFormat>,
     #[command(flatten)]
@@ -100,13 +105,28 @@ pub(super) struct GridFlags {
 enum Labels {
     Npz,
     Png,
+    Svg,
 }
+
+impl Labels {
+    const fn picture(self) -> Option<PictureFormat> {
+        match self {
+            Self::Npz => None,
+            Self::Png => Some(PictureFormat::Png),
+            Self::Svg => Some(PictureFormat::Svg),
+        }
+    }
+}
+
+/// An SVG of more cells is not small.
+const MAX_SVG_CELLS: u64 = 250_000;
 
 /// What `basins --format` takes: one of the labels' formats, one of the attractors', or both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum BasinFormat {
     Npz,
     Png,
+    Svg,
     Json,
     Table,
 }
@@ -116,6 +136,7 @@ impl BasinFormat {
         match self {
             Self::Npz => Some(Labels::Npz),
             Self::Png => Some(Labels::Png),
+            Self::Svg => Some(Labels::Svg),
             Self::Json | Self::Table => None,
         }
     }
@@ -124,7 +145,7 @@ impl BasinFormat {
         match self {
             Self::Json => Some(AttractorFormat::Json),
             Self::Table => Some(AttractorFormat::Table),
-            Self::Npz | Self::Png => None,
+            Self::Npz | Self::Png | Self::Svg => None,
         }
     }
 }
@@ -151,38 +172,48 @@ pub(super) fn attractors(arguments: &AttractorArguments, threads: Option<u16>) -
 }
 
 pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result<()> {
-    let Some(output) = &arguments.output else {
-        bail!("--output is missing: accepted is a file that ends in .npz or .png");
-    };
-    if output.as_os_str() == "-" {
-        bail!(
-            "--output - is not accepted: stdout is for the attractors; accepted is a file that ends in .npz or .png"
-        );
-    }
-    let labels = only(&arguments.format, BasinFormat::of_labels)?;
+    let outputs = outputs_of_labels(arguments)?;
     let shown = only(&arguments.format, BasinFormat::of_attractors)?;
-    let labels = format::chosen(Some(output), labels, Labels::Npz)?;
-    let file = Destination::new(Some(output));
-    file.check()?;
     let shown = shown.unwrap_or(usual(&Destination::Stdout));
-    let BasinArguments { system, grid, section, model, .. } = arguments;
+    let BasinArguments { system, grid, section, model, print, .. } = arguments;
     if let Some(chosen) = system.chosen(model)? {
         let survey = system::Survey::of(&chosen, grid, section, threads)?;
-        let bytes = match labels {
-            Labels::Npz => survey.npz()?,
-            Labels::Png => survey.png()?,
-        };
-        file.write(|out| Ok(out.write_all(&bytes)?))?;
+        outputs.each(|format, out| match format.picture() {
+            None => Ok(out.write_all(&survey.npz()?)?),
+            Some(format) => print.write(&survey.map(), format, out),
+        })?;
         return survey.show(shown, &Destination::Stdout);
     }
     arguments.refuse_flags_of_system()?;
     let survey = arguments.grid.survey(&arguments.model, threads)?;
-    let bytes = match labels {
-        Labels::Npz => npz::bytes(&survey, &json::Json::of(&survey))?,
-        Labels::Png => draw::bytes(&survey)?,
-    };
-    file.write(|out| Ok(out.write_all(&bytes)?))?;
+    outputs.each(|format, out| match format.picture() {
+        None => Ok(out.write_all(&npz::bytes(&survey, &json::Json::of(&survey))?)?),
+        Some(format) => print.write(&draw::map(&survey), format, out),
+    })?;
     show(&survey, shown, &Destination::Stdout)
+}
+
+/// Where the labels go, at least one file.
+fn outputs_of_labels(arguments: &BasinArguments) -> Result<Outputs<Labels>> {
+    let paths = &arguments.output;
+    if paths.is_empty() {
+        bail!("--output is missing: accepted is a file that ends in .npz, .png or .svg");
+    }
+    if paths.iter().any(|it| it.as_os_str() == "-") {
+        bail!(
+            "--output - is not accepted: stdout is for the attractors; accepted is a file that \
+             ends in .npz, .png or .svg"
+        );
+    }
+    let labels = only(&arguments.format, BasinFormat::of_labels)?;
+    let outputs = Outputs::of(paths, labels, |_| Labels::Npz)?;
+    let pictures: Vec<_> = outputs.formats().filter_map(Labels::picture).collect();
+    arguments.print.check(&pictures)?;
+    let [columns, rows] = arguments.grid.grid;
+    if outputs.any(|it| it == Labels::Svg) && u64::from(columns) * u64::from(rows) > MAX_SVG_CELLS {
+        bail!("--grid {columns}x{rows} is not accepted for svg: at most {MAX_SVG_CELLS} cells are");
+    }
+    Ok(outputs)
 }
 
 /// The default format: a table on a terminal, JSON elsewhere.
@@ -195,7 +226,7 @@ fn only<F>(given: &[BasinFormat], kind: impl Fn(BasinFormat) -> Option<F>) -> Re
     let mut of_kind = given.iter().filter_map(|it| kind(*it));
     let first = of_kind.next();
     if of_kind.next().is_some() {
-        bail!("--format is given twice: accepted are one of npz, png and one of json, table");
+        bail!("--format is given twice: accepted are one of npz, png, svg and one of json, table");
     }
     Ok(first)
 }

@@ -5,10 +5,11 @@ mod system;
 
 use super::help;
 use super::note;
-use super::shared::format::OutputFlags;
 use super::shared::long_work;
 use super::shared::model::ModelFlags;
+use super::shared::outputs::{Outputs, OutputsFlags};
 use super::shared::parse::{self, MAX_PERIODS, Typed};
+use super::shared::picture::{PictureFlags, PictureFormat};
 use super::shared::section::{SectionFlags, without_system};
 use super::shared::system_choice::SystemChoice;
 use super::shared::terminal::endless_words;
@@ -60,7 +61,9 @@ pub(super) struct Arguments {
     #[command(flatten)]
     section: SectionFlags,
     #[command(flatten)]
-    output: OutputFlags<Format>,
+    output: OutputsFlags<Format>,
+    #[command(flatten)]
+    picture: PictureFlags,
     #[command(flatten)]
     pub(super) model: ModelFlags,
 }
@@ -79,22 +82,24 @@ const MAX_SVG: u64 = 20_000;
 
 /// Writes the diagram; whether the motion was decided to its end at every value.
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
-    let format = arguments.output.format(Format::Csv)?;
+    let outputs = arguments.output.outputs(|_| Format::Csv)?;
+    let pictures: Vec<_> = outputs.formats().filter_map(Format::picture).collect();
+    arguments.picture.check(&pictures)?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
-        return system::run(arguments, &chosen, format, threads);
+        return system::run(arguments, &chosen, &outputs, threads);
     }
+    arguments.picture.refuse_show()?;
     let diagram = diagram(arguments, &arguments.model)?;
     arguments.model.check_varied(diagram.parameter)?;
-    check_size(arguments, diagram.periods, format.most_rows())?;
+    check_size(arguments, diagram.periods, most_rows(&outputs))?;
     let bar = long_work::bar(u64::from(arguments.steps), "values");
     let steps = long_work::pool(threads)?.install(|| diagram.steps(|| bar.inc(1)));
     bar.finish_and_clear();
     let steps =
         steps.map_err(|error| anyhow!("--parameter {}: {error}", diagram.parameter.as_str()))?;
-    arguments.output.destination().write(|out| match format {
-        Format::Csv => write_csv(&steps, out),
-        Format::Png => Ok(out.write_all(&picture::png(&drawing(&diagram, &steps))?)?),
-        Format::Svg => Ok(out.write_all(picture::svg(&drawing(&diagram, &steps)).as_bytes())?),
+    outputs.each(|format, out| match format.picture() {
+        None => write_csv(&steps, out),
+        Some(format) => arguments.picture.write(drawing(&diagram, &steps), format, out),
     })?;
     tell_escapes(&diagram, &steps);
     tell_endless(&steps);
@@ -102,13 +107,18 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
 }
 
 impl Format {
-    /// The most rows, or points of a picture.
-    const fn most_rows(self) -> u64 {
+    const fn picture(self) -> Option<PictureFormat> {
         match self {
-            Self::Svg => MAX_SVG,
-            Self::Csv | Self::Png => MAX_ROWS,
+            Self::Csv => None,
+            Self::Png => Some(PictureFormat::Png),
+            Self::Svg => Some(PictureFormat::Svg),
         }
     }
+}
+
+/// The most rows, or points of a picture.
+fn most_rows(outputs: &Outputs<Format>) -> u64 {
+    if outputs.any(|it| it == Format::Svg) { MAX_SVG } else { MAX_ROWS }
 }
 
 impl Arguments {

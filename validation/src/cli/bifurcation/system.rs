@@ -1,15 +1,17 @@
 //! `bifurcation SYSTEM`: the returns to a section at each value of a parameter.
 
-use super::{Arguments, Format, check_size, told_start};
+use super::{Arguments, Format, check_size, most_rows, told_start};
 use crate::cli::note;
 use crate::cli::shared::long_work;
+use crate::cli::shared::outputs::Outputs;
+use crate::cli::shared::picture::{Shown, place};
 use crate::cli::shared::section::{is_told_by_model, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::number::shortest;
 use crate::picture::{self, Figure, Layer, Plot};
 use anyhow::{Result, anyhow, bail};
 use percuss::System;
-use percuss::affine::{LeftOut, ReturnDiagram, ReturnDiagramStep, Solver};
+use percuss::affine::{LeftOut, Return, ReturnDiagram, ReturnDiagramStep, Solver};
 use percuss::dynamics::diagram::{Follow, values};
 use percuss_programs::files::printed_column;
 use std::io::Write;
@@ -18,11 +20,14 @@ use std::io::Write;
 pub(super) fn run(
     arguments: &Arguments,
     chosen: &ChosenSystem,
-    format: Format,
+    outputs: &Outputs<Format>,
     threads: Option<u16>,
 ) -> Result<bool> {
-    let returns = returns(arguments, format)?;
+    let returns = returns(arguments, outputs)?;
     let system = chosen.system()?;
+    let shown = arguments.picture.shown(1)?;
+    let shown = shown.unwrap_or_else(|| Shown::first_states(&system.states, 1));
+    shown.observables(&chosen.file)?;
     // Flags that do not fit the system are told as such, before any value is.
     chosen.file.clone().set(&arguments.parameter, arguments.from.value, "--parameter")?;
     arguments.section.map(&Solver::new(&system)?)?;
@@ -39,18 +44,20 @@ pub(super) fn run(
     });
     bar.finish_and_clear();
     let steps = steps.map_err(|error| anyhow!("--parameter {}: {error}", arguments.parameter))?;
-    let drawing = || drawing(arguments, &system, &diagram, &steps);
-    arguments.output.destination().write(|out| match format {
-        Format::Csv => write_csv(&system, &steps, out),
-        Format::Png => Ok(out.write_all(&picture::png(&drawing())?)?),
-        Format::Svg => Ok(out.write_all(picture::svg(&drawing()).as_bytes())?),
+    outputs.each(|format, out| match format.picture() {
+        None => write_csv(&system, &steps, out),
+        Some(format) => {
+            let points = points(chosen, &arguments.parameter, &shown, &steps)?;
+            let figure = drawing(arguments, &system.name, &shown, &diagram, &steps, points);
+            arguments.picture.write(figure, format, out)
+        }
     })?;
     tell_undecidable(steps.iter().map(|it| it.undecidable).sum());
     Ok(tell_left_out(&arguments.parameter, diagram.follow, &steps))
 }
 
 /// The number of returns that are shown at each value; refuses flags that do not fit.
-fn returns(arguments: &Arguments, format: Format) -> Result<u32> {
+fn returns(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<u32> {
     if let Some(periods) = arguments.periods {
         bail!("--periods {periods} is not accepted with SYSTEM: --returns is");
     }
@@ -62,7 +69,7 @@ fn returns(arguments: &Arguments, format: Format) -> Result<u32> {
     }
     arguments.check_steps()?;
     arguments.system.check_varied(&arguments.parameter)?;
-    check_size(arguments, returns, format.most_rows())?;
+    check_size(arguments, returns, most_rows(outputs))?;
     Ok(returns)
 }
 
@@ -86,26 +93,41 @@ fn write_csv(system: &System, steps: &[ReturnDiagramStep], out: &mut dyn Write) 
     Ok(())
 }
 
-/// The first state over the parameter.
+/// What is shown of all points, over the parameter, on which it may depend itself.
+fn points(
+    chosen: &ChosenSystem,
+    parameter: &str,
+    shown: &Shown,
+    steps: &[ReturnDiagramStep],
+) -> Result<Vec<[f64; 2]>> {
+    let mut file = chosen.file.clone();
+    let mut points = Vec::new();
+    for step in steps {
+        file.set(parameter, step.value, "--parameter")?;
+        let observables = shown.observables(&file)?;
+        let of = |it: &Return<f64>| place(&observables, step.value, it.time, &it.state);
+        points.extend(step.points.iter().map(of));
+    }
+    Ok(points)
+}
+
 fn drawing(
     arguments: &Arguments,
-    system: &System,
+    name: &str,
+    shown: &Shown,
     diagram: &ReturnDiagram,
     steps: &[ReturnDiagramStep],
+    points: Vec<[f64; 2]>,
 ) -> Figure {
-    let points = |step: &ReturnDiagramStep| {
-        let point = |state: &Vec<f64>| state.first().map(|it| [step.value, *it]);
-        step.points.iter().filter_map(|it| point(&it.state)).collect::<Vec<_>>()
-    };
     let parameter = &arguments.parameter;
-    let axes = [parameter.clone(), system.states.first().cloned().unwrap_or_default()];
+    let axes = shown.axes(parameter);
     let left_out = match steps.iter().filter(|it| it.left_out.is_some()).count() {
         0 => String::new(),
         count => format!("; {count} values are left out"),
     };
-    let layers = vec![Layer::cloud(steps.iter().flat_map(points).collect(), picture::INK)];
+    let layers = vec![Layer::cloud(points, picture::INK)];
     Figure {
-        title: system.name.clone(),
+        title: name.to_owned(),
         caption: format!(
             "{} values of {parameter}, {} returns to {} each after {}; {}{left_out}",
             steps.len(),

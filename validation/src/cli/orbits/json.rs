@@ -136,7 +136,7 @@ pub(crate) struct Special {
     pub(crate) value: f64,
     pub(crate) error: f64,
     period: u32,
-    point: StrobePoint,
+    pub(crate) point: StrobePoint,
     multipliers: [[f64; 2]; 3],
     multipliers_beyond: Option<[[f64; 2]; 3]>,
     turns: bool,

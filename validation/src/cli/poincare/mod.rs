@@ -1,13 +1,16 @@
 //! `poincare`: a stroboscopic section, or of a SYSTEM any other, as a table, an array or a picture.
 
+mod sinks;
 mod system;
 
 use super::help;
 use super::note;
-use super::shared::format::OutputFlags;
 use super::shared::long_work::{self, Bar};
 use super::shared::model::ModelFlags;
+use super::shared::output::Opened;
+use super::shared::outputs::{Outputs, OutputsFlags};
 use super::shared::parse::{self, MAX_PERIODS, SectionChoice, Typed};
+use super::shared::picture::{PictureFlags, PictureFormat};
 use super::shared::progress::Progress;
 use super::shared::section::{ReturnFlags, without_system};
 use super::shared::system_choice::SystemChoice;
@@ -20,6 +23,7 @@ use clap::{ArgGroup, Args, ValueEnum};
 use npyz::WriterBuilder;
 use percuss::dynamics::section::Section;
 use percuss::{Entry, Instant};
+use sinks::{All, Collected, Lines, Point, Sink};
 use std::io::Write;
 
 /// Print the section of one motion: of the impact oscillator, or of a SYSTEM
@@ -49,7 +53,9 @@ pub(super) struct Arguments {
     #[command(flatten)]
     section_of_system: ReturnFlags,
     #[command(flatten)]
-    output: OutputFlags<Format>,
+    output: OutputsFlags<Format>,
+    #[command(flatten)]
+    picture: PictureFlags,
     #[command(flatten)]
     model: ModelFlags,
 }
@@ -58,47 +64,84 @@ pub(super) struct Arguments {
 enum Format {
     Csv,
     Npy,
+    Npz,
     Png,
+    Svg,
+}
+
+impl Format {
+    const fn picture(self) -> Option<PictureFormat> {
+        match self {
+            Self::Csv | Self::Npy | Self::Npz => None,
+            Self::Png => Some(PictureFormat::Png),
+            Self::Svg => Some(PictureFormat::Svg),
+        }
+    }
 }
 
 /// A picture of more points shows no more.
 const MAX_PICTURE: u64 = 5_000_000;
+/// An SVG of more points is not small.
+const MAX_SVG: u64 = 20_000;
+
+/// Refuses a picture of more points than show anything, or than stay small.
+fn check_size(outputs: &Outputs<Format>, flag: &str, count: u64) -> Result<()> {
+    let is_picture = outputs.any(|it| it.picture().is_some());
+    for (is_drawn, most, kind) in [
+        (is_picture, MAX_PICTURE, "a picture"),
+        (outputs.any(|it| it == Format::Svg), MAX_SVG, "svg"),
+    ] {
+        if is_drawn && count > most {
+            bail!("{flag} {count} is not accepted for {kind}: at most {most}");
+        }
+    }
+    Ok(())
+}
 
 /// Writes the section; whether the motion was decided to its end.
 pub(super) fn run(arguments: &Arguments) -> Result<bool> {
-    let format = arguments.output.format(Format::Csv)?;
+    let outputs = arguments.output.outputs(|_| Format::Csv)?;
+    let pictures: Vec<_> = outputs.formats().filter_map(Format::picture).collect();
+    arguments.picture.check(&pictures)?;
     match (arguments.system.chosen(&arguments.model)?, arguments.periods, arguments.returns) {
         (Some(_), Some(periods), _) => {
             bail!("--periods {periods} is not accepted with SYSTEM: --returns is")
         }
         (Some(chosen), None, returns) => {
             let count = returns.unwrap_or(1);
-            system::check_size(format, count)?;
-            system::run(arguments, &chosen, format, count)
+            check_size(&outputs, "--returns", count)?;
+            system::run(arguments, &chosen, &outputs, count)
         }
-        (None, Some(periods), _) => run_oscillator(arguments, format, periods),
+        (None, Some(periods), _) => run_oscillator(arguments, &outputs, periods),
         (None, None, returns) => bail!("{}", without_system("--returns", &returns.unwrap_or(1))),
     }
 }
 
-fn run_oscillator(arguments: &Arguments, format: Format, periods: u64) -> Result<bool> {
+fn run_oscillator(arguments: &Arguments, outputs: &Outputs<Format>, periods: u64) -> Result<bool> {
     arguments.section_of_system.refuse()?;
+    arguments.picture.refuse_show()?;
+    if outputs.any(|it| it == Format::Npz) {
+        bail!("npz is not accepted without SYSTEM: csv, npy, png and svg are");
+    }
     let angle = angle(arguments)?;
     let problem = arguments.model.problem()?;
     long_work::check_horizon(arguments.transient, periods)?;
-    if format == Format::Png && periods > MAX_PICTURE {
-        bail!("--periods {periods} is not accepted for a picture: at most {MAX_PICTURE}");
-    }
-    let destination = arguments.output.destination();
-    let bar = long_work::run_bar(destination.is_terminal());
+    check_size(outputs, "--periods", periods)?;
+    let bar = long_work::run_bar(outputs.is_terminal());
     let section = ShownSection::new(arguments.transient, angle, periods, &problem);
     let progress = section.progress(bar);
     let (mut last, mut count) = (problem.entry, 0);
-    let strobes = section.strobes(&progress).inspect(|strobe| (last, count) = (*strobe, count + 1));
-    destination.write(|out| match format {
-        Format::Csv => write_csv(strobes, out),
-        Format::Npy => write_rows(strobes.map(|it| row(&it)), [periods, 4], undecidable, out),
-        Format::Png => draw(strobes, &problem, &section, arguments.transient, out),
+    outputs.together(|opened| {
+        let sinks = opened
+            .iter_mut()
+            .map(|(format, out)| sink(*format, out, arguments, &section, &problem));
+        let mut all = All(sinks.collect::<Result<_>>()?);
+        section.strobes(&progress).try_for_each(|strobe| {
+            let point = Point { n: count, time: 0.0, mode: 0, state: &row(&strobe) };
+            (last, count) = (strobe, count + 1);
+            all.point(&point)
+        })?;
+        all.finish()
     })?;
     drop(progress);
     if count < periods {
@@ -166,62 +209,84 @@ fn row(strobe: &Entry) -> [f64; 4] {
     [p, y, q, strobe.v()]
 }
 
-fn write_csv(strobes: impl Iterator<Item = Entry>, out: &mut dyn Write) -> Result<()> {
-    writeln!(out, "n,p,y,q,v")?;
-    for (n, strobe) in strobes.enumerate() {
-        let [p, y, q, v] = row(&strobe).map(shortest);
-        writeln!(out, "{n},{p},{y},{q},{v}")?;
-    }
-    Ok(())
+/// An output of a section of the impact oscillator.
+fn sink<'s>(
+    format: Format,
+    out: &'s mut Opened,
+    arguments: &'s Arguments,
+    section: &'s ShownSection<'s>,
+    problem: &'s Problem,
+) -> Result<Box<dyn Sink + 's>> {
+    Ok(match format.picture() {
+        Some(format) => Box::new(Collected {
+            out,
+            of: Box::new(|it| [it.state[0], it.state[1]]),
+            points: Vec::new(),
+            write: Box::new(move |points, out| {
+                let figure = drawing(problem, section, arguments.transient, points);
+                arguments.picture.write(figure, format, out)
+            }),
+        }),
+        None if format == Format::Npy => Box::new(Rows::new(out, [section.count, 4])?),
+        None => {
+            writeln!(out, "n,p,y,q,v")?;
+            Box::new(Lines { out, line: Box::new(line) })
+        }
+    })
 }
 
-/// Writes rows as an array of this shape; `cut` says why there are no more than a number of them.
-fn write_rows(
-    rows: impl Iterator<Item: IntoIterator<Item = f64>>,
-    shape: [u64; 2],
-    cut: impl FnOnce(u64) -> String,
-    out: &mut dyn Write,
-) -> Result<()> {
-    let options = npyz::WriteOptions::<f64>::new().default_dtype().shape(&shape);
-    let mut writer = options.writer(out).begin_nd()?;
-    let mut written = 0;
-    for row in rows {
-        writer.extend(row)?;
-        written += 1;
-    }
-    // The shape stands at the beginning of the file.
-    if written < shape[0] {
-        bail!("{}; --format csv writes them", cut(written));
-    }
-    Ok(writer.finish()?)
+fn line(point: &Point<'_>) -> String {
+    let numbers = point.state.iter().map(|it| shortest(*it));
+    std::iter::once(point.n.to_string()).chain(numbers).collect::<Vec<_>>().join(",")
 }
 
-fn draw(
-    strobes: impl Iterator<Item = Entry>,
+/// An array whose shape is known before its rows are.
+struct Rows<'a> {
+    writer: Option<npyz::NpyWriter<f64, &'a mut Opened>>,
+    written: u64,
+    count: u64,
+}
+
+impl<'a> Rows<'a> {
+    fn new(out: &'a mut Opened, shape: [u64; 2]) -> Result<Self> {
+        let options = npyz::WriteOptions::<f64>::new().default_dtype().shape(&shape);
+        let writer = Some(options.writer(out).begin_nd()?);
+        Ok(Self { writer, written: 0, count: shape[0] })
+    }
+}
+
+impl Sink for Rows<'_> {
+    fn point(&mut self, point: &Point<'_>) -> Result<()> {
+        self.written += 1;
+        Ok(self.writer.iter_mut().try_for_each(|it| it.extend(point.state.iter().copied()))?)
+    }
+
+    fn finish(&mut self) -> Result<()> {
+        // The shape stands at the beginning of the file.
+        if self.written < self.count {
+            bail!("{}; --format csv writes them", undecidable(self.written));
+        }
+        Ok(self.writer.take().map_or(Ok(()), npyz::NpyWriter::finish)?)
+    }
+}
+
+fn drawing(
     problem: &Problem,
     section: &ShownSection<'_>,
     transient: u64,
-    out: &mut dyn Write,
-) -> Result<()> {
-    let points = strobes.map(|strobe| [strobe.state.p, strobe.state.y]).collect();
+    points: Vec<[f64; 2]>,
+) -> Figure {
     let caption = format!(
         "{} points at \u{3c9}\u{3c4} mod 2\u{3c0} = {}, after {} forcing periods",
         section.count, section.angle, transient
     );
     let axes = ["p (displacement)".to_owned(), "y (velocity)".to_owned()];
-    draw_points(picture::caption(problem.model.parameters()), caption, axes, points, out)
+    figure(picture::caption(problem.model.parameters()), caption, axes, points)
 }
 
-/// Writes a picture of points of a section.
-fn draw_points(
-    title: String,
-    caption: String,
-    axes: [String; 2],
-    points: Vec<[f64; 2]>,
-    out: &mut dyn Write,
-) -> Result<()> {
+/// A picture of points of a section.
+fn figure(title: String, caption: String, axes: [String; 2], points: Vec<[f64; 2]>) -> Figure {
     let layers = vec![Layer::cloud(points, picture::INK)];
     let plots = vec![Plot { title: String::new(), axes, window: None, layers }];
-    let figure = Figure { title, caption, columns: 1, panel: (1200, 800), plots };
-    Ok(out.write_all(&picture::png(&figure)?)?)
+    Figure { title, caption, columns: 1, panel: (1200, 800), plots }
 }

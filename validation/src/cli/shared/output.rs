@@ -5,7 +5,7 @@ use crate::unfinished::Unfinished;
 use anyhow::{Context, Result, anyhow, bail};
 use serde::Serialize;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::io::{self, BufWriter, IsTerminal, StdoutLock, Write};
 use std::path::{Path, PathBuf};
 
 /// stdout, or a file.
@@ -59,11 +59,81 @@ impl Destination {
 
     /// Writes a value as JSON, a list of plain values on one line.
     pub(in crate::cli) fn json(&self, value: &impl Serialize) -> Result<()> {
-        self.write(|out| {
-            compact::write(value, &mut *out).map_err(io::Error::from)?;
-            Ok(writeln!(out)?)
-        })
+        self.write(|out| json(out, value))
     }
+
+    /// Opens it to write to, beside others.
+    pub(in crate::cli) fn open(&self) -> Result<Opened> {
+        let (name, out, folder) = match self {
+            Self::Stdout => {
+                let out = Open::Stdout(BufWriter::new(io::stdout().lock()));
+                ("stdout".to_owned(), Ok(out), self.folder())
+            }
+            Self::File(path) => {
+                let name = format!("--output: {}", path.display());
+                (name, OpenFile::new(path).map(Open::File), self.folder())
+            }
+        };
+        let out = out.map_err(|error| named(&name, &error))?;
+        Ok(Opened { name, out, folder })
+    }
+}
+
+/// A destination that is being written to; its errors name it.
+pub(in crate::cli) struct Opened {
+    name: String,
+    out: Open,
+    folder: PathBuf,
+}
+
+enum Open {
+    Stdout(BufWriter<StdoutLock<'static>>),
+    File(OpenFile),
+}
+
+impl Opened {
+    /// A folder for files that wait until the result is written.
+    pub(in crate::cli) fn folder(&self) -> PathBuf {
+        self.folder.clone()
+    }
+
+    /// Gives the file, which is whole, its name.
+    pub(in crate::cli) fn finish(self) -> Result<()> {
+        let finished = match self.out {
+            Open::Stdout(mut out) => out.flush(),
+            Open::File(file) => file.finish(),
+        };
+        Ok(finished.map_err(|error| named(&self.name, &error))?)
+    }
+}
+
+impl Write for Opened {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = match &mut self.out {
+            Open::Stdout(out) => out.write(bytes),
+            Open::File(file) => file.write(bytes),
+        };
+        written.map_err(|error| named(&self.name, &error))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let flushed = match &mut self.out {
+            Open::Stdout(out) => out.flush(),
+            Open::File(file) => file.flush(),
+        };
+        flushed.map_err(|error| named(&self.name, &error))
+    }
+}
+
+/// An error of the same kind with the name of what could not be written.
+fn named(name: &str, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{}: {error}", cannot_be_written(name)))
+}
+
+/// Writes a value as JSON, a list of plain values on one line.
+pub(in crate::cli) fn json(out: &mut dyn Write, value: &impl Serialize) -> Result<()> {
+    compact::write(value, &mut *out).map_err(io::Error::from)?;
+    Ok(writeln!(out)?)
 }
 
 /// Writes a value as JSON on one line, for what is written piece by piece.
@@ -88,33 +158,76 @@ pub(in crate::cli) fn write_whole(
 /// Names what could not be written, where that is the error.
 fn unwritable(name: &str, error: anyhow::Error) -> anyhow::Error {
     if error.chain().any(|cause| cause.is::<io::Error>()) {
-        error.context(format!("{name} cannot be written, accepted is a writable path"))
+        error.context(cannot_be_written(name))
     } else {
         error
     }
 }
 
+fn cannot_be_written(name: &str) -> String {
+    format!("{name} cannot be written, accepted is a writable path")
+}
+
 fn write_or_replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
-    // A link stays a link; a device or a pipe cannot be renamed over.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    if target.exists() && !target.is_file() {
-        let mut out = BufWriter::new(File::options().write(true).open(&target)?);
-        write(&mut out)?;
-        return Ok(out.flush()?);
-    }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".percuss-").suffix(".tmp");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As any new file: what the umask leaves, or what the file had.
-        let mode = fs::metadata(&target).map_or(0o666, |metadata| metadata.permissions().mode());
-        builder.permissions(fs::Permissions::from_mode(mode));
-    }
-    let mut out = BufWriter::new(Unfinished::new(&builder, folder_of(&target))?);
+    let mut out = OpenFile::new(path)?;
     write(&mut out)?;
-    let file = out.into_inner().map_err(|error| error.into_error())?;
-    Ok(file.finish(&target)?)
+    Ok(out.finish()?)
+}
+
+/// A file that is being written.
+enum OpenFile {
+    /// A device or a pipe.
+    Itself(BufWriter<File>),
+    /// A file that gets its name when it is whole.
+    New(BufWriter<Unfinished>, PathBuf),
+}
+
+impl OpenFile {
+    fn new(path: &Path) -> io::Result<Self> {
+        // A link stays a link; a device or a pipe cannot be renamed over.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if target.exists() && !target.is_file() {
+            let out = BufWriter::new(File::options().write(true).open(&target)?);
+            return Ok(Self::Itself(out));
+        }
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".percuss-").suffix(".tmp");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // As any new file: what the umask leaves, or what the file had.
+            let mode =
+                fs::metadata(&target).map_or(0o666, |metadata| metadata.permissions().mode());
+            builder.permissions(fs::Permissions::from_mode(mode));
+        }
+        let out = BufWriter::new(Unfinished::new(&builder, folder_of(&target))?);
+        Ok(Self::New(out, target))
+    }
+
+    fn finish(self) -> io::Result<()> {
+        match self {
+            Self::Itself(mut out) => out.flush(),
+            Self::New(out, target) => {
+                out.into_inner().map_err(io::IntoInnerError::into_error)?.finish(&target)
+            }
+        }
+    }
+}
+
+impl Write for OpenFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Itself(out) => out.write(bytes),
+            Self::New(out, _) => out.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Itself(out) => out.flush(),
+            Self::New(out, _) => out.flush(),
+        }
+    }
 }
 
 /// Refuses a file that a flag names and that cannot be made, before the work that would be lost.

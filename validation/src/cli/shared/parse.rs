@@ -1,6 +1,7 @@
 //! Values of flags, with errors that say what is accepted.
 
 use crate::case::accepted;
+use crate::picture::PlotWindow;
 use crate::typed::{self, number};
 use percuss::affine::Section;
 use percuss::dynamics::attractor::Window;
@@ -186,6 +187,45 @@ pub(in crate::cli) fn window(text: &str) -> Result<Window, String> {
     window.filter(|window| window.check().is_ok()).ok_or_else(|| {
         "accepted is pmin,pmax,ymin,ymax with each pair rising, within 1e9".to_owned()
     })
+}
+
+/// WxH, a size on paper in millimetres.
+pub(in crate::cli) fn millimetres(text: &str) -> Result<Typed<[f64; 2]>, String> {
+    let sides = text.split_once('x').map(|(width, height)| [width.parse(), height.parse()]);
+    match sides {
+        Some([Ok(width), Ok(height)])
+            if [width, height].iter().all(|it| (10.0..=2000.0).contains(it)) =>
+        {
+            Ok(Typed { value: [width, height], text: text.to_owned() })
+        }
+        _ => Err("accepted is WxH in millimetres, each 10 to 2000, as 80x60".to_owned()),
+    }
+}
+
+/// Pixels in an inch.
+pub(in crate::cli) fn dpi(text: &str) -> Result<Typed<f64>, String> {
+    let value = text.parse().ok().filter(|it| (30.0..=2400.0).contains(it));
+    let value = value.ok_or_else(|| "accepted is a number, 30 to 2400".to_owned())?;
+    Ok(Typed { value, text: text.to_owned() })
+}
+
+/// LO,HI of the vertical axis, or LO,HI,LO,HI of both: an axis that is not named has no end.
+pub(in crate::cli) fn range(text: &str) -> Result<Typed<PlotWindow>, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let all = (f64::NEG_INFINITY, f64::INFINITY);
+    let value = match numbers.as_deref() {
+        Ok([low, high]) => Some([all, (*low, *high)]),
+        Ok([left, right, low, high]) => Some([(*left, *right), (*low, *high)]),
+        _ => None,
+    };
+    let is_given = |numbers: &[f64]| numbers.iter().all(|it| it.is_finite());
+    let value = value
+        .filter(|it| numbers.as_deref().is_ok_and(is_given) && it.iter().all(|it| it.0 < it.1));
+    let value = value.ok_or_else(|| {
+        "accepted is LO,HI of the vertical axis, or LO,HI,LO,HI of both, each pair rising"
+            .to_owned()
+    })?;
+    Ok(Typed { value, text: text.to_owned() })
 }
 
 /// I/N, a shard of so many.

@@ -29,7 +29,7 @@ impl Sink for Csv<'_> {
         Ok(())
     }
 
-    fn finish(&mut self, _: &RunEnding) -> Result<()> {
+    fn finish(&mut self, _: &PlannedRun, _: &RunEnding) -> Result<()> {
         Ok(())
     }
 }

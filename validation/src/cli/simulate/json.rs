@@ -100,7 +100,7 @@ impl Sink for Json<'_> {
         }
     }
 
-    fn finish(&mut self, ending: &RunEnding) -> Result<()> {
+    fn finish(&mut self, _: &PlannedRun, ending: &RunEnding) -> Result<()> {
         write!(self.out, "]")?;
         if ending.touches > 0 {
             write!(self.out, ",\"undecidable\":{}", ending.touches)?;

@@ -2,6 +2,7 @@
 //! impact oscillator, or of any piecewise-affine system.
 
 mod csv;
+mod drawn;
 mod json;
 mod plan;
 mod rows;
@@ -9,16 +10,16 @@ mod system;
 
 use super::help;
 use super::note;
-use super::shared::format::OutputFlags;
 use super::shared::long_work;
 use super::shared::model::ModelFlags;
+use super::shared::output::Opened;
+use super::shared::outputs::{Outputs, OutputsFlags};
 use super::shared::parse::{self, MAX_PERIODS, Typed};
+use super::shared::picture::{PictureFlags, PictureFormat};
 use super::shared::system_choice::SystemChoice;
-use crate::picture;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
 use plan::{PlannedRun, RunEnding};
-use std::io::Write;
 
 /// Run the exact solver from one start: of the impact oscillator, or of a SYSTEM
 ///
@@ -54,7 +55,9 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_PERIODS), allow_hyphen_values = true)]
     max_periods: Option<u64>,
     #[command(flatten)]
-    output: OutputFlags<Format>,
+    output: OutputsFlags<Format>,
+    #[command(flatten)]
+    picture: PictureFlags,
     #[command(flatten)]
     system: SystemChoice,
     #[command(flatten)]
@@ -72,50 +75,75 @@ enum Format {
     Npz,
 }
 
-/// Makes the run; whether it was decided to its end.
-pub(super) fn run(arguments: &Arguments) -> Result<bool> {
-    let format = arguments.output.format(Format::Csv)?;
-    match arguments.system.chosen(&arguments.model)? {
-        Some(system) => system::run(arguments, &system, format),
-        None => run_oscillator(arguments, format),
+impl Format {
+    const fn picture(self) -> Option<PictureFormat> {
+        match self {
+            Self::Csv | Self::Json | Self::Npy | Self::Npz => None,
+            Self::Png => Some(PictureFormat::Png),
+            Self::Svg => Some(PictureFormat::Svg),
+        }
     }
 }
 
-fn run_oscillator(arguments: &Arguments, format: Format) -> Result<bool> {
-    check_effect(arguments, format)?;
-    let destination = arguments.output.destination();
-    let bar = long_work::run_bar(destination.is_terminal());
+/// Makes the run; whether it was decided to its end.
+pub(super) fn run(arguments: &Arguments) -> Result<bool> {
+    let outputs = arguments.output.outputs(|_| Format::Csv)?;
+    let pictures: Vec<_> = outputs.formats().filter_map(Format::picture).collect();
+    arguments.picture.check(&pictures)?;
+    match arguments.system.chosen(&arguments.model)? {
+        Some(system) => system::run(arguments, &system, &outputs),
+        None => run_oscillator(arguments, &outputs),
+    }
+}
+
+fn run_oscillator(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<bool> {
+    check_effect(arguments, outputs)?;
+    let bar = long_work::run_bar(outputs.is_terminal());
     let plan = PlannedRun::new(arguments.model.problem()?, arguments, bar)?;
-    let mut ending = RunEnding::default();
-    destination.write(|out| {
-        ending = match format {
-            Format::Json => write_rows(&plan, arguments.samples, &mut json::Json::new(out))?,
-            Format::Png | Format::Svg => draw(&plan, format, out)?,
-            _ => write_rows(&plan, arguments.samples, &mut csv::Csv(out))?,
-        };
-        Ok(())
+    let ending = outputs.together(|opened| {
+        let sinks = opened.iter_mut().map(|(format, out)| sink(arguments, *format, out));
+        write_rows(&plan, arguments.samples, &mut rows::All(sinks.collect()))
     })?;
     drop(plan);
     ending.lines().for_each(|line| note(&line));
     Ok(!ending.undecided)
 }
 
+/// An output of a run.
+fn sink<'a>(
+    arguments: &'a Arguments,
+    format: Format,
+    out: &'a mut Opened,
+) -> Box<dyn rows::Sink + 'a> {
+    match (format.picture(), format) {
+        (Some(format), _) => {
+            let flags = &arguments.picture;
+            Box::new(drawn::Drawn { out, flags, format, segments: Vec::new() })
+        }
+        (None, Format::Json) => Box::new(json::Json::new(out)),
+        _ => Box::new(csv::Csv(out)),
+    }
+}
+
 /// Refuses flags that the run takes no notice of, and what belongs to runs of a SYSTEM.
-fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
+fn check_effect(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<()> {
     let counts = [("--returns", arguments.returns), ("--transient", arguments.transient)];
     if let Some((flag, count)) = counts.iter().find_map(|(flag, count)| Some((flag, (*count)?))) {
         bail!("{flag} {count} is not accepted without SYSTEM: --periods is, and --cycle");
     }
-    if matches!(format, Format::Npy | Format::Npz) {
+    if outputs.any(|it| matches!(it, Format::Npy | Format::Npz)) {
         bail!("arrays are not accepted without SYSTEM: csv, json, png and svg are");
     }
     if let (Some(most), None) = (arguments.max_periods, arguments.events) {
         bail!("--max-periods {most} has no effect here: accepted is it with --events");
     }
-    if let (Some(rows), Format::Png | Format::Svg) = (arguments.samples, format) {
+    if let Some(rows) =
+        arguments.samples.filter(|_| outputs.formats().all(|it| it.picture().is_some()))
+    {
         bail!("--samples {rows} has no effect on a picture: accepted is it with csv and json");
     }
-    Ok(())
+    arguments.picture.refuse_show()?;
+    arguments.picture.refuse_range()
 }
 
 /// Writes the run's rows; what has to be said about its end.
@@ -129,17 +157,6 @@ fn write_rows(
         Some(per_period) => rows::samples(plan, per_period, sink)?,
         None => rows::events(plan, sink)?,
     };
-    sink.finish(&ending)?;
-    Ok(ending)
-}
-
-fn draw(plan: &PlannedRun, format: Format, out: &mut dyn Write) -> Result<RunEnding> {
-    let (segments, ending) = plan.segments_for_picture()?;
-    let motion = picture::DrawnMotion::of(&plan.problem, &segments, &plan.last_instant(&segments));
-    let bytes = match format {
-        Format::Svg => picture::svg(&motion).into_bytes(),
-        _ => picture::png(&motion)?,
-    };
-    out.write_all(&bytes)?;
+    sink.finish(plan, &ending)?;
     Ok(ending)
 }

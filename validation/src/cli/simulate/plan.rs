@@ -111,25 +111,17 @@ impl PlannedRun {
         }
     }
 
-    /// All phases at once, for a picture.
-    pub(super) fn segments_for_picture(&self) -> Result<(Vec<Segment>, RunEnding)> {
+    /// Refuses a picture that goes on to an instant, where it would show nothing.
+    pub(super) fn check_picture(&self, instant: &Instant, is_reached: bool) -> Result<()> {
         let start = self.problem.entry.instant;
         let longest = MAX_PICTURE_PERIODS * self.problem.model.period();
-        let mut segments: Vec<Segment> = Vec::new();
-        let mut run = self.segments();
-        for segment in run.by_ref() {
-            let begins = segment.entry().instant.since(&start, self.omega()).value();
-            let ends_late =
-                self.events.is_none() && self.horizon.since(&start, self.omega()).value() > longest;
-            if begins > longest || ends_late {
-                bail!(
-                    "a picture of more than {MAX_PICTURE_PERIODS} forcing periods is not accepted: --output or --format of csv or json is, or a shorter run"
-                );
-            }
-            segments.push(segment);
+        if is_reached && instant.since(&start, self.omega()).value() > longest {
+            bail!(
+                "a picture of more than {MAX_PICTURE_PERIODS} forcing periods is not accepted: \
+                 --output or --format of csv or json is, or a shorter run"
+            );
         }
-        let ending = self.ending(segments.last(), &run);
-        Ok((segments, ending))
+        Ok(())
     }
 
     /// The instant at which the last of these phases ends.

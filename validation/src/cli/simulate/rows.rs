@@ -20,8 +20,33 @@ pub(super) struct RunRow {
 /// An output for rows.
 pub(super) trait Sink {
     fn begin(&mut self, plan: &PlannedRun, samples: bool) -> Result<()>;
+    /// Takes a phase of the run, before the rows that it ends in.
+    fn segment(&mut self, _: &PlannedRun, _: &Segment) -> Result<()> {
+        Ok(())
+    }
     fn row(&mut self, plan: &PlannedRun, row: &RunRow) -> Result<()>;
-    fn finish(&mut self, ending: &RunEnding) -> Result<()>;
+    fn finish(&mut self, plan: &PlannedRun, ending: &RunEnding) -> Result<()>;
+}
+
+/// Several outputs of one run.
+pub(super) struct All<'a>(pub(super) Vec<Box<dyn Sink + 'a>>);
+
+impl Sink for All<'_> {
+    fn begin(&mut self, plan: &PlannedRun, samples: bool) -> Result<()> {
+        self.0.iter_mut().try_for_each(|it| it.begin(plan, samples))
+    }
+
+    fn segment(&mut self, plan: &PlannedRun, segment: &Segment) -> Result<()> {
+        self.0.iter_mut().try_for_each(|it| it.segment(plan, segment))
+    }
+
+    fn row(&mut self, plan: &PlannedRun, row: &RunRow) -> Result<()> {
+        self.0.iter_mut().try_for_each(|it| it.row(plan, row))
+    }
+
+    fn finish(&mut self, plan: &PlannedRun, ending: &RunEnding) -> Result<()> {
+        self.0.iter_mut().try_for_each(|it| it.finish(plan, ending))
+    }
 }
 
 fn state(sample: &Sample) -> [f64; 4] {
@@ -36,6 +61,9 @@ pub(super) fn events(plan: &PlannedRun, sink: &mut dyn Sink) -> Result<RunEnding
     let mut entry = plan.problem.entry;
     let mut segments = plan.segments();
     for segment in std::iter::once(None).chain(segments.by_ref().map(Some)) {
+        if let Some(segment) = &segment {
+            sink.segment(plan, segment)?;
+        }
         match segment.as_ref().map(Segment::exit) {
             None => {}
             Some(Exit::Switch(next)) => (index, entry) = (index + 1, *next),
@@ -88,6 +116,7 @@ pub(super) fn samples(
     let mut last = None;
     let mut segments = plan.segments();
     for segment in segments.by_ref() {
+        sink.segment(plan, &segment)?;
         loop {
             let instant = start.after_periods(k, u64::from(per_period));
             let over = instant > plan.horizon || segment.is_undecided_at(&instant);

@@ -10,7 +10,7 @@ use crate::cli::shared::long_work;
 use crate::cli::shared::output::Destination;
 use crate::cli::shared::section::SectionFlags;
 use crate::cli::shared::system_choice::ChosenSystem;
-use crate::picture::{self, BasinMap, ShownAttractor};
+use crate::picture::{BasinMap, ShownAttractor};
 use anyhow::{Result, bail};
 use percuss::System;
 use percuss::affine::{Plane, ReturnAttractor, ReturnBasins, Solver};
@@ -79,11 +79,12 @@ impl Survey {
         archive.finish()
     }
 
-    pub(super) fn png(&self) -> Result<Vec<u8>> {
+    /// The labels as a picture.
+    pub(super) fn map(&self) -> BasinMap {
         let ReturnBasins { plane, attractors, labels, .. } = &self.basins;
         let colours = colours(attractors.iter().map(|it| it.kind));
         let shown = attractors.iter().enumerate().zip(colours);
-        let map = BasinMap {
+        BasinMap {
             title: self.system.name.clone(),
             note: format!(
                 "{} x {} starts at the centres of cells, other states as those of the start;\n\
@@ -95,8 +96,7 @@ impl Survey {
             columns: plane.columns as usize,
             cells: labels.clone(),
             attractors: shown.map(|((id, it), colour)| self.shown(id, it, colour)).collect(),
-        };
-        Ok(picture::png(&map)?)
+        }
     }
 
     fn shown(&self, id: usize, attractor: &ReturnAttractor, colour: usize) -> ShownAttractor {

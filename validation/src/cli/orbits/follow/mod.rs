@@ -1,21 +1,26 @@
 //! `continue`: a branch of periodic orbits, of the impact oscillator or of a SYSTEM.
 
+mod draw;
 mod of_system;
 
 use super::super::help;
 use super::Format;
 use super::find::{first_scanned, preferred};
-use super::json::{BranchJson, Doubled, Followed};
+use super::json::{BranchJson, Doubled, Followed, JsonPlace, Special};
 use crate::case::Problem;
-use crate::cli::shared::format::OutputFlags;
 use crate::cli::shared::long_work;
 use crate::cli::shared::model::ModelFlags;
+use crate::cli::shared::output::json;
+use crate::cli::shared::outputs::OutputsFlags;
 use crate::cli::shared::parse::{self, MAX_PERIODS, Typed};
+use crate::cli::shared::picture::PictureFlags;
 use crate::cli::shared::section::{SectionFlags, without_system};
 use crate::cli::shared::system_choice::SystemChoice;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
+use crate::picture::{self, Figure};
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
+use draw::{DrawnBifurcation, DrawnOrbit};
 use percuss::dynamics::continuation::{
     BifurcationKind, Branch, BranchEnding, Criticality, Doubling, Family,
 };
@@ -53,16 +58,21 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     section: SectionFlags,
     #[command(flatten)]
-    output: OutputFlags<Format>,
+    output: OutputsFlags<Format>,
+    #[command(flatten)]
+    picture: PictureFlags,
     #[command(flatten)]
     pub(crate) model: ModelFlags,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
-    arguments.output.format(Format::Json)?;
+    let outputs = arguments.output.outputs(|_| Format::Json)?;
+    let pictures: Vec<_> = outputs.formats().filter_map(Format::picture).collect();
+    arguments.picture.check(&pictures)?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
-        return of_system::run(arguments, &chosen);
+        return of_system::run(arguments, &chosen, &outputs);
     }
+    arguments.picture.refuse_show()?;
     arguments.check_of_oscillator()?;
     family(arguments, &arguments.model)?;
     arguments.check_varied()?;
@@ -70,11 +80,42 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     let (followed, why) =
         followed(arguments, &arguments.model, Reporting::Told(&|share| bar.show_share(share)))?;
     bar.finish_and_clear();
-    arguments.output.destination().json(&followed)?;
+    outputs.each(|format, out| match format.picture() {
+        None => json(out, &followed),
+        Some(format) => arguments.picture.write(drawing(arguments, &followed)?, format, out),
+    })?;
     if let Some(why) = &why {
         say(why);
     }
     Ok(if why.is_none() { DONE } else { OUT_OF_BOUNDS })
+}
+
+/// The displacement at the first strobe of each orbit over the parameter.
+fn drawing(arguments: &Arguments, followed: &Followed) -> Result<Figure> {
+    let parameter = arguments.parameter_of_oscillator()?;
+    let parameters = arguments.model.problem()?.model;
+    let doubled = followed.doubled.iter().flatten().map(|it| &it.branch);
+    let all: Vec<&BranchJson> = std::iter::once(&followed.branch).chain(doubled).collect();
+    let orbits = |it: &&BranchJson| {
+        let orbit = |it: &JsonPlace| DrawnOrbit {
+            value: it.parameter,
+            points: vec![it.point[0]],
+            is_stable: it.stable,
+        };
+        it.branch.iter().map(orbit).collect::<Vec<_>>()
+    };
+    let found = |it: &Special| DrawnBifurcation {
+        name: it.r#type.to_owned(),
+        value: it.value,
+        points: vec![it.point[0]],
+    };
+    let branches: Vec<_> = all.iter().map(orbits).collect();
+    let found: Vec<_> = all.iter().flat_map(|it| it.bifurcations.iter().map(found)).collect();
+    let symbol = picture::symbol(parameter);
+    let caption = format!("orbits of period {}, at their first strobe", arguments.period);
+    let title = picture::caption_without(parameters.parameters(), Some(parameter));
+    let axes = [symbol.to_owned(), "p (displacement)".to_owned()];
+    Ok(draw::figure(title, caption, axes, &branches, &found))
 }
 
 impl Arguments {

@@ -1,13 +1,20 @@
 //! `continue SYSTEM`: a branch of orbits of a section's return map.
 
+use super::super::Format;
 use super::super::of_system::{PointJson, guess, points};
 use super::Arguments;
+use super::draw::{self, DrawnBifurcation, DrawnOrbit};
 use crate::cli::shared::long_work;
+use crate::cli::shared::output;
+use crate::cli::shared::outputs::Outputs;
+use crate::cli::shared::picture::{Shown, place};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
+use crate::picture::Figure;
 use anyhow::{Result, anyhow, bail};
 use percuss::affine::{
-    NoOrbit, Orbit, ReturnBifurcation, ReturnBranch, ReturnFamily, Solver, System, SystemError,
+    NoOrbit, Orbit, Return, ReturnBifurcation, ReturnBranch, ReturnFamily, Solver, System,
+    SystemError,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -49,7 +56,11 @@ struct BifurcationJson<'a> {
 }
 
 /// Follows the branch and writes it.
-pub(super) fn run(arguments: &Arguments, chosen: &ChosenSystem) -> Result<u8> {
+pub(super) fn run(
+    arguments: &Arguments,
+    chosen: &ChosenSystem,
+    outputs: &Outputs<Format>,
+) -> Result<u8> {
     let parameter = &arguments.parameter;
     check(arguments, chosen)?;
     let at = |value: f64| -> Result<System, SystemError> {
@@ -59,13 +70,22 @@ pub(super) fn run(arguments: &Arguments, chosen: &ChosenSystem) -> Result<u8> {
     };
     let first =
         at(arguments.from.value).map_err(|error| anyhow!("--from {}: {error}", arguments.from))?;
+    let shown = arguments.picture.shown(1)?;
+    let shown = shown.unwrap_or_else(|| Shown::first_states(&first.states, 1));
+    shown.observables(&chosen.file)?;
     at(arguments.to.value).map_err(|error| anyhow!("--to {}: {error}", arguments.to))?;
     let bar = long_work::share_bar();
     let branch = branch(arguments, &first, &at, &mut |share| bar.show_share(share));
     bar.finish_and_clear();
     let branch = branch?;
-    let json = json(&first, parameter, branch.as_ref().ok());
-    arguments.output.destination().json(&json)?;
+    let told = json(&first, parameter, branch.as_ref().ok());
+    outputs.each(|format, out| match format.picture() {
+        None => output::json(out, &told),
+        Some(format) => {
+            let figure = drawing(arguments, chosen, &first, &shown, branch.as_ref().ok())?;
+            arguments.picture.write(figure, format, out)
+        }
+    })?;
     let why = match branch {
         Ok(branch) if branch.is_complete() => return Ok(DONE),
         Ok(branch) => format!("--parameter {parameter}: {}", branch.ending),
@@ -103,6 +123,46 @@ fn branch(
     let family = ReturnFamily::new(section, longest, at);
     let ends = [arguments.from.value, arguments.to.value];
     Ok(guess.and_then(|it| ReturnBranch::follow(&family, &it, arguments.period, ends, told)))
+}
+
+/// What is shown of all points of the orbits, over the parameter, on which it may depend itself.
+fn drawing(
+    arguments: &Arguments,
+    chosen: &ChosenSystem,
+    system: &System,
+    shown: &Shown,
+    branch: Option<&ReturnBranch>,
+) -> Result<Figure> {
+    let mut file = chosen.file.clone();
+    let mut points = |value: f64, orbit: &Orbit| -> Result<Vec<f64>> {
+        file.set(&arguments.parameter, value, "--parameter")?;
+        let observables = shown.observables(&file)?;
+        let of = |it: &Return<f64>| place(&observables, value, it.time, &it.state)[1];
+        Ok(orbit.points.iter().map(of).collect())
+    };
+    let (mut orbits, mut found) = (Vec::new(), Vec::new());
+    for (value, orbit) in branch.iter().flat_map(|it| &it.points) {
+        let (value, is_stable) = (*value, orbit.is_stable());
+        orbits.push(DrawnOrbit { value, points: points(value, orbit)?, is_stable });
+    }
+    for it in branch.iter().flat_map(|it| &it.bifurcations) {
+        let event = it.event.map(|event| format!(" {}", event.name(system))).unwrap_or_default();
+        let name = format!("{}{event}", it.kind.as_str());
+        found.push(DrawnBifurcation {
+            name,
+            value: it.value,
+            points: points(it.value, &it.orbit)?,
+        });
+    }
+    let caption = format!(
+        "orbits of {} returns to {}, followed from {} to {}",
+        arguments.period,
+        arguments.section.text(),
+        arguments.from,
+        arguments.to
+    );
+    let axes = shown.axes(&arguments.parameter);
+    Ok(draw::figure(system.name.clone(), caption, axes, &[orbits], &found))
 }
 
 fn json<'a>(

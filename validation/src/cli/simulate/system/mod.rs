@@ -1,7 +1,7 @@
 //! `simulate SYSTEM`: one run of a piecewise-affine system in f64, at equal steps or at its events.
 
-mod arrays;
 mod csv;
+mod drawn;
 mod json;
 mod plan;
 mod rows;
@@ -10,34 +10,60 @@ mod sink;
 use super::{Arguments, Format};
 use crate::cli::note;
 use crate::cli::shared::long_work::{self, Bar};
+use crate::cli::shared::output::Opened;
+use crate::cli::shared::outputs::Outputs;
+use crate::cli::shared::picture::Shown;
+use crate::cli::shared::run_arrays::Arrays;
 use crate::cli::shared::system_choice::ChosenSystem;
 use anyhow::{Result, bail};
-use clap::ValueEnum;
+use percuss::System;
 use plan::PlannedRun;
-use sink::{RunEnd, Sink};
+use sink::{All, RunEnd, Sink};
 
 /// Makes the run; whether it was decided to its end.
-pub(super) fn run(arguments: &Arguments, chosen: &ChosenSystem, format: Format) -> Result<bool> {
-    check_flags(arguments, format)?;
+pub(super) fn run(
+    arguments: &Arguments,
+    chosen: &ChosenSystem,
+    outputs: &Outputs<Format>,
+) -> Result<bool> {
+    check_flags(arguments)?;
     let system = chosen.system()?;
+    let shown = arguments.picture.shown(2)?;
+    let shown = shown.unwrap_or_else(|| Shown::first_states(&system.states, 2));
+    let observables = shown.observables(&chosen.file)?;
     let solver = system.solver::<f64>()?;
-    let destination = arguments.output.destination();
-    let bar = long_work::run_bar(destination.is_terminal());
+    let bar = long_work::run_bar(outputs.is_terminal());
     let plan = PlannedRun::new(&solver, arguments, bar.as_ref())?;
-    let folder = destination.folder();
-    let mut end = RunEnd::default();
-    destination.write(|out| {
-        end = match format {
-            Format::Json => write(&plan, &mut json::Json::new(out)),
-            Format::Npy => write(&plan, &mut arrays::Arrays::npy(out, &folder)?),
-            Format::Npz => write(&plan, &mut arrays::Arrays::npz(out, &folder)?),
-            _ => write(&plan, &mut csv::Csv::new(out)),
-        }?;
-        Ok(())
+    let end = outputs.together(|opened| {
+        let sinks = opened.iter_mut().map(|(format, out)| match format.picture() {
+            None => sink_of_rows(*format, &system, out),
+            Some(format) => {
+                let (flags, stops) = (&arguments.picture, Vec::new());
+                let (shown, observables) = (&shown, &observables[..]);
+                let drawn = drawn::Drawn { out, flags, format, shown, observables, stops };
+                Ok(Box::new(drawn) as Box<dyn Sink + '_>)
+            }
+        });
+        write(&plan, &mut All(sinks.collect::<Result<_>>()?))
     })?;
     bar.iter().for_each(Bar::finish_and_clear);
     end.notes.iter().for_each(|line| note(line));
     Ok(!end.undecided)
+}
+
+/// An output for rows.
+fn sink_of_rows<'a>(
+    format: Format,
+    system: &'a System,
+    out: &'a mut Opened,
+) -> Result<Box<dyn Sink + 'a>> {
+    let folder = out.folder();
+    Ok(match format {
+        Format::Json => Box::new(json::Json::new(out)),
+        Format::Npy => Box::new(Arrays::npy(out, system, &folder)?),
+        Format::Npz => Box::new(Arrays::npz(out, system, &folder)?),
+        _ => Box::new(csv::Csv::new(out)),
+    })
 }
 
 fn write(plan: &PlannedRun<'_>, sink: &mut dyn Sink) -> Result<RunEnd> {
@@ -48,7 +74,7 @@ fn write(plan: &PlannedRun<'_>, sink: &mut dyn Sink) -> Result<RunEnd> {
 }
 
 /// Refuses what belongs to runs of the impact oscillator.
-fn check_flags(arguments: &Arguments, format: Format) -> Result<()> {
+fn check_flags(arguments: &Arguments) -> Result<()> {
     if let Some(periods) = arguments.periods {
         bail!(
             "--periods {periods} is not accepted with SYSTEM: --returns is, of a forced system, \
@@ -59,14 +85,6 @@ fn check_flags(arguments: &Arguments, format: Format) -> Result<()> {
         bail!(
             "--max-periods {most} is not accepted with SYSTEM: --events ends a run without it, \
              and --until is accepted"
-        );
-    }
-    if matches!(format, Format::Png | Format::Svg) {
-        let name = format.to_possible_value().map(|it| it.get_name().to_owned());
-        bail!(
-            "--format {} is not accepted with SYSTEM: csv, json, npy and npz are, and percuss \
-             events draws a run of a system",
-            name.unwrap_or_default()
         );
     }
     Ok(())

@@ -27,6 +27,7 @@ impl<'a> PlannedRun<'a> {
         let mut underway = Underway { plan: self, run, last: LastTurns::default(), steps: 0 };
         let ending = match underway.transient() {
             Err(early) => {
+                sink.stop(&row(0, &early, false))?;
                 sink.row(self, &row(0, &early, true))?;
                 Some(early)
             }
@@ -72,6 +73,7 @@ impl<'a> Underway<'a, '_> {
         sink: &mut dyn Sink,
     ) -> Result<Option<Event<'a, f64>>> {
         let plan = self.plan;
+        sink.stop(&row(0, first, false))?;
         sink.row(plan, &row(0, first, false))?;
         if plan.transient.is_some() {
             self.run.go_on(plan.horizon);
@@ -80,6 +82,7 @@ impl<'a> Underway<'a, '_> {
         while plan.events.is_none_or(|wanted| n < wanted) {
             let Some(event) = self.next(n) else { break };
             n += 1;
+            sink.stop(&row(n, &event, false))?;
             sink.row(plan, &row(n, &event, true))?;
             if event.ending().is_some() {
                 return Ok(Some(event));
@@ -100,6 +103,7 @@ impl<'a> Underway<'a, '_> {
         let mut next = plan.transient.map(|_| first);
         while plan.events.is_none_or(|wanted| passed < wanted) {
             let Some(event) = next.take().or_else(|| self.next(passed)) else { break };
+            sink.stop(&row(n, &event, false))?;
             match event.ending() {
                 Some(Ending::Horizon) => {
                     // The start itself has no rounding of modal co-ordinates.

@@ -1,12 +1,11 @@
 //! A run of a system as arrays for NumPy. The number of rows stands at the beginning of an array,
 //! so that rows wait in a file without a name until it is known: a long run costs no memory.
 
-use super::plan::PlannedRun;
-use super::sink::{Row, RunEnd, Sink};
+use super::system_choice::event_names;
 use crate::arrays::Npz;
-use crate::cli::shared::system_choice::event_names;
 use anyhow::Result;
 use npyz::WriterBuilder;
+use percuss::System;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, Write};
 use std::path::Path;
@@ -14,9 +13,12 @@ use std::path::Path;
 /// The number of an event in a row that has none.
 const NO_EVENT: i32 = -1;
 
-pub(super) struct Arrays<'a> {
+pub(in crate::cli) struct Arrays<'a> {
     out: &'a mut dyn Write,
+    system: &'a System,
     is_archive: bool,
+    /// Whether rows are those of events.
+    has_events: bool,
     waiting: BufWriter<File>,
     rows: usize,
     /// The names of events, and those of endings that came.
@@ -34,18 +36,37 @@ struct Waited {
 
 impl<'a> Arrays<'a> {
     /// The states alone.
-    pub(super) fn npy(out: &'a mut dyn Write, folder: &Path) -> Result<Self> {
-        Self::new(out, folder, false)
+    pub(in crate::cli) fn npy(
+        out: &'a mut dyn Write,
+        system: &'a System,
+        folder: &Path,
+    ) -> Result<Self> {
+        Self::new(out, system, folder, false)
     }
 
     /// All that rows hold.
-    pub(super) fn npz(out: &'a mut dyn Write, folder: &Path) -> Result<Self> {
-        Self::new(out, folder, true)
+    pub(in crate::cli) fn npz(
+        out: &'a mut dyn Write,
+        system: &'a System,
+        folder: &Path,
+    ) -> Result<Self> {
+        Self::new(out, system, folder, true)
     }
 
-    fn new(out: &'a mut dyn Write, folder: &Path, is_archive: bool) -> Result<Self> {
+    fn new(
+        out: &'a mut dyn Write,
+        system: &'a System,
+        folder: &Path,
+        is_archive: bool,
+    ) -> Result<Self> {
         let waiting = BufWriter::new(tempfile::tempfile_in(folder)?);
-        Ok(Self { out, is_archive, waiting, rows: 0, names: Vec::new() })
+        let names = event_names(system).into_iter().map(str::to_owned).collect();
+        Ok(Self { out, system, is_archive, has_events: true, waiting, rows: 0, names })
+    }
+
+    /// Rows that are not those of events.
+    pub(in crate::cli) fn without_events(self) -> Self {
+        Self { has_events: false, ..self }
     }
 
     /// The number of an event's name.
@@ -60,26 +81,29 @@ impl<'a> Arrays<'a> {
     }
 }
 
-impl Sink for Arrays<'_> {
-    fn begin(&mut self, plan: &PlannedRun<'_>) -> Result<()> {
-        let names = event_names(plan.system());
-        self.names = names.into_iter().map(str::to_owned).collect();
-        Ok(())
-    }
-
-    fn row(&mut self, _: &PlannedRun<'_>, row: &Row<'_>) -> Result<()> {
-        let event = self.number(row.event);
+impl Arrays<'_> {
+    /// Adds a row, with the name of its event where it has one.
+    pub(in crate::cli) fn row(
+        &mut self,
+        time: f64,
+        mode: usize,
+        event: Option<&str>,
+        state: &[f64],
+    ) -> Result<()> {
+        let event = self.number(event);
         self.rows += 1;
-        self.waiting.write_all(&row.time.to_le_bytes())?;
-        self.waiting.write_all(&i32::try_from(row.mode)?.to_le_bytes())?;
+        self.waiting.write_all(&time.to_le_bytes())?;
+        self.waiting.write_all(&i32::try_from(mode)?.to_le_bytes())?;
         self.waiting.write_all(&event.to_le_bytes())?;
-        row.state.iter().try_for_each(|it| self.waiting.write_all(&it.to_le_bytes()))?;
+        state.iter().try_for_each(|it| self.waiting.write_all(&it.to_le_bytes()))?;
         Ok(())
     }
 
-    fn finish(&mut self, plan: &PlannedRun<'_>, _: &RunEnd) -> Result<()> {
+    /// Writes what has waited.
+    pub(in crate::cli) fn finish(&mut self) -> Result<()> {
         self.waiting.flush()?;
-        let states = plan.system().states.len();
+        let system = self.system;
+        let states = system.states.len();
         let (rows, file) = (self.rows, self.waiting.get_mut());
         let mut each = |give: &mut dyn FnMut(&Waited) -> Result<()>| each(file, rows, states, give);
         if !self.is_archive {
@@ -89,17 +113,21 @@ impl Sink for Arrays<'_> {
             each(&mut |it| Ok(writer.extend(it.state.iter().copied())?))?;
             return Ok(writer.finish()?);
         }
-        let modes: Vec<&str> = plan.system().modes.iter().map(|it| it.name.as_str()).collect();
+        let modes: Vec<&str> = system.modes.iter().map(|it| it.name.as_str()).collect();
         let mut archive = Npz::new(&mut *self.out);
         archive.add_by("time", &[rows], |push| each(&mut |it| push(it.time)))?;
         archive.add_by("mode", &[rows], |push| each(&mut |it| push(it.mode)))?;
-        archive.add_by("event", &[rows], |push| each(&mut |it| push(it.event)))?;
+        if self.has_events {
+            archive.add_by("event", &[rows], |push| each(&mut |it| push(it.event)))?;
+        }
         archive.add_by("state", &[rows, states], |push| {
             each(&mut |it| it.state.iter().try_for_each(|value| push(*value)))
         })?;
         archive.add_texts("modes", &modes)?;
-        archive.add_texts("states", &plan.system().states)?;
-        archive.add_texts("events", &self.names)?;
+        archive.add_texts("states", &system.states)?;
+        if self.has_events {
+            archive.add_texts("events", &self.names)?;
+        }
         archive.finish()?;
         Ok(())
     }
