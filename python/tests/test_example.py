@@ -53,3 +53,15 @@ def test_a_method_with_a_fault_is_told(check):
     method.write_text(text.replace("4 * k3) / 9", "4.001 * k3) / 9"), encoding="utf-8")
     code, said, _ = check()
     assert code == 1 and "at 1e-6: fail" in said
+
+
+def test_the_picture_of_a_derivative_is_drawn(repository, tmp_path):
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "picture.svg"
+    call = [sys.executable, str(repository / "examples/event_derivative.py"), str(picture)]
+    done = subprocess.run(call, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    drawn = picture.read_text(encoding="utf-8")
+    # The page has the same derivative of the impact's time in its table.
+    assert "dT/dh = 0.160" in drawn
+    assert "0.15961737689352443" in (repository / "docs/GRADIENTS.md").read_text(encoding="utf-8")
