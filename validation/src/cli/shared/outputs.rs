@@ -107,6 +107,7 @@ fn check_once(paths: &[PathBuf]) -> Result<()> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 mod tests {
     use super::*;
 
