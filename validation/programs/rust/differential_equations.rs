@@ -6,7 +6,7 @@
 mod percuss_program;
 
 use differential_equations::prelude::*;
-use percuss_program::{Course, Mode, serve};
+use percuss_program::{Course, Mode, Setup, serve};
 use std::rc::Rc;
 
 /// A mode in the library's traits.
@@ -102,7 +102,13 @@ fn make(course: &mut Course) -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let method = "Dormand-Prince 8(5,3), built-in events";
-    let setups = [("dop853-default", method, "explicit", Some(8))];
-    serve("differential-equations", "0.7.0", &setups, make)
+    let setup = Setup {
+        name: "dop853-default",
+        method: "Dormand-Prince 8(5,3), built-in events",
+        class: "explicit",
+        order: Some(8),
+        backward: true,
+        gradients: false,
+    };
+    serve("differential-equations", "0.7.0", &[setup], make)
 }

@@ -8,14 +8,20 @@
 //!   moved inside of each guard that ends the mode that follows, by that much.
 //! - Roots have no direction. One that the guard leaves on the wrong side is passed over: the run
 //!   goes on from there, as it does from an event that is only counted.
+//!
+//! Where derivatives are asked for, the reset is an operator of the problem, and diffsol takes the
+//! sensitivities through it. `bdf-saltation` and `tsit45-saltation` are what an expert does for
+//! derivatives: runs of percuss's own engines, and the sensitivities of each stretch again.
 
+mod diffsol_saltation;
+mod diffsol_sensitivities;
 mod percuss_program;
 
 use diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
     OdeSolverStopReason,
 };
-use percuss_program::{Course, serve};
+use percuss_program::{Course, Setup, serve};
 use std::cell::Cell;
 use std::error::Error;
 use std::rc::Rc;
@@ -106,6 +112,12 @@ where
 }
 
 fn make(course: &mut Course) -> Result<(), Box<dyn Error>> {
+    if course.run.setup.ends_with("-saltation") {
+        return diffsol_saltation::make(course);
+    }
+    if !course.run.gradients.is_empty() {
+        return diffsol_sensitivities::make(course);
+    }
     let (modes, first) = course.modes();
     let most = modes.iter().map(|mode| mode.events().len()).max().unwrap_or(0);
     let (modes, now) = (Rc::new(modes), Rc::new(Cell::new(first)));
@@ -143,9 +155,17 @@ fn make(course: &mut Course) -> Result<(), Box<dyn Error>> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let setups = [
-        ("bdf-default", "BDF, orders 1 to 5", "multistep", None),
-        ("tsit45-default", "Tsitouras 5(4)", "explicit", Some(5)),
+    let bdf = ("BDF, orders 1 to 5", "multistep", None);
+    let tsit45 = ("Tsitouras 5(4)", "explicit", Some(5));
+    let names = [
+        ("bdf-default", bdf),
+        ("tsit45-default", tsit45),
+        ("bdf-saltation", bdf),
+        ("tsit45-saltation", tsit45),
     ];
+    let setups = names.map(|(name, (method, class, order))| {
+        let backward = name.ends_with("-default");
+        Setup { name, method, class, order, backward, gradients: true }
+    });
     serve("diffsol", "0.18.0", &setups, make)
 }

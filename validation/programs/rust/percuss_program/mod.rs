@@ -6,6 +6,9 @@
 
 #![allow(dead_code, reason = "each program uses a part of it")]
 
+pub mod derivatives;
+
+use derivatives::{Passed, Rates};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::cell::Cell;
@@ -32,14 +35,17 @@ struct Request {
 #[derive(Deserialize)]
 pub struct Run {
     pub setup: String,
-    system: SystemWire,
+    pub system: SystemWire,
     backward: bool,
-    mode: usize,
-    state: Vec<f64>,
+    pub mode: usize,
+    pub state: Vec<f64>,
     pub span: f64,
-    samples: Vec<f64>,
+    pub samples: Vec<f64>,
     pub tolerance: Tolerance,
-    limits: Limits,
+    pub limits: Limits,
+    /// The names by which derivatives are asked for.
+    #[serde(default)]
+    pub gradients: Vec<Rates>,
 }
 
 /// The tolerances.
@@ -49,43 +55,53 @@ pub struct Tolerance {
     pub absolute: f64,
 }
 
+/// The limits beyond which a run gives up.
 #[derive(Deserialize)]
-struct Limits {
-    calls: u64,
-    events: usize,
-    wall_s: f64,
+pub struct Limits {
+    pub calls: u64,
+    pub events: usize,
+    pub wall_s: f64,
 }
 
+/// A system, whose modes a course has taken.
 #[derive(Deserialize)]
-struct SystemWire {
-    omega: f64,
-    phi: f64,
+pub struct SystemWire {
+    pub name: String,
+    pub states: Vec<String>,
+    pub scales: Vec<f64>,
+    pub time_scale: f64,
+    pub omega: f64,
+    pub phi: f64,
     modes: Vec<ModeWire>,
 }
 
+/// A mode's coefficients and events.
 #[derive(Deserialize)]
-struct ModeWire {
+pub struct ModeWire {
+    pub name: String,
     #[serde(rename = "A")]
-    a: Vec<Row>,
+    pub a: Vec<Row>,
     #[serde(rename = "B")]
-    b: Vec<[f64; 2]>,
-    c: Vec<f64>,
-    events: Vec<Event>,
+    pub b: Vec<[f64; 2]>,
+    pub c: Vec<f64>,
+    pub events: Vec<Event>,
 }
 
 /// An event of a mode.
 #[derive(Deserialize)]
 pub struct Event {
+    pub name: String,
     guard: Row,
-    direction: String,
-    reset: Option<Vec<Row>>,
-    successors: Vec<Successor>,
+    pub direction: String,
+    pub reset: Option<Vec<Row>>,
+    pub successors: Vec<Successor>,
 }
 
+/// A mode that may follow an event.
 #[derive(Deserialize)]
-struct Successor {
-    when: Option<Row>,
-    mode: usize,
+pub struct Successor {
+    pub when: Option<Row>,
+    pub mode: usize,
 }
 
 impl Event {
@@ -111,7 +127,9 @@ impl Event {
 
 /// A mode: z' = A z + c + B (cos theta, sin theta).
 pub struct Mode {
-    wire: ModeWire,
+    /// The place of the mode in its system.
+    pub place: usize,
+    pub wire: ModeWire,
     omega: f64,
     phi: f64,
     calls: Rc<Cell<u64>>,
@@ -136,6 +154,37 @@ impl Mode {
     /// The Jacobian times a vector.
     pub fn jacobian(&self, v: &[f64]) -> Vec<f64> {
         self.wire.a.iter().map(|row| dot(row, v)).collect()
+    }
+
+    /// A state's rate as a row.
+    fn row(&self, state: usize) -> Row {
+        let ModeWire { a, b, c, .. } = &self.wire;
+        [a[state].as_slice(), &b[state], &[c[state]]].concat()
+    }
+
+    /// The rate of a guard.
+    pub fn guard_rate(&self, event: usize, t: f64, z: &[f64]) -> f64 {
+        let (sin, cos) = (self.omega * t + self.phi).sin_cos();
+        let turned = [-self.omega * sin, self.omega * cos, 0.0];
+        dot(&self.wire.events[event].guard, &[self.rates(t, z).as_slice(), &turned].concat())
+    }
+
+    /// The state after an event.
+    pub fn reset(&self, event: usize, t: f64, z: &[f64]) -> Vec<f64> {
+        let wide = self.wide(t, z);
+        let rows = |rows: &Vec<Row>| rows.iter().map(|row| dot(row, &wide)).collect();
+        self.wire.events[event].reset.as_ref().map_or_else(|| z.to_vec(), rows)
+    }
+
+    /// The derivative of a guard by the state, times a vector.
+    pub fn guard_slope(&self, event: usize, v: &[f64]) -> f64 {
+        dot(&self.wire.events[event].guard, v)
+    }
+
+    /// The derivative of the state after an event by that before it, times a vector.
+    pub fn reset_slope(&self, event: usize, v: &[f64]) -> Vec<f64> {
+        let rows = |rows: &Vec<Row>| rows.iter().map(|row| dot(row, v)).collect();
+        self.wire.events[event].reset.as_ref().map_or_else(|| v.to_vec(), rows)
     }
 
     /// The value of a guard.
@@ -167,6 +216,8 @@ pub struct Course {
     ended: Option<&'static str>,
     crowd: usize,
     pub steps: u64,
+    /// The derivatives by each name that has them.
+    pub derivatives: Vec<Value>,
 }
 
 /// A run that went beyond its limits.
@@ -177,9 +228,10 @@ struct GaveUp(&'static str);
 impl Course {
     fn new(mut run: Run) -> Self {
         let calls = Rc::new(Cell::new(0));
-        let SystemWire { omega, phi, ref mut modes } = run.system;
-        let mode = |wire| Rc::new(Mode { wire, omega, phi, calls: Rc::clone(&calls) });
-        let modes = std::mem::take(modes).into_iter().map(mode).collect();
+        let SystemWire { omega, phi, ref mut modes, .. } = run.system;
+        let mode =
+            |(place, wire)| Rc::new(Mode { place, wire, omega, phi, calls: Rc::clone(&calls) });
+        let modes = std::mem::take(modes).into_iter().enumerate().map(mode).collect();
         let until = Instant::now() + Duration::from_secs_f64(run.limits.wall_s);
         let (mode, z) = (run.mode, run.state.clone());
         let mut course = Self {
@@ -195,6 +247,7 @@ impl Course {
             ended: None,
             crowd: 0,
             steps: 0,
+            derivatives: Vec::new(),
         };
         while course.due(0.0).is_some() {
             course.sample(z.clone());
@@ -250,14 +303,14 @@ impl Course {
             return Err(Box::new(GaveUp("too many events")));
         }
         let mode = self.mode();
-        let Event { reset: rows, successors, .. } = &mode.events()[event];
+        let successors = &mode.events()[event].successors;
         self.crowd = if t - self.t <= ONE_INSTANT * t { self.crowd + 1 } else { 1 };
         self.t = t;
         if self.crowd > 100 * MOST_AT_ONCE {
             return Err(format!("events at {t} are found again and again").into());
         }
         if successors.is_empty() {
-            self.report(t, event, &z, &z);
+            self.add(t, event, &z, &z);
             self.z = z;
             return Ok(());
         }
@@ -266,14 +319,12 @@ impl Course {
             self.ended = Some("leaves-domain");
             return Ok(());
         }
-        let wide = mode.wide(t, &z);
-        let reset = |rows: &Vec<Row>| rows.iter().map(|row| dot(row, &wide)).collect();
-        let after: Vec<f64> = rows.as_ref().map_or_else(|| z.clone(), reset);
+        let after = mode.reset(event, t, &z);
         let wide_after = mode.wide(t, &after);
         let holds =
             |it: &&Successor| it.when.as_ref().is_none_or(|row| dot(row, &wide_after) > 0.0);
         self.mode = successors.iter().find(holds).ok_or("no mode follows")?.mode;
-        self.report(t, event, &z, &after);
+        self.add(t, event, &z, &after);
         self.z = after;
         if self.crowd >= MOST_AT_ONCE {
             self.ended = Some("no-progress");
@@ -282,11 +333,34 @@ impl Course {
     }
 
     /// Adds an event to the answer, with the states before and after its reset.
-    fn report(&mut self, t: f64, event: usize, before: &[f64], after: &[f64]) {
+    fn add(&mut self, t: f64, event: usize, before: &[f64], after: &[f64]) {
         let mode = self.mode;
         self.events.push(
             json!({"time": t, "event": event, "mode": mode, "before": before, "state": after}),
         );
+    }
+
+    /// Takes over an event of a run that was made elsewhere.
+    pub fn report(&mut self, passed: &Passed) {
+        self.mode = passed.follows.place;
+        self.add(passed.t, passed.event, &passed.before, &passed.after);
+    }
+
+    /// Takes over the end of a run that was made elsewhere, and all its samples.
+    pub fn end(
+        &mut self,
+        samples: Vec<Vec<f64>>,
+        ended: Option<&'static str>,
+        t: f64,
+        z: Vec<f64>,
+    ) {
+        (self.sampled, self.ended, self.t, self.z) = (samples, ended, t, z);
+    }
+
+    /// Takes over what a run has cost that was made elsewhere.
+    pub fn count(&mut self, calls: u64, steps: u64) {
+        self.calls.set(calls);
+        self.steps = steps;
     }
 
     fn answer(mut self, took: Duration) -> Value {
@@ -295,11 +369,15 @@ impl Course {
             self.t = self.run.span;
             self.sampled.resize(self.run.samples.len(), self.z.clone());
         }
-        json!({"run": {
+        let mut answer = json!({"run": {
             "events": self.events, "samples": self.sampled, "end": self.z, "ended": ended,
             "ended_at": self.t, "work": {"rhs": self.calls.get(), "steps": self.steps},
             "own_ns": u64::try_from(took.as_nanos()).unwrap_or(u64::MAX),
-        }})
+        }});
+        if !self.run.gradients.is_empty() {
+            answer["run"]["gradients"] = Value::Array(self.derivatives);
+        }
+        answer
     }
 }
 
@@ -316,16 +394,29 @@ fn made(run: Run, make: Make) -> Value {
     }
 }
 
-/// Answers requests until there are no more. A set-up is a name, a method, its class and its order.
+/// What a program declares of a set-up.
+pub struct Setup {
+    pub name: &'static str,
+    pub method: &'static str,
+    pub class: &'static str,
+    pub order: Option<u32>,
+    /// Whether it runs back in time.
+    pub backward: bool,
+    /// Whether it answers derivatives.
+    pub gradients: bool,
+}
+
+/// Answers requests until there are no more.
 pub fn serve(
     library: &str,
     version: &str,
-    setups: &[(&str, &str, &str, Option<u32>)],
+    setups: &[Setup],
     make: Make,
 ) -> Result<(), Box<dyn Error>> {
-    let setup = |(name, method, class, order): &(&str, &str, &str, Option<u32>)| {
-        json!({"name": name, "method": method, "class": class, "order": order,
-            "events": "library", "dense_output": true, "stepping": "adaptive"})
+    let setup = |it: &Setup| {
+        json!({"name": it.name, "method": it.method, "class": it.class, "order": it.order,
+            "events": "library", "dense_output": true, "stepping": "adaptive",
+            "backward": it.backward, "gradients": it.gradients})
     };
     let setups: Vec<_> = setups.iter().map(setup).collect();
     let mut output = std::io::stdout();
