@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs programs in five languages on six cases at 1e-6: SciPy, SUNDIALS CVODE and ARKODE,
+# Runs programs in five languages on six cases at 1e-6: SciPy, SUNDIALS CVODE, CVODES and ARKODE,
 # Boost.Odeint, deSolve and Octave. One that is not installed is a failure; what each gets wrong
 # stands in shortcomings.toml, and anything else is one too.
 #
@@ -11,7 +11,7 @@ root=$(cd "$here/../.." && pwd)
 packages=(python3-venv gcc g++ make libsundials-dev libcjson-dev libboost-dev r-cran-desolve
     r-cran-jsonlite octave)
 # Octave's other set-ups take minutes.
-engines='^((scipy|cvode|arkode|odeint|desolve)(-|$)|octave$|octave-ode23-default$)'
+engines='^((scipy|cvodes?|arkode|odeint|desolve)(-|$)|octave$|octave-ode23-default$)'
 cases='^(ball-geometric|friction-unequal|latched-start-at-tick|rigid-start-inward|spheres-one-after-another|height-crossed-twice)$'
 
 if ! dpkg -s "${packages[@]}" >/dev/null 2>&1; then

@@ -20,7 +20,7 @@ static const double SIMPLE = 0.1, MULTIPLE = 10;
 static const int MOST_AT_ONCE = 64;
 static const double ONE_INSTANT = 8 * DBL_EPSILON;
 
-static void wide(const percuss_course *course, double t, const double *z, double *w) {
+void percuss_wide(const percuss_course *course, double t, const double *z, double *w) {
     double theta = course->omega * t + course->phi;
     memcpy(w, z, course->size * sizeof *w);
     w[course->size] = cos(theta);
@@ -28,7 +28,7 @@ static void wide(const percuss_course *course, double t, const double *z, double
     w[course->size + 2] = 1.0;
 }
 
-static double dot(const percuss_course *course, const double *row, const double *w) {
+double percuss_dot(const percuss_course *course, const double *row, const double *w) {
     double sum = 0.0;
     for (int i = 0; i < course->size + 3; i++) sum += row[i] * w[i];
     return sum;
@@ -36,9 +36,9 @@ static double dot(const percuss_course *course, const double *row, const double 
 
 bool percuss_rates(percuss_course *course, double t, const double *z, double *rates) {
     percuss_row w;
-    wide(course, t, z, w);
+    percuss_wide(course, t, z, w);
     for (int i = 0; i < course->size; i++)
-        rates[i] = dot(course, course->modes[course->mode].matrix[i], w);
+        rates[i] = percuss_dot(course, course->modes[course->mode].matrix[i], w);
     course->rhs++;
     struct percuss_private *own = course->own;
     if (course->rhs + course->jacobians > own->most_calls)
@@ -62,8 +62,8 @@ void percuss_jacobian(percuss_course *course, double t, double *jacobian, double
 
 double percuss_guard(const percuss_course *course, int event, double t, const double *z) {
     percuss_row w;
-    wide(course, t, z, w);
-    return dot(course, course->modes[course->mode].events[event].guard, w);
+    percuss_wide(course, t, z, w);
+    return percuss_dot(course, course->modes[course->mode].events[event].guard, w);
 }
 
 /* What the first steps may hide of a guard that was zero where its mode begins. */
@@ -103,12 +103,12 @@ static void times(const percuss_course *course, const double *row, percuss_row *
 
 /* Whether a row is a multiple of another one, of 0 at the least. */
 static bool is_multiple(const percuss_course *course, const double *row, const double *of) {
-    double size = dot(course, of, of), along = dot(course, row, of), apart = 0.0;
+    double size = percuss_dot(course, of, of), along = percuss_dot(course, row, of), apart = 0.0;
     for (int i = 0; i < course->size + 3; i++) {
         double rest = row[i] * size - of[i] * along;
         apart += rest * rest;
     }
-    return sqrt(apart) <= 1e-12 * size * sqrt(dot(course, row, row));
+    return sqrt(apart) <= 1e-12 * size * sqrt(percuss_dot(course, row, row));
 }
 
 /* The sign of the first derivative of row . w along a mode that is not zero, and its order. What is
@@ -116,7 +116,7 @@ static bool is_multiple(const percuss_course *course, const double *row, const d
 static int leading(const percuss_course *course, const double *row, int mode, double t,
                    const double *z, const percuss_event *passed, int *order) {
     percuss_row w, derivative, before;
-    wide(course, t, z, w);
+    percuss_wide(course, t, z, w);
     memcpy(derivative, row, sizeof derivative);
     for (*order = 0; *order < course->size + 3; ++*order) {
         bool known = false;
@@ -124,7 +124,7 @@ static int leading(const percuss_course *course, const double *row, int mode, do
             times(course, derivative, (percuss_row *)passed->reset, before);
             known = is_multiple(course, before, passed->guard);
         }
-        double value = dot(course, derivative, w), size = 0.0;
+        double value = percuss_dot(course, derivative, w), size = 0.0;
         for (int i = 0; i < course->size + 3; i++) size += fabs(derivative[i] * w[i]);
         if (!known && fabs(value) > ROUNDING * size) return value > 0 ? 1 : -1;
         times(course, derivative, course->modes[mode].matrix, derivative);
@@ -154,6 +154,7 @@ bool percuss_due(const percuss_course *course, double until, double *time) {
 
 void percuss_count(percuss_course *course, double t, int event, const double *z) {
     percuss_report(course, t, event, course->mode, z, z);
+    percuss_differentiate(course, t, event, z);
 }
 
 /* Whether a mode follows: by the sign of its condition, or after an event that was passed by the
@@ -162,7 +163,7 @@ static bool holds(const percuss_course *course, const percuss_successor *next, d
                   const double *after, const percuss_event *passed) {
     int order;
     if (!next->has_when) return true;
-    if (!passed) return dot(course, next->when, after) > 0;
+    if (!passed) return percuss_dot(course, next->when, after) > 0;
     return leading(course, next->when, next->mode, t, after, passed, &order) > 0;
 }
 
@@ -175,13 +176,14 @@ void percuss_pass(percuss_course *course, double t, int event, const double *z, 
     }
     const percuss_event *passed = &course->modes[course->mode].events[event];
     percuss_row w, after;
-    wide(course, t, z, w);
-    for (int i = 0; i < course->size + 3; i++) after[i] = dot(course, passed->reset[i], w);
+    percuss_wide(course, t, z, w);
+    for (int i = 0; i < course->size + 3; i++) after[i] = percuss_dot(course, passed->reset[i], w);
     int follows = -1;
     for (int n = 0; n < passed->successor_count && follows < 0; n++)
         if (holds(course, &passed->successors[n], t, after, plainly ? NULL : passed))
             follows = passed->successors[n].mode;
     percuss_report(course, t, event, follows, z, after);
+    percuss_differentiate(course, t, event, z);
     struct percuss_private *own = course->own;
     own->crowd = t - course->t <= ONE_INSTANT * t ? own->crowd + 1 : 1;
     course->t = t;

@@ -45,6 +45,19 @@ typedef struct {
     int event_count;
 } percuss_mode;
 
+/* A name by which derivatives are asked for. */
+typedef struct {
+    char wrt[64];
+    double value, omega, phi;
+    /* The derivatives of the coefficients, each in its place. */
+    percuss_mode *modes;
+    /* The derivatives of the time of the last event and of the state after it, at that time. */
+    double time, state[PERCUSS_STATES];
+    /* The derivative of the state of now at a fixed time. Who makes the run writes it before an
+     * event is passed or counted, and at the end. */
+    double fixed[PERCUSS_STATES];
+} percuss_name;
+
 /* A run as it is made. */
 typedef struct {
     /* The system: how many states it has, its forcing, its modes. */
@@ -58,6 +71,10 @@ typedef struct {
     double span, relative, absolute, step, period, turn;
     double *samples;
     int sample_count;
+    percuss_name *names;
+    int name_count;
+    /* Whether derivatives jump at events, as they do; without it they go on as they are. */
+    bool has_jumps;
     /* The run so far: time, mode, state, samples taken; how it ended, or NULL. */
     double t;
     int mode;
@@ -113,6 +130,13 @@ void percuss_count(percuss_course *course, double t, int event, const double *z)
 /* Goes through an event that ends the mode. `plainly` decides what follows by the signs of
  * conditions alone, zero or not. */
 void percuss_pass(percuss_course *course, double t, int event, const double *z, bool plainly);
+
+/* The derivative of the right-hand side by a name, at a fixed time and state. */
+void percuss_rates_by(const percuss_course *course, const percuss_name *name, double t,
+                      const double *z, double *out);
+
+/* The derivative of the state by a name where the mode of now begins, at that fixed time. */
+void percuss_begin_by(percuss_course *course, const percuss_name *name, double *out);
 
 /* Whether the run has not come to its end. */
 bool percuss_goes_on(const percuss_course *course);

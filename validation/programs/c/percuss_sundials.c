@@ -66,6 +66,8 @@ static int begin(sundials_run *run) {
         flag = run->calls->set_root_direction(run->memory, directions);
     }
     if (flag >= 0) flag = run->calls->set_stop_time(run->memory, course->span);
+    bool has_names = course->name_count && run->calls->begin_sensitivities;
+    if (flag >= 0 && has_names) flag = run->calls->begin_sensitivities(run);
     return flag;
 }
 
@@ -126,6 +128,9 @@ static int stretch(sundials_run *run) {
         }
         flag = run->calls->step(run->memory, next, run->z, &t, run->is_default ? NORMAL : ONE_STEP);
         if (flag < 0) break;
+        bool is_asked = run->sensitivities && (flag == ROOT_RETURN || t >= course->span);
+        if (is_asked && run->calls->take_sensitivities(run) < 0)
+            percuss_fail(course, "there are no sensitivities at %g", t);
         sample(run, flag == ROOT_RETURN ? nextafter(t, 0.0) : t);
         if (flag == ROOT_RETURN) ends = roots(run, t);
         percuss_move_on(course, &run->entry, t, N_VGetArrayPointer(run->z));

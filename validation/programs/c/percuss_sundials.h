@@ -16,6 +16,8 @@
 
 typedef int (*sundials_guards)(realtype, N_Vector, realtype *, void *);
 
+struct sundials_run;
+
 /* The functions of an integrator. */
 typedef struct {
     /* Begins anew at a time and state. */
@@ -30,10 +32,14 @@ typedef struct {
     int (*get_jacobians)(void *memory, long *count);
     int (*get_iterations)(void *memory, long *count);
     char *(*get_name)(long flag);
+    /* Begins anew with sensitivities after `begin`, and takes them at the time that the last call
+     * returned; NULL where the integrator has none. */
+    int (*begin_sensitivities)(struct sundials_run *run);
+    int (*take_sensitivities)(struct sundials_run *run);
 } sundials_calls;
 
 /* A run. */
-typedef struct {
+typedef struct sundials_run {
     const sundials_calls *calls;
     percuss_course *course;
     percuss_entry entry;
@@ -44,6 +50,8 @@ typedef struct {
     N_Vector z, at;
     SUNMatrix matrix;
     SUNLinearSolver linear;
+    /* A sensitivity for each name; NULL before they are begun. */
+    N_Vector *sensitivities;
 } sundials_run;
 
 /* Makes the vectors and the linear solver; false where there is no memory for them. */

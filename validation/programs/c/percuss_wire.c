@@ -13,7 +13,7 @@ static double number(const cJSON *object, const char *key) {
 }
 
 /* A list of numbers; of null, nothing. */
-static int numbers(const cJSON *list, double *values) {
+int percuss_numbers(const cJSON *list, double *values) {
     int count = 0;
     const cJSON *item;
     cJSON_ArrayForEach(item, list) values[count++] = item->valuedouble;
@@ -21,7 +21,7 @@ static int numbers(const cJSON *list, double *values) {
 }
 
 static void read_event(percuss_event *event, const cJSON *wire, int size) {
-    numbers(cJSON_GetObjectItem(wire, "guard"), event->guard);
+    percuss_numbers(cJSON_GetObjectItem(wire, "guard"), event->guard);
     const char *direction = cJSON_GetStringValue(cJSON_GetObjectItem(wire, "direction"));
     event->sign = !strcmp(direction, "rising") ? 1 : !strcmp(direction, "falling") ? -1 : 0;
     for (int i = 0; i < size + 3; i++) event->reset[i][i] = 1.0;
@@ -29,14 +29,14 @@ static void read_event(percuss_event *event, const cJSON *wire, int size) {
     int row = 0;
     cJSON_ArrayForEach(item, cJSON_GetObjectItem(wire, "reset")) {
         memset(event->reset[row], 0, sizeof event->reset[row]);
-        numbers(item, event->reset[row++]);
+        percuss_numbers(item, event->reset[row++]);
     }
     const cJSON *successors = cJSON_GetObjectItem(wire, "successors");
     event->successors = calloc((size_t)cJSON_GetArraySize(successors) + 1,
                                sizeof *event->successors);
     cJSON_ArrayForEach(item, successors) {
         percuss_successor *next = &event->successors[event->successor_count++];
-        next->has_when = numbers(cJSON_GetObjectItem(item, "when"), next->when) > 0;
+        next->has_when = percuss_numbers(cJSON_GetObjectItem(item, "when"), next->when) > 0;
         next->mode = (int)number(item, "mode");
     }
 }
@@ -45,10 +45,10 @@ static void read_mode(percuss_mode *mode, const cJSON *wire, int size, double om
     const cJSON *item;
     int row = 0;
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(wire, "A"))
-        numbers(item, mode->matrix[row++]);
+        percuss_numbers(item, mode->matrix[row++]);
     row = 0;
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(wire, "B"))
-        numbers(item, mode->matrix[row++] + size);
+        percuss_numbers(item, mode->matrix[row++] + size);
     row = 0;
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(wire, "c"))
         mode->matrix[row++][size + 2] = item->valuedouble;
@@ -75,7 +75,7 @@ static void read_run(percuss_course *course, const cJSON *run) {
     const cJSON *samples = cJSON_GetObjectItem(run, "samples");
     const char *setup = cJSON_GetStringValue(cJSON_GetObjectItem(run, "setup"));
     snprintf(course->setup, sizeof course->setup, "%s", setup);
-    course->size = numbers(cJSON_GetObjectItem(run, "state"), course->z);
+    course->size = percuss_numbers(cJSON_GetObjectItem(run, "state"), course->z);
     course->mode = (int)number(run, "mode");
     course->span = number(run, "span");
     course->backward = cJSON_IsTrue(cJSON_GetObjectItem(run, "backward"));
@@ -86,11 +86,12 @@ static void read_run(percuss_course *course, const cJSON *run) {
     course->turn = number(times, "turn");
     if (isnan(course->turn)) course->turn = INFINITY;
     course->samples = calloc((size_t)cJSON_GetArraySize(samples) + 1, sizeof *course->samples);
-    course->sample_count = numbers(samples, course->samples);
+    course->sample_count = percuss_numbers(samples, course->samples);
     course->own->most_calls = (int64_t)number(limits, "calls");
     course->own->most_events = (int)number(limits, "events");
     course->own->deadline = percuss_now() + number(limits, "wall_s");
     read_system(course, cJSON_GetObjectItem(run, "system"));
+    percuss_read_names(course, cJSON_GetObjectItem(run, "gradients"));
 }
 
 static void forget(percuss_course *course) {
@@ -101,6 +102,7 @@ static void forget(percuss_course *course) {
     }
     free(course->modes);
     free(course->samples);
+    percuss_forget_names(course);
 }
 
 /* A state in JSON; one that is not finite is a failure. */
@@ -153,6 +155,8 @@ static void answer_run(cJSON *answer, percuss_course *course, double seconds) {
     cJSON_AddNumberToObject(work, "linear_solves", (double)course->linear_solves);
     cJSON_AddNumberToObject(work, "steps", (double)course->steps);
     cJSON_AddNumberToObject(run, "own_ns", floor(1e9 * seconds));
+    if (course->name_count && !course->ended)
+        cJSON_AddItemToObject(run, "gradients", percuss_derivatives(course));
 }
 
 static void write_answer(cJSON *answer) {
