@@ -108,15 +108,18 @@ fn adopt(course: &mut Course, outcome: &Outcome, trail: &[Passed]) {
 
 /// Steps to the stop time; the derivatives there, a list for each name.
 fn to_the_end<'a, Eqn>(
+    course: &Course,
     mut solver: impl SensitivitiesOdeSolverMethod<'a, Eqn>,
     end: f64,
-    names: usize,
 ) -> Result<Vec<Vec<f64>>, Box<dyn Error>>
 where
     Eqn: OdeEquationsImplicitSens<T = f64, V = NalgebraVec<f64>> + 'a,
 {
     solver.set_stop_time(end)?;
-    while !matches!(solver.step()?, OdeSolverStopReason::TstopReached) {}
+    while !matches!(solver.step()?, OdeSolverStopReason::TstopReached) {
+        course.within_limits()?;
+    }
+    let names = course.run.gradients.len();
     Ok((0..names).map(|n| solver.state().s.batch_as_slice(n).to_vec()).collect())
 }
 
@@ -151,9 +154,9 @@ fn along(
         )
         .build()?;
     if course.run.setup.starts_with("bdf") {
-        to_the_end(problem.bdf_sens::<NalgebraLU<f64>>()?, end, by.len())
+        to_the_end(course, problem.bdf_sens::<NalgebraLU<f64>>()?, end)
     } else {
-        to_the_end(problem.tsit45_sens()?, end, by.len())
+        to_the_end(course, problem.tsit45_sens()?, end)
     }
 }
 

@@ -273,6 +273,11 @@ impl Course {
     /// Counts a step, and ends a run that goes beyond its limits.
     pub fn step(&mut self) -> Result<(), Box<dyn Error>> {
         self.steps += 1;
+        self.within_limits()
+    }
+
+    /// Ends a run that goes beyond its limits.
+    pub fn within_limits(&self) -> Result<(), Box<dyn Error>> {
         if self.calls.get() > self.run.limits.calls {
             return Err(Box::new(GaveUp("too many calls")));
         }
