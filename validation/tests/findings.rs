@@ -58,7 +58,7 @@ fn every_engine_is_shown_with_its_librarys_version() {
 
 #[test]
 fn every_program_is_short_shown_and_of_one_library() {
-    let page = read("docs/FINDINGS.md");
+    let page = read("docs/FINDINGS.md") + &read("docs/GRADIENT_FINDINGS.md");
     let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
     let folder = root().join("docs/findings/examples");
     let mut programs = 0;
@@ -67,7 +67,7 @@ fn every_program_is_short_shown_and_of_one_library() {
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         let text = read(&path);
         assert!(text.lines().count() <= MOST_LINES, "{name} has over {MOST_LINES} lines");
-        assert!(page.contains(&format!("--example {name}`")), "{name} is not on the page");
+        assert!(page.contains(&format!("--example {name}`")), "{name} is on neither page");
         let used = LIBRARIES.iter().filter(|it| text.contains(&format!("use {it}::"))).count();
         assert!(used == 1 && !text.contains("percuss"), "{name} is not of one library alone");
         programs += 1;
