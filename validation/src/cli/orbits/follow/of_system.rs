@@ -155,7 +155,7 @@ fn drawing(
         });
     }
     let caption = format!(
-        "orbits of {} returns to {}, followed from {} to {}",
+        "orbits of period {} in returns to {}, followed from {} to {}",
         arguments.period,
         arguments.section.text(),
         arguments.from,
