@@ -1,6 +1,6 @@
 //! Orbits and exponents of return maps, beside closed forms and the oscillator's own.
 
-use percuss::affine::{Exponents, Orbit, Place, SectionMap, Solver, System};
+use percuss::affine::{Exponents, Orbit, Place, Plane, SectionMap, Solver, System};
 use percuss::dynamics::orbit::{Orbit as StrobeOrbit, scan};
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::system::Section;
@@ -172,5 +172,37 @@ fn the_oscillators_orbits_are_its_own() {
             let apart = (found[0] - own[0]).hypot(found[1] - own[1]);
             assert!(apart < 1e-9 * (1.0 + own[0].hypot(own[1])), "{orbit:?} {known:?}");
         }
+    }
+}
+
+/// A scan of starts finds the orbits that the oscillator's own finds, in the same order.
+#[test]
+fn a_scan_finds_the_oscillators_orbits() {
+    let parameters = Parameters { xi: 0.1, omega: 1.6, ..Parameters::default() };
+    let model = Model::new(parameters).unwrap();
+    let own = scan(&StrobeMap::new(model, Instant::at(1.6, 0.0, 0)), 6, &mut |_| ());
+    let text = OSCILLATOR.replace("xi = 0.01", "xi = 0.1");
+    let text = text.replace("frequency = 1.4", "frequency = 1.6");
+    let system = System::parse("oscillator.system.toml", &text).unwrap();
+    let solver = Solver::<f64>::new(&system).unwrap();
+    let map = SectionMap::new(&solver, &Section::strobe(0.0)).unwrap();
+    let plane = Plane { axes: [0, 1], window: [[-2.0, 2.0]; 2], columns: 24, rows: 24 };
+    let seen = std::sync::atomic::AtomicU64::new(0);
+    let told = |count| {
+        seen.fetch_add(count, std::sync::atomic::Ordering::Relaxed);
+    };
+    let found = map.orbits(system.start.as_ref().unwrap(), &plane, 6, &told).unwrap();
+    assert_eq!(seen.into_inner(), 24 * 24);
+    assert!(own.len() >= 6 && found.len() == own.len(), "{} {}", found.len(), own.len());
+    for (found, own) in found.iter().zip(&own) {
+        assert_eq!((found.period() as u32, found.is_stable()), (own.period(), own.is_stable()));
+        for (found, own) in found.multipliers.iter().zip(own.multipliers) {
+            // Multipliers are products of six returns that grow and decay.
+            let apart = (found[0] - own[0]).hypot(found[1] - own[1]);
+            assert!(apart < 1e-9 * (1.0 + own[0].hypot(own[1])), "{found:?} {own:?}");
+        }
+        let least = own.points.iter().map(|it| it[0]).fold(f64::INFINITY, f64::min);
+        assert!((found.points[0].state[0] - least).abs() < ROUNDINGS, "{found:?} {own:?}");
+        assert!((found.drift_per_return[0] - own.drift_per_period).abs() < 1e-9, "{found:?}");
     }
 }

@@ -63,6 +63,10 @@ const MISSING_FOLDER: &[&str] = &["/no/such/folder/file.json"];
 /// The steps of a sweep.
 const SWEEP: &[&str] = &["sweep run", "sweep status", "sweep merge"];
 
+/// All orbits of a system.
+const RELAY_ORBITS: [&str; 7] =
+    ["orbit", "relay-feedback", "--section", "switch-up", "--period", "1", "--all"];
+
 /// A branch of a system.
 const BRANCH: [&str; 10] = [
     "continue",
@@ -154,7 +158,11 @@ const ROWS: &[Row] = &[
         &["0.5", "impact"],
         "without SYSTEM",
     ),
-    (&["attractors", "basins"], "--axes", &["", "x,v"], "without SYSTEM"),
+    (&["attractors", "basins", "orbit"], "--axes", &["", "x,v"], "without SYSTEM"),
+    (&["orbit"], "--grid", &["", "x", "-5x5", "5", "1e3x1e3"], "NXxNY"),
+    (&["orbit"], "--grid", &["5x5"], "without SYSTEM"),
+    (&["orbit"], "--window", &["", "1,2", "1,0,0,1", "nan,1,0,1"], "pmin,pmax"),
+    (&["orbit"], "--window", &["0,1,0,1"], "without SYSTEM"),
     (&["orbit", "continue"], "--transient", INTEGERS, "0 to 1000000000"),
     (&["orbit", "continue"], "--transient", &["3"], "without SYSTEM"),
     (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
@@ -457,10 +465,13 @@ fn flags_without_effect() {
             &["switch-up@up", "switch-up@down"],
         ),
         ([&RELAY[..], &["--xi", "1"]].concat(), &["--xi 1", "--set"]),
+        (RELAY_ORBITS.to_vec(), &["--all", "SYSTEM"]),
+        ([&RELAY_ORBITS[..], &["--grid", "2x2"]].concat(), &["--all", "--window"]),
         (
-            vec!["orbit", "relay-feedback", "--section", "switch-up", "--period", "1", "--all"],
-            &["--all", "SYSTEM"],
+            [&RELAY_ORBITS[..], &["--transient", "3"]].concat(),
+            &["--transient 3 is not accepted with --all"],
         ),
+        ([&RELAY_ORBITS[..6], &["--grid", "2x2"]].concat(), &["--grid 2x2", "--all"]),
         ([&BRANCH[..], &["--doubled"]].concat(), &["--doubled", "SYSTEM"]),
         ([&BRANCH[..], &["--set", "Vin=1"]].concat(), &["--set Vin=1", "--parameter Vin"]),
         ([&BRANCH[..], &["--xi", "1"]].concat(), &["--xi 1", "--set"]),

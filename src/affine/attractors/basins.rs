@@ -54,6 +54,16 @@ impl Plane {
         self.columns as usize * self.rows as usize
     }
 
+    /// All starts of a solver's system, row by row from the lowest on, at a start but for the two
+    /// states.
+    pub(super) fn places(
+        &self,
+        solver: &Solver<f64>,
+        start: &StartPoint,
+    ) -> Result<Vec<Place<f64>>, SystemError> {
+        self.starts(&PlaneStart::of(solver, start, &self.axes)?)
+    }
+
     /// All starts, row by row from the lowest on, at a start but for the two states.
     fn starts(&self, at: &PlaneStart<'_>) -> Result<Vec<Place<f64>>, SystemError> {
         let [across, up] = [0, 1].map(|axis| self.centres(axis));

@@ -16,13 +16,14 @@
 //! What is none of these stays unresolved, as does a start at which an orbit attracts too slowly.
 //! [`space`] has the co-ordinates, [`known`] what a motion is recognised by ([`recognition`]);
 //! [`search`] says what a motion settles on, and [`catalog`] labels starts, those of a grid in
-//! [`basins`]. Read them in this order.
+//! [`basins`]. Read them in this order. [`scan`] finds orbits, unstable ones too, from such a grid.
 
 pub mod basins;
 mod catalog;
 mod cells;
 mod known;
 mod recognition;
+mod scan;
 mod search;
 mod space;
 mod trap;
@@ -83,13 +84,7 @@ pub const POINTS: usize = crate::dynamics::attractor::POINTS;
 impl ReturnAttractor {
     /// An attractor that is a stable orbit, told from its smallest first state on.
     fn periodic(map: &SectionMap<'_, f64>, orbit: Orbit, places: &[Place<f64>]) -> Self {
-        let smallest =
-            |a: &&Place<f64>, b: &&Place<f64>| first(&a.state).total_cmp(&first(&b.state));
-        let told = places
-            .iter()
-            .min_by(smallest)
-            .and_then(|it| map.orbit(it, u32::try_from(orbit.period()).ok()?).ok());
-        let orbit = told.filter(|told| told.period() == orbit.period()).unwrap_or(orbit);
+        let orbit = from_smallest(map, orbit, places);
         let [re, im] = orbit.multipliers.first().copied().unwrap_or_default();
         Self {
             kind: AttractorKind::Periodic,
@@ -131,6 +126,16 @@ impl ReturnAttractor {
     fn smallest(&self) -> f64 {
         self.points.iter().map(|it| first(&it.state)).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// An orbit, whose points have these places, from its smallest first state on.
+fn from_smallest(map: &SectionMap<'_, f64>, orbit: Orbit, places: &[Place<f64>]) -> Orbit {
+    let smallest = |a: &&Place<f64>, b: &&Place<f64>| first(&a.state).total_cmp(&first(&b.state));
+    let told = places
+        .iter()
+        .min_by(smallest)
+        .and_then(|it| map.orbit(it, u32::try_from(orbit.period()).ok()?).ok());
+    told.filter(|told| told.period() == orbit.period()).unwrap_or(orbit)
 }
 
 fn first(state: &[f64]) -> f64 {

@@ -7,7 +7,7 @@
 mod least;
 mod multipliers;
 mod newton;
-mod scan;
+pub(crate) mod scan;
 mod shooting;
 
 use super::strobe::{StrobeMap, StrobePoint};

@@ -9,11 +9,11 @@ const SIDE: [u32; 2] = [12, 3];
 /// Starts times period: beyond it there are fewer starts.
 const EFFORT: u32 = 10_000;
 /// Forcing periods after which a motion counts as settled.
-const SETTLING: u64 = 300;
+pub(crate) const SETTLING: u64 = 300;
 /// Forcing periods of settled motion that are searched for the closest return.
-const WATCHED: u64 = 60;
+pub(crate) const WATCHED: u64 = 60;
 /// Two orbits whose strobes are this close are one: they were found to their last digits.
-const SAME: f64 = 1e-9;
+pub(crate) const SAME: f64 = 1e-9;
 
 /// The orbits of `period` forcing periods, or of a divisor of it, that Newton's method reaches from
 /// a grid of starts, from where the motions from there settle, and from their closest returns.

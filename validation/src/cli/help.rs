@@ -373,6 +373,9 @@ Examples:
   percuss orbit relay-feedback --section switch-up --period 1 \\
       --format table
       of a system, from the motion that its start leads to
+  percuss orbit rigid-impact-oscillator --period 3 --all \\
+      --grid 12x12 --window=-1,0.1,-1,1 --format table
+      all of a system that are reached from a grid of starts
 
 Words:
   orbit           a motion that repeats, but for its drift, after a

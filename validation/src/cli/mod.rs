@@ -132,7 +132,7 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Score(score) => score::run(score, arguments.threads),
         Verb::Reproduce(reproduce) => reproduce::run(reproduce, arguments.threads),
         Verb::Bench(bench) => bench::run(bench),
-        Verb::Orbit(orbit) => orbits::find::run(orbit),
+        Verb::Orbit(orbit) => orbits::find::run(orbit, arguments.threads),
         Verb::Continue(branch) => orbits::follow::run(branch),
         Verb::Sweep(sweep) => sweep::run(sweep, arguments.threads),
         Verb::Cases(cases) => cases::run(cases).map(|()| DONE),

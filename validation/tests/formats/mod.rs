@@ -297,6 +297,14 @@ fn orbit_of_a_system() {
     let none = json_of(&[&ball[..], &["--transient", "90"]].concat(), 1);
     assert_valid("orbit-system.schema.json", &none);
     assert_eq!(none["converged"], false);
+    let all = ["--all", "--grid", "3x3", "--window=-1,1,-1,1", "--axes", "x1,x3"];
+    let found = json_of(&[&relay[..], &["1"], &all[..]].concat(), 0);
+    assert_valid("orbit-system.schema.json", &found);
+    assert_eq!(found["orbits"].as_array().map(Vec::len), Some(1));
+    let ball = [&ball[..], &["--all", "--grid", "2x2", "--window", "0,1,-1,1"]].concat();
+    let none = json_of(&ball, 1);
+    assert_valid("orbit-system.schema.json", &none);
+    assert_eq!(none["orbits"], serde_json::json!([]));
 }
 
 #[test]

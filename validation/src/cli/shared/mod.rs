@@ -17,6 +17,7 @@ pub(super) mod output;
 pub(super) mod outputs;
 pub(super) mod parse;
 pub(super) mod picture;
+pub(super) mod plane;
 pub(super) mod programs;
 pub(super) mod progress;
 pub(super) mod reports;

@@ -8,12 +8,13 @@ use super::{AttractorFormat, GridFlags};
 use crate::arrays::Npz;
 use crate::cli::shared::long_work;
 use crate::cli::shared::output::Destination;
+use crate::cli::shared::plane::plane;
 use crate::cli::shared::section::SectionFlags;
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::picture::{BasinMap, ShownAttractor};
-use anyhow::{Result, bail};
+use anyhow::Result;
 use percuss::System;
-use percuss::affine::{Plane, ReturnAttractor, ReturnBasins, Solver};
+use percuss::affine::{ReturnAttractor, ReturnBasins, Solver};
 use percuss::dynamics::attractor::{Label, SearchLimits};
 
 /// A surveyed grid of a system's starts.
@@ -33,7 +34,7 @@ impl Survey {
         threads: Option<u16>,
     ) -> Result<Self> {
         let system = chosen.system()?;
-        let plane = grid.plane(&system)?;
+        let plane = plane(&system, grid.axes.as_deref(), grid.grid, grid.window)?;
         let limits = grid.limits();
         let solver = Solver::<f64>::new(&system)?;
         let map = section.map(&solver)?;
@@ -120,31 +121,5 @@ fn array_name(state: &str) -> String {
     match state {
         "labels" | "ids" | "meta" => format!("state.{state}"),
         _ => state.to_owned(),
-    }
-}
-
-impl GridFlags {
-    /// The grid of two states.
-    fn plane(&self, system: &System) -> Result<Plane> {
-        let [columns, rows] = self.grid;
-        let window = [self.window.p, self.window.y];
-        Ok(Plane { axes: self.axes_of(system)?, window, columns, rows })
-    }
-
-    fn axes_of(&self, system: &System) -> Result<[usize; 2]> {
-        let states = &system.states;
-        let accepted = || format!("accepted are two of {}", states.join(", "));
-        let Some(text) = &self.axes else {
-            if states.len() < 2 {
-                bail!("{} has one state, and no grid of two: {}", system.name, states.join(", "));
-            }
-            return Ok([0, 1]);
-        };
-        let names: Vec<&str> = text.split(',').map(str::trim).collect();
-        let place = |name: &&str| states.iter().position(|it| it == name);
-        match names.iter().map(place).collect::<Option<Vec<_>>>().as_deref() {
-            Some([across, up]) if across != up => Ok([*across, *up]),
-            _ => bail!("--axes {text} is not accepted: {}", accepted()),
-        }
     }
 }

@@ -14,6 +14,7 @@ use crate::cli::shared::system_choice::SystemChoice;
 use crate::cli::{DONE, OUT_OF_BOUNDS, note, say};
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
+use percuss::dynamics::attractor::Window;
 use percuss::dynamics::orbit::{Orbit, scan};
 use percuss::dynamics::strobe::StrobeMap;
 
@@ -35,13 +36,52 @@ pub(crate) struct Arguments {
     transient: Option<u64>,
     #[command(flatten)]
     section: SectionFlags,
-    /// Prints all orbits that the scan finds, not the first alone; a table prints them all anyway
+    /// Prints all orbits that the scan finds, not the first alone; a table prints them all anyway.
+    /// With SYSTEM: those that are reached from a --grid of starts
     #[arg(long)]
     all: bool,
+    #[command(flatten)]
+    starts: StartGridFlags,
     #[command(flatten)]
     output: OutputFlags<OrbitFormat>,
     #[command(flatten)]
     model: ModelFlags,
+}
+
+/// The grid of starts of a SYSTEM that a scan begins at.
+#[derive(Args, Clone, Debug)]
+struct StartGridFlags {
+    /// With SYSTEM and --all: the states across and up [default: its first two]
+    #[arg(long, value_name = "NAME,NAME")]
+    axes: Option<String>,
+    /// With SYSTEM and --all: cells across and up; starts are their centres
+    #[arg(long, value_name = "NXxNY", value_parser = parse::grid)]
+    grid: Option<[u32; 2]>,
+    /// With SYSTEM and --all: rectangle of the two states that the cells cover
+    #[arg(long, value_name = "pmin,pmax,ymin,ymax", value_parser = parse::window, allow_hyphen_values = true)]
+    window: Option<Window>,
+}
+
+impl StartGridFlags {
+    /// A flag that is given, and its value.
+    fn given(&self) -> Option<(&'static str, String)> {
+        let axes = self.axes.clone().map(|it| ("--axes", it));
+        let grid = self.grid.map(|[across, up]| ("--grid", format!("{across}x{up}")));
+        let window = self.window.map(|Window { p: [left, right], y: [low, high] }| {
+            ("--window", format!("{left},{right},{low},{high}"))
+        });
+        axes.or(grid).or(window)
+    }
+
+    fn refuse_without_system(&self) -> Result<()> {
+        self.given().map_or(Ok(()), |(flag, value)| bail!("{}", without_system(flag, &value)))
+    }
+
+    fn refuse_without_all(&self) -> Result<()> {
+        self.given().map_or(Ok(()), |(flag, value)| {
+            bail!("{flag} {value} is not accepted without --all, which scans a grid of starts")
+        })
+    }
 }
 
 /// The output format of orbits: a table on a terminal, JSON elsewhere.
@@ -53,13 +93,14 @@ enum OrbitFormat {
     Table,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
+pub(crate) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let destination = arguments.output.destination();
     let usual = if destination.is_terminal() { OrbitFormat::Table } else { OrbitFormat::Json };
     let format = arguments.output.format(usual)?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
-        return of_system::run(arguments, &chosen, format);
+        return of_system::run(arguments, &chosen, format, threads);
     }
+    arguments.starts.refuse_without_system()?;
     arguments.section.refuse()?;
     if let Some(transient) = arguments.transient {
         bail!("{}", without_system("--transient", &transient));

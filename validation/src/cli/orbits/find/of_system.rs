@@ -1,8 +1,11 @@
-//! `orbit SYSTEM`: a periodic orbit of a section's return map, from the start of a system.
+//! `orbit SYSTEM`: periodic orbits of a section's return map, from the start of a system, or all
+//! that are reached from a grid of starts.
 
 use super::super::of_system::{PointJson, guess, points};
-use super::{Arguments, OrbitFormat};
+use super::{Arguments, OrbitFormat, StartGridFlags};
 use crate::cli::shared::drift;
+use crate::cli::shared::long_work;
+use crate::cli::shared::plane::plane;
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::{DONE, OUT_OF_BOUNDS, note, say};
 use anyhow::{Result, bail};
@@ -10,6 +13,9 @@ use percuss::affine::{NoOrbit, Orbit, SectionMap, Solver, System};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+
+const OPEN_ORDER: &str = "rounding leaves the order of two events of an orbit open: its multipliers \
+                          are those of one side";
 
 /// The JSON of `orbit SYSTEM`; if no orbit was found, the lists are empty and the numbers null.
 #[derive(Serialize)]
@@ -31,14 +37,44 @@ struct OrbitJson<'a> {
     residual: Option<f64>,
 }
 
-/// Finds and writes the orbit.
-pub(super) fn run(arguments: &Arguments, chosen: &ChosenSystem, format: OrbitFormat) -> Result<u8> {
-    if arguments.all {
-        bail!("--all is not accepted with SYSTEM, whose start leads to one orbit");
-    }
+/// The JSON of `orbit SYSTEM --all`; no orbits where none was found.
+#[derive(Serialize)]
+struct OrbitsJson<'a> {
+    schema: u32,
+    percuss: &'static str,
+    system: &'a str,
+    parameters: &'a BTreeMap<String, f64>,
+    states: &'a [String],
+    orbits: Vec<ListedOrbit<'a>>,
+}
+
+/// An orbit of a list.
+#[derive(Serialize)]
+struct ListedOrbit<'a> {
+    period: usize,
+    time: f64,
+    points: Vec<PointJson<'a>>,
+    events: Vec<String>,
+    multipliers: &'a [[f64; 2]],
+    stable: bool,
+    drift_per_return: BTreeMap<&'a str, f64>,
+    residual: f64,
+}
+
+/// Finds and writes the orbit, or all of a grid.
+pub(super) fn run(
+    arguments: &Arguments,
+    chosen: &ChosenSystem,
+    format: OrbitFormat,
+    threads: Option<u16>,
+) -> Result<u8> {
     let system = chosen.system()?;
     let solver = Solver::<f64>::new(&system)?;
     let map = arguments.section.map(&solver)?;
+    if arguments.all {
+        return all(arguments, &map, format, threads);
+    }
+    arguments.starts.refuse_without_all()?;
     let found = found(&map, arguments)?;
     let destination = arguments.output.destination();
     match format {
@@ -51,10 +87,7 @@ pub(super) fn run(arguments: &Arguments, chosen: &ChosenSystem, format: OrbitFor
     Ok(match found {
         Ok(orbit) => {
             if !orbit.is_decided {
-                note(
-                    "rounding leaves the order of two events of the orbit open: its multipliers are \
-                     those of one side",
-                );
+                note(OPEN_ORDER);
             }
             DONE
         }
@@ -63,6 +96,72 @@ pub(super) fn run(arguments: &Arguments, chosen: &ChosenSystem, format: OrbitFor
             OUT_OF_BOUNDS
         }
     })
+}
+
+/// Finds and writes all orbits that are reached from a grid of starts.
+fn all(
+    arguments: &Arguments,
+    map: &SectionMap<'_, f64>,
+    format: OrbitFormat,
+    threads: Option<u16>,
+) -> Result<u8> {
+    if let Some(transient) = arguments.transient {
+        bail!(
+            "--transient {transient} is not accepted with --all, which begins at the starts \
+             themselves, and where they settle"
+        );
+    }
+    let StartGridFlags { axes, grid, window } = &arguments.starts;
+    let (Some(grid), Some(window)) = (grid, window) else {
+        bail!(
+            "--all with SYSTEM needs a grid of starts: accepted are --grid and --window, such as \
+             --grid 12x12 --window=-1,1,-1,1"
+        );
+    };
+    let system = map.system();
+    let plane = plane(system, axes.as_deref(), *grid, *window)?;
+    let bar = long_work::bar(plane.count() as u64, "starts");
+    let seen = |count| bar.inc(count);
+    let (start, period) = (system.start()?, arguments.period);
+    let found = long_work::pool(threads)?.install(|| map.orbits(start, &plane, period, &seen))?;
+    bar.finish_and_clear();
+    let destination = arguments.output.destination();
+    match format {
+        OrbitFormat::Json => destination.json(&list(system, &found))?,
+        OrbitFormat::Table => {
+            let tables: Vec<_> = found.iter().map(|it| table(system, it)).collect();
+            destination.write(|out| Ok(out.write_all(tables.join("\n").as_bytes())?))?;
+        }
+    }
+    if found.iter().any(|it| !it.is_decided) {
+        note(OPEN_ORDER);
+    }
+    if found.is_empty() {
+        say(&format!("no orbit of {period} returns was found from the starts of the grid"));
+        return Ok(OUT_OF_BOUNDS);
+    }
+    Ok(DONE)
+}
+
+fn list<'a>(system: &'a System, found: &'a [Orbit]) -> OrbitsJson<'a> {
+    let listed = |orbit: &'a Orbit| ListedOrbit {
+        period: orbit.period(),
+        time: orbit.time,
+        points: points(system, orbit),
+        events: orbit.event_names(system),
+        multipliers: &orbit.multipliers,
+        stable: orbit.is_stable(),
+        drift_per_return: drift::by_name(system, &orbit.drift_per_return),
+        residual: orbit.residual,
+    };
+    OrbitsJson {
+        schema: 1,
+        percuss: env!("CARGO_PKG_VERSION"),
+        system: &system.name,
+        parameters: &system.parameters,
+        states: &system.states,
+        orbits: found.iter().map(listed).collect(),
+    }
 }
 
 /// The orbit that is reached from the return after the transient.

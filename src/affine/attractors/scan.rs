@@ -1,0 +1,122 @@
+//! Orbits found without a guess: Newton's method from the starts of a plane.
+
+use super::basins::Plane;
+use super::space::{Space, Spot};
+use super::{first, from_smallest};
+use crate::affine::model::error::SystemError;
+use crate::affine::model::system::StartPoint;
+use crate::affine::returns::map::SectionMap;
+use crate::affine::returns::orbit::Orbit;
+use crate::affine::run::place::Place;
+use crate::dynamics::linear::modulus;
+use crate::dynamics::orbit::scan::{SAME, SETTLING, WATCHED};
+use crate::dynamics::parallel;
+use std::cmp::Ordering;
+
+impl SectionMap<'_, f64> {
+    /// The orbits of `period` returns, or of a divisor of it, that Newton's method reaches from the
+    /// starts of a plane, from where the motions from there settle, and from their closest returns.
+    /// The other states, the time and the mode of a start are as [`SectionMap::basins`] has them.
+    ///
+    /// Orbits of the whole period come first; among these, stable ones; then the least leading
+    /// multiplier, then the smallest first state. `seen` is told of how many starts more are done.
+    /// What is found is there; what is not found may be there too. Results are the same for any
+    /// number of threads.
+    ///
+    /// # Errors
+    /// A start in no mode, with more or fewer states than the system has, or whose structural zeros
+    /// are more than one can hold.
+    pub fn orbits(
+        &self,
+        start: &StartPoint,
+        plane: &Plane,
+        period: u32,
+        seen: &(dyn Fn(u64) + Sync),
+    ) -> Result<Vec<Orbit>, SystemError> {
+        let space = Space::of(self);
+        let starts = plane.places(self.solver(), start)?;
+        let reached = parallel::map(&starts, |start| {
+            let reached = space.reached(start, period);
+            seen(1);
+            reached
+        });
+        let mut found: Vec<Orbit> = Vec::new();
+        for orbit in reached.into_iter().flatten() {
+            if !found.iter().any(|it| space.is_same(it, &orbit)) {
+                found.push(orbit);
+            }
+        }
+        found.sort_by(|a, b| preferred(a, b, period));
+        Ok(found)
+    }
+}
+
+impl Space<'_> {
+    /// The orbits that Newton's method reaches from a start's guesses, each from its smallest first
+    /// state on: what is found does not depend on which start found it.
+    fn reached(&self, start: &Place<f64>, period: u32) -> Vec<Orbit> {
+        let guesses = self.guesses(start, period);
+        let found = guesses.iter().filter_map(|it| self.map.orbit_with_places(it, period).ok());
+        found.map(|(orbit, places)| from_smallest(self.map, orbit, &places)).collect()
+    }
+
+    /// The first return from a start, the settled motion, and where that comes closest to itself.
+    fn guesses(&self, start: &Place<f64>, period: u32) -> Vec<Place<f64>> {
+        if !self.map.solver().admits(start) {
+            return Vec::new();
+        }
+        let Some(first) = self.after(start, 1) else { return Vec::new() };
+        let Some(settled) = self.after(&first, SETTLING) else { return vec![first] };
+        let closest = self.closest(&settled, period);
+        [Some(first), Some(settled), closest].into_iter().flatten().collect()
+    }
+
+    fn after(&self, from: &Place<f64>, returns: u64) -> Option<Place<f64>> {
+        self.follow(from, returns, &mut |_, _, _| None).ok()
+    }
+
+    /// The place of a settled motion that is nearest to that of so many returns later.
+    fn closest(&self, settled: &Place<f64>, period: u32) -> Option<Place<f64>> {
+        let next = |place: &Place<f64>| self.after(place, 1);
+        let places = std::iter::successors(Some(settled.clone()), next);
+        let places: Vec<_> = places.take((WATCHED + u64::from(period)) as usize).collect();
+        let later = places.iter().skip(period as usize);
+        let apart = |a: &Place<f64>, b: &Place<f64>| self.apart(&self.spot_of(a), &self.spot_of(b));
+        let pairs = places.iter().zip(later).map(|(a, b)| (apart(a, b), a));
+        pairs.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, place)| place.clone())
+    }
+
+    /// The largest distance of two spots in a co-ordinate, infinite of different modes.
+    fn apart(&self, one: &Spot, other: &Spot) -> f64 {
+        if one.mode != other.mode {
+            return f64::INFINITY;
+        }
+        self.step(one, other).iter().fold(0.0, |most, it| it.abs().max(most))
+    }
+
+    /// Whether two orbits are one, wherever they begin.
+    fn is_same(&self, one: &Orbit, other: &Orbit) -> bool {
+        let [one, other] = [one, other].map(|it| {
+            let spots = it.points.iter().map(|point| self.spot(point));
+            spots.collect::<Vec<_>>()
+        });
+        let size = |it: &Spot| it.at.iter().fold(0.0_f64, |most, it| it.abs().max(most));
+        let is_near = |(a, b): (&Spot, &Spot)| self.apart(a, b) <= SAME * (1.0 + size(a));
+        let count = other.len();
+        one.len() == count
+            && (0..count).any(|turn| one.iter().zip(other.iter().cycle().skip(turn)).all(is_near))
+    }
+}
+
+/// The order of preference.
+fn preferred(a: &Orbit, b: &Orbit, period: u32) -> Ordering {
+    let is_shorter = |it: &Orbit| it.period() != period as usize;
+    let leading = |it: &Orbit| it.multipliers.first().map_or(0.0, |it| modulus(*it));
+    let smallest = |it: &Orbit| it.points.first().map_or(0.0, |it| first(&it.state));
+    is_shorter(a)
+        .cmp(&is_shorter(b))
+        .then(b.period().cmp(&a.period()))
+        .then(b.is_stable().cmp(&a.is_stable()))
+        .then(leading(a).total_cmp(&leading(b)))
+        .then(smallest(a).total_cmp(&smallest(b)))
+}
