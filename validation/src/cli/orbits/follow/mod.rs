@@ -20,7 +20,7 @@ use crate::cli::{DONE, OUT_OF_BOUNDS, say};
 use crate::picture::{self, Figure};
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
-use draw::{DrawnBifurcation, DrawnOrbit};
+use draw::{DrawnBifurcation, DrawnOrbit, DrawnPoints};
 use percuss::dynamics::continuation::{
     BifurcationKind, Branch, BranchEnding, Criticality, Doubling, Family,
 };
@@ -98,16 +98,14 @@ fn drawing(arguments: &Arguments, followed: &Followed) -> Result<Figure> {
     let all: Vec<&BranchJson> = std::iter::once(&followed.branch).chain(doubled).collect();
     let orbits = |it: &&BranchJson| {
         let orbit = |it: &JsonPlace| DrawnOrbit {
-            value: it.parameter,
-            points: vec![it.point[0]],
+            at: DrawnPoints { value: it.parameter, points: vec![it.point[0]] },
             is_stable: it.stable,
         };
         it.branch.iter().map(orbit).collect::<Vec<_>>()
     };
     let found = |it: &Special| DrawnBifurcation {
         name: it.r#type.to_owned(),
-        value: it.value,
-        points: vec![it.point[0]],
+        at: DrawnPoints { value: it.value, points: vec![it.point[0]] },
     };
     let branches: Vec<_> = all.iter().map(orbits).collect();
     let found: Vec<_> = all.iter().flat_map(|it| it.bifurcations.iter().map(found)).collect();

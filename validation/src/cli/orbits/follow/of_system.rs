@@ -3,7 +3,7 @@
 use super::super::Format;
 use super::super::of_system::{PointJson, guess, points};
 use super::Arguments;
-use super::draw::{self, DrawnBifurcation, DrawnOrbit};
+use super::draw::{self, DrawnBifurcation, DrawnOrbit, DrawnPoints};
 use crate::cli::shared::long_work;
 use crate::cli::shared::output;
 use crate::cli::shared::outputs::Outputs;
@@ -143,16 +143,14 @@ fn drawing(
     let (mut orbits, mut found) = (Vec::new(), Vec::new());
     for (value, orbit) in branch.iter().flat_map(|it| &it.points) {
         let (value, is_stable) = (*value, orbit.is_stable());
-        orbits.push(DrawnOrbit { value, points: points(value, orbit)?, is_stable });
+        let at = DrawnPoints { value, points: points(value, orbit)? };
+        orbits.push(DrawnOrbit { at, is_stable });
     }
     for it in branch.iter().flat_map(|it| &it.bifurcations) {
         let event = it.event.map(|event| format!(" {}", event.name(system))).unwrap_or_default();
         let name = format!("{}{event}", it.kind.as_str());
-        found.push(DrawnBifurcation {
-            name,
-            value: it.value,
-            points: points(it.value, &it.orbit)?,
-        });
+        let at = DrawnPoints { value: it.value, points: points(it.value, &it.orbit)? };
+        found.push(DrawnBifurcation { name, at });
     }
     let caption = format!(
         "orbits of period {} in returns to {}, followed from {} to {}",
