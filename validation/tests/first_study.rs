@@ -4,15 +4,6 @@
 //! `PERCUSS_SPLICE=1 cargo test --test harness first_study::` writes output and pictures anew.
 
 use crate::support::transcripts;
-use std::collections::BTreeSet;
-
-/// Holds a page; its pictures.
-fn hold(name: &str) -> BTreeSet<String> {
-    let page = transcripts::page(name);
-    let folder = tempfile::tempdir().expect("a folder");
-    transcripts::hold(&page, folder.path(), "first_study::");
-    transcripts::hold_pictures(&page, "first-study", folder.path())
-}
 
 /// The decimal numbers between backticks in the prose of a page.
 fn figures(page: &str) -> Vec<&str> {
@@ -23,10 +14,8 @@ fn figures(page: &str) -> Vec<&str> {
 
 #[test]
 fn the_pages_commands_print_and_draw_what_is_shown() {
-    let shown = &hold("FIRST_STUDY_OSCILLATOR.md") | &hold("FIRST_STUDY_SYSTEM.md");
-    let kept = std::fs::read_dir(transcripts::page("first-study")).expect("the pictures");
-    let kept = kept.filter_map(|it| it.ok()?.file_name().into_string().ok());
-    assert_eq!(kept.collect::<BTreeSet<_>>(), shown);
+    let pages = ["FIRST_STUDY_OSCILLATOR.md", "FIRST_STUDY_SYSTEM.md"];
+    transcripts::hold_studies(&pages, "first-study", "first_study::");
 }
 
 #[test]

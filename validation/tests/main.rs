@@ -58,6 +58,7 @@ mod simulate;
 mod simulate_system;
 mod spoiled;
 mod strobe_derivative;
+mod studies;
 mod sweep;
 mod system_cases;
 mod system_diagrams;

@@ -77,6 +77,20 @@ pub fn hold_pictures(page: &Path, shown: &str, made_in: &Path) -> BTreeSet<Strin
     names
 }
 
+/// Runs the commands of pages, each in an empty folder: they print what the pages show, and make
+/// the pictures in `docs/SHOWN/`, which has no others.
+pub fn hold_studies(pages: &[&str], shown: &str, test: &str) {
+    let mut pictures = BTreeSet::new();
+    for name in pages {
+        let folder = tempfile::tempdir().expect("a folder");
+        hold(&page(name), folder.path(), test);
+        pictures.extend(hold_pictures(&page(name), shown, folder.path()));
+    }
+    let kept = std::fs::read_dir(page(shown)).expect("the pictures");
+    let kept = kept.filter_map(|it| it.ok()?.file_name().into_string().ok());
+    assert_eq!(kept.collect::<BTreeSet<_>>(), pictures);
+}
+
 /// The commands of a text's transcripts.
 pub fn commands(text: &str) -> Vec<String> {
     text.lines().filter_map(|line| line.strip_prefix("$ ")).map(str::to_owned).collect()
