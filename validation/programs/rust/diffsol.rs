@@ -15,22 +15,15 @@
 
 mod diffsol_saltation;
 mod diffsol_sensitivities;
+mod diffsol_steps;
 mod percuss_program;
 
-use diffsol::{
-    NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
-    OdeSolverStopReason,
-};
+use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeEquations, OdeSolverMethod};
+use diffsol_steps::{Vector, values};
 use percuss_program::{Course, Setup, serve};
 use std::cell::Cell;
 use std::error::Error;
 use std::rc::Rc;
-
-type Vector = NalgebraVec<f64>;
-
-fn values(z: &Vector) -> Vec<f64> {
-    z.batch_as_slice(0).to_vec()
-}
 
 /// The state of now, moved to the inside of its mode.
 fn inside(course: &Course) -> Vec<f64> {
@@ -64,6 +57,31 @@ where
     Ok(())
 }
 
+/// Takes a root: the event, or a root that is passed over.
+fn at_root<'a, Eqn>(
+    course: &mut Course,
+    now: &Cell<usize>,
+    solver: &mut impl OdeSolverMethod<'a, Eqn>,
+    (root, place): (f64, usize),
+) -> Result<(), Box<dyn Error>>
+where
+    Eqn: OdeEquations<T = f64, V = Vector> + 'a,
+{
+    let mode = course.mode();
+    let after = mode.guard(place, solver.state().t, &values(solver.state().y));
+    let state = values(&solver.interpolate(root)?);
+    if mode.events()[place].sign() * after < 0.0 {
+        (course.t, course.z) = (root, state);
+    } else {
+        course.event(root, place, state)?;
+        if mode.events()[place].ends() {
+            now.set(course.modes().1);
+            course.z = inside(course);
+        }
+    }
+    go_on(course, solver)
+}
+
 /// Runs to the end.
 fn run<'a, Eqn>(
     course: &mut Course,
@@ -73,42 +91,9 @@ fn run<'a, Eqn>(
 where
     Eqn: OdeEquations<T = f64, V = Vector> + 'a,
 {
-    let span = course.run.span;
-    solver.set_stop_time(span)?;
-    while course.goes_on() {
-        let reason = solver.step()?;
-        course.step()?;
-        let reached = match reason {
-            OdeSolverStopReason::RootFound(root, _) => root,
-            _ => solver.state().t,
-        };
-        while let Some(time) = course.due(reached) {
-            let state = values(&solver.interpolate(time)?);
-            course.sample(state);
-        }
-        match reason {
-            OdeSolverStopReason::InternalTimestep => {}
-            OdeSolverStopReason::TstopReached => {
-                (course.t, course.z) = (span, values(solver.state().y));
-            }
-            OdeSolverStopReason::RootFound(root, place) => {
-                let mode = course.mode();
-                let after = mode.guard(place, solver.state().t, &values(solver.state().y));
-                let state = values(&solver.interpolate(root)?);
-                if mode.events()[place].sign() * after < 0.0 {
-                    (course.t, course.z) = (root, state);
-                } else {
-                    course.event(root, place, state)?;
-                    if mode.events()[place].ends() {
-                        now.set(course.modes().1);
-                        course.z = inside(course);
-                    }
-                }
-                go_on(course, &mut solver)?;
-            }
-        }
-    }
-    Ok(())
+    diffsol_steps::run(course, &mut solver, |course, solver, root| {
+        at_root(course, now, solver, root)
+    })
 }
 
 fn make(course: &mut Course) -> Result<(), Box<dyn Error>> {

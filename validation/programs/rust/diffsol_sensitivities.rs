@@ -9,18 +9,16 @@
 //! - A root that is passed over or only counted needs no reset. The rates of the state and of its
 //!   sensitivities there are written by this program.
 
+use crate::diffsol_steps::{self, Vector, values};
 use crate::percuss_program::derivatives::{Rates, sum};
 use crate::percuss_program::{Course, Mode};
 use diffsol::{
-    NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquationsImplicitSens,
-    OdeSolverStopReason, SensitivitiesOdeSolverMethod,
+    NalgebraLU, NalgebraMat, OdeBuilder, OdeEquationsImplicitSens, SensitivitiesOdeSolverMethod,
 };
 use serde_json::json;
 use std::cell::Cell;
 use std::error::Error;
 use std::rc::Rc;
-
-type Vector = NalgebraVec<f64>;
 
 /// The modes that the closures are of, and the event that is passed.
 struct Now {
@@ -54,10 +52,6 @@ impl Now {
     fn field_by(&self, t: f64, z: &[f64], changes: &[f64]) -> Vec<f64> {
         sum(changes, z.len(), |n| self.by[n].field(self.field(), t, z))
     }
-}
-
-fn values(z: &Vector) -> Vec<f64> {
-    z.batch_as_slice(0).to_vec()
 }
 
 /// Writes the rates of the state and of its sensitivities.
@@ -122,30 +116,10 @@ where
     Eqn: OdeEquationsImplicitSens<T = f64, V = Vector> + 'a,
     Eqn::M: diffsol::DefaultSolver,
 {
-    let span = course.run.span;
-    solver.set_stop_time(span)?;
-    while course.goes_on() {
-        let reason = solver.step()?;
-        course.step()?;
-        let reached = match reason {
-            OdeSolverStopReason::RootFound(root, _) => root,
-            _ => solver.state().t,
-        };
-        while let Some(time) = course.due(reached) {
-            let state = values(&solver.interpolate(time)?);
-            course.sample(state);
-        }
-        match reason {
-            OdeSolverStopReason::InternalTimestep => {}
-            OdeSolverStopReason::TstopReached => {
-                (course.t, course.z) = (span, values(solver.state().y));
-            }
-            OdeSolverStopReason::RootFound(root, place) => {
-                at_root(course, now, &mut solver, (root, place))?;
-            }
-        }
-    }
-    if course.t >= span {
+    diffsol_steps::run(course, &mut solver, |course, solver, root| {
+        at_root(course, now, solver, root)
+    })?;
+    if course.t >= course.run.span {
         let end = |n: usize| solver.state().s.batch_as_slice(n).to_vec();
         let answer = |(n, it): (usize, &Rates)| json!({"wrt": it.wrt, "end": end(n)});
         course.derivatives = now.by.iter().enumerate().map(answer).collect();
