@@ -15,6 +15,9 @@ pub const ALLOWED_UNITS: f64 = 100.0;
 /// kind: above it, no wrong term could be told from rounding.
 const JUDGED_SHARE: f64 = 0.1;
 
+/// A wrong rule explains an answer if it leaves at most this share of what the answer is off.
+const EXPLAINED_SHARE: f64 = 0.5;
+
 /// Judges answers to a case at tolerances, one after the other.
 #[must_use]
 pub fn judge(reference: &Reference, answers: &[(f64, Option<&GradientAnswer>)]) -> Vec<Judged> {
@@ -137,7 +140,10 @@ impl<'a> OneName<'a> {
         if cells.iter().all(|(n, k)| answer.cell(*n, *k) == Some(0.0)) {
             return (Verdict::Zero, None, format!("all are 0; {off}"));
         }
-        let found = self.mechanisms(answer, cells, tolerance);
+        let found = match self.is_right_when_tighter(at) {
+            true => Vec::new(),
+            false => self.mechanisms(answer, cells, tolerance),
+        };
         if let Some((mechanism, units)) = found.first() {
             let others: Vec<&str> = found[1..].iter().map(|(it, _)| it.as_str()).collect();
             let also = if others.is_empty() {
@@ -153,6 +159,17 @@ impl<'a> OneName<'a> {
             return said;
         }
         self.by_tolerances(cells, off)
+    }
+
+    /// Whether the answer at a tighter tolerance is right: no term is missing there, and so none
+    /// is at this tolerance.
+    fn is_right_when_tighter(&self, at: usize) -> bool {
+        (0..self.answers.len()).any(|it| {
+            let (tolerance, _) = self.answers[it];
+            let Some(answer) = self.answer(it) else { return false };
+            let worst = self.worst(answer, &self.cells(tolerance, answer), tolerance);
+            tolerance < self.answers[at].0 && worst.is_some_and(|it| it.units <= ALLOWED_UNITS)
+        })
     }
 
     /// Where an answer is off most.
@@ -189,10 +206,15 @@ impl<'a> OneName<'a> {
             let unit = |n: usize, k: usize| {
                 tolerance * (units[n][k] + (n as f64 + 1.0) * wrong[n][k].abs())
             };
-            let found = worst(cells, |n, k| {
-                answer.cell(n, k).map(|it| (it - sign * wrong[n][k]).abs() / unit(n, k))
-            });
-            found.map(|it| it.units).filter(|it| *it <= ALLOWED_UNITS)
+            let off = |rows: &Rows, sign: f64| {
+                let cell = |n: usize, k: usize| {
+                    answer.cell(n, k).map(|it| (it - sign * rows[n][k]).abs() / unit(n, k))
+                };
+                worst(cells, cell).map_or(f64::INFINITY, |it| it.units)
+            };
+            let left = off(wrong, sign);
+            let explains = left <= EXPLAINED_SHARE * off(&self.truth, 1.0);
+            (left <= ALLOWED_UNITS && explains).then_some(left)
         };
         let of = |mechanism: Mechanism| {
             let mut all = self.reference.wrong(self.name, mechanism);

@@ -112,6 +112,38 @@ fn differences_that_are_too_coarse_are_named() {
     assert!(named.iter().all(|it| *it >= 8), "{named:?}");
 }
 
+/// A wrong rule that is no longer there at a tighter tolerance was an error near it by chance, and
+/// so is one that leaves most of the error.
+#[test]
+fn an_error_near_a_wrong_rule_is_no_missing_term() {
+    let cases = embedded(|_| true).unwrap();
+    let case = cases.into_iter().find(|it| it.name == "ball-dropped").unwrap();
+    let reference = Reference::new(case).unwrap();
+    let answer = |rows: &dyn Fn(usize) -> Vec<Vec<f64>>| {
+        let by = (0..reference.case.by.len()).map(|it| Some(NameAnswer::whole(&rows(it))));
+        GradientAnswer { by: by.collect(), event_error: None }
+    };
+    let wrong = answer(&|name| reference.wrong(name, Mechanism::NoSaltation)[0].clone());
+    let right = answer(&|name| reference.walked(name));
+    let verdicts = |answers: [&GradientAnswer; 2]| {
+        let both = [(1e-6, Some(answers[0])), (1e-9, Some(answers[1]))];
+        judge(&reference, &both).into_iter().map(|it| it.verdict).collect::<Vec<_>>()
+    };
+    let [chance, missing] = [[&wrong, &right], [&wrong, &wrong]].map(verdicts);
+    assert!(missing.contains(&Verdict::MissingTerm), "{missing:?}");
+    assert!(chance.contains(&Verdict::Noisy), "{chance:?}");
+    assert!(!chance.contains(&Verdict::MissingTerm), "{chance:?}");
+    // Beyond the rule by as much as it differs from the truth.
+    let beyond = answer(&|name| {
+        let (truth, wrong) =
+            (reference.walked(name), reference.wrong(name, Mechanism::NoSaltation)[0].clone());
+        let rows = truth.iter().zip(wrong);
+        rows.map(|(a, b)| a.iter().zip(b).map(|(a, b)| b + 1.2 * (b - a)).collect()).collect()
+    });
+    let beyond = verdicts([&beyond, &beyond]);
+    assert!(!beyond.contains(&Verdict::MissingTerm), "{beyond:?}");
+}
+
 /// Sign, zero, noise and silence, on one case.
 #[test]
 fn other_answers_have_their_verdicts() {
