@@ -191,6 +191,46 @@ class Dynamics:
         found = _percuss.system_orbit(self._native, cut, before, number)
         return ReturnOrbit(found, self.modes, self.states)
 
+    def orbits(
+        self,
+        period: int,
+        across: tuple[float, float],
+        up: tuple[float, float],
+        *,
+        grid: int | tuple[int, int],
+        axes: tuple[str, str] | None = None,
+        section: str = "strobe",
+        every: int = 1,
+        max_time: float | None = None,
+        progress: Progress = None,
+    ) -> list[ReturnOrbit]:
+        """Find the orbits that are reached from a grid of starts, the stable ones first.
+
+        ``percuss orbit SYSTEM --all`` prints the same orbits; none where none was found.
+
+        Parameters
+        ----------
+        period : int
+            The returns after which they close, or after a divisor of them.
+        across, up, grid, axes
+            The starts, as :meth:`basins` takes them.
+        section, every, max_time, progress
+            As all :class:`Dynamics` take them.
+        """
+        cut = _section(section, every, max_time)
+        _, places = self._axes(axes)
+        with telling(progress, "starts") as told:
+            found = _percuss.system_orbits(
+                self._native,
+                cut,
+                places,
+                (pair("across", across), pair("up", up)),
+                cells_of(grid),
+                whole("period", period, 0, _MOST),
+                told,
+            )
+        return [ReturnOrbit(it, self.modes, self.states) for it in found]
+
     def continue_(
         self,
         parameter: str,

@@ -351,6 +351,16 @@ def system_bifurcation(
     told: Told,
     /,
 ) -> ReturnsDiagrammed: ...
+def system_orbits(
+    system: System,
+    section: Section,
+    axes: tuple[int, int],
+    window: tuple[tuple[float, float], tuple[float, float]],
+    grid: tuple[int, int],
+    period: int,
+    told: Told,
+    /,
+) -> list[ReturnOrbit]: ...
 def system_basins(
     system: System,
     section: Section,

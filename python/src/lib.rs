@@ -45,7 +45,7 @@ mod _percuss {
     #[pymodule_export]
     use super::return_diagram::system_bifurcation;
     #[pymodule_export]
-    use super::return_survey::system_basins;
+    use super::return_survey::{system_basins, system_orbits};
     #[pymodule_export]
     use super::returns::{Section, system_lyapunov, system_orbit, system_poincare};
     #[pymodule_export]

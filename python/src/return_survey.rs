@@ -1,8 +1,9 @@
-//! The attractors of a system and their basins.
+//! What a grid of a system's starts leads to: attractors with their basins, and orbits.
 
+use crate::dynamics::check_period;
 use crate::failure::value;
 use crate::long_work::{Progress, interruptible};
-use crate::returns::{Points, Section, drifts, solver};
+use crate::returns::{Points, ReturnOrbit, Section, drifts, solver};
 use crate::survey::check_grid;
 use crate::system::System;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -76,6 +77,42 @@ fn check_range(name: &str, [low, high]: [f64; 2]) -> PyResult<()> {
     })
 }
 
+fn plane(
+    axes: [usize; 2],
+    (across, up): ([f64; 2], [f64; 2]),
+    [columns, rows]: [u32; 2],
+) -> PyResult<Plane> {
+    check_range("across", across)?;
+    check_range("up", up)?;
+    Ok(Plane { axes, window: [across, up], columns, rows })
+}
+
+/// The orbits that Newton's method reaches from a grid of a system's starts in two states.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the face in Python gives them names")]
+pub(crate) fn system_orbits<'py>(
+    py: Python<'py>,
+    system: &System,
+    section: &Section,
+    axes: [usize; 2],
+    window: ([f64; 2], [f64; 2]),
+    grid: [u32; 2],
+    period: u32,
+    told: Option<Py<PyAny>>,
+) -> PyResult<Vec<ReturnOrbit<'py>>> {
+    check_period(period)?;
+    check_grid(grid, 1, 1)?;
+    let plane = plane(axes, window, grid)?;
+    let solver = solver(system)?;
+    let (map, system) = (section.map(&solver)?, &system.shared.system);
+    let start = system.start().map_err(value)?;
+    let all = plane.count() as u64;
+    let found = interruptible(py, &Progress { told, all }, |stop| {
+        map.orbits(start, &plane, period, &|count| stop.passed(count))
+    })?;
+    found.map_err(value)?.iter().map(|it| ReturnOrbit::of(py, system, it)).collect()
+}
+
 /// The attractors of a grid of a system's starts in two states, and the label of each start.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the face in Python gives them names")]
@@ -90,14 +127,11 @@ pub(crate) fn system_basins<'py>(
     max_period: u32,
     told: Option<Py<PyAny>>,
 ) -> PyResult<ReturnsSurveyed<'py>> {
-    let ((across, up), [columns, rows]) = (window, grid);
-    check_range("across", across)?;
-    check_range("up", up)?;
     check_grid(grid, transient, max_period)?;
+    let plane = plane(axes, window, grid)?;
     let solver = solver(system)?;
     let (map, system) = (section.map(&solver)?, &system.shared.system);
     let start = system.start().map_err(value)?;
-    let plane = Plane { axes, window: [across, up], columns, rows };
     let limits = SearchLimits { transient, max_period };
     let all = plane.count() as u64;
     let found = interruptible(py, &Progress { told, all }, |stop| {
@@ -105,11 +139,12 @@ pub(crate) fn system_basins<'py>(
     })?;
     let found = found.map_err(value)?;
     let labels = found.labels.iter().map(|it| it.number()).collect();
+    let [columns, rows] = grid.map(|it| it as usize);
     let listed = found.attractors.iter().enumerate();
     Ok(ReturnsSurveyed {
         across: PyArray1::from_vec(py, plane.centres(0)),
         up: PyArray1::from_vec(py, plane.centres(1)),
-        labels: PyArray1::from_vec(py, labels).reshape([rows as usize, columns as usize])?,
+        labels: PyArray1::from_vec(py, labels).reshape([rows, columns])?,
         attractors: listed
             .map(|it| Reached::of(py, system, &found, it))
             .collect::<PyResult<_>>()?,

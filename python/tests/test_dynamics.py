@@ -166,6 +166,18 @@ def test_basins_are_those_of_the_command(command, rigid, tmp_path):
     assert found.unresolved == known["unresolved"]
 
 
+def test_orbits_of_a_grid_are_those_of_the_command(command, rigid):
+    flags = ["--period", "3", "--all", "--grid", "5x4", "--window=-1,0.1,-1,1"]
+    known = told(command, "orbit", RIGID, *flags)["orbits"]
+    found = rigid.orbits(3, (-1, 0.1), (-1, 1), grid=(5, 4))
+    assert len(found) == len(known) > 0
+    for own, it in zip(found, known):
+        assert (own.period, own.time, own.stable) == (it["period"], it["time"], it["stable"])
+        assert own.points.tolist() == [at["state"] for at in it["points"]]
+        assert own.multipliers.tolist() == [complex(*pair) for pair in it["multipliers"]]
+    assert percuss.systems["bouncing-ball"].orbits(1, (0, 1), (0, 1), grid=2, section="impact") == []
+
+
 def test_attractors_in_other_axes_are_those_of_the_command(command, rigid):
     flags = ["--grid", "4x4", "--window=-1,1,-1,0.5", "--transient", "100", "--axes", "v,x"]
     known = told(command, "attractors", RIGID, *flags, "--format", "json")
@@ -193,6 +205,8 @@ def test_attractors_in_other_axes_are_those_of_the_command(command, rigid):
         (lambda it: it.bifurcation("frequency", [1, 2, 4]), ValueError, "equal steps"),
         (lambda it: it.bifurcation("no", [1, 2]), ValueError, "no"),
         (lambda it: it.basins((0, 1), (0, 1), grid=0, transient=1), ValueError, "grid = 0"),
+        (lambda it: it.orbits(1, (0, 1), (0, 1), grid=0), ValueError, "grid = 0"),
+        (lambda it: it.orbits(0, (0, 1), (0, 1), grid=1), ValueError, "period = 0"),
         (lambda it: it.basins((1, 0), (0, 1), grid=2, transient=1), ValueError, "across = "),
         (lambda it: it.basins(0, (0, 1), grid=2, transient=1), ValueError, "two numbers"),
         (
