@@ -167,9 +167,9 @@ def test_basins_are_those_of_the_command(command, rigid, tmp_path):
 
 
 def test_orbits_of_a_grid_are_those_of_the_command(command, rigid):
-    flags = ["--period", "3", "--all", "--grid", "5x4", "--window=-1,0.1,-1,1"]
+    flags = ["--period", "3", "--all", "--grid", "12x11", "--window=-1,0.1,-1,1"]
     known = told(command, "orbit", RIGID, *flags)["orbits"]
-    found = rigid.orbits(3, (-1, 0.1), (-1, 1), grid=(5, 4))
+    found = rigid.orbits(3, (-1, 0.1), (-1, 1), grid=(12, 11))
     assert len(found) == len(known) > 0
     for own, it in zip(found, known):
         assert (own.period, own.time, own.stable) == (it["period"], it["time"], it["stable"])
