@@ -102,9 +102,9 @@ impl Curve<'_> {
         if !shots.is_closed() || !self.is_near(value, &shots, base, step) {
             return None;
         }
-        let point = self.point(value, shots, &base.tangent)?;
         // A direction that rests on such a difference is no better than that of the point before.
-        Some(CurvePoint { slopes: base.slopes.clone(), tangent: base.tangent.clone(), ..point })
+        let point = self.point_with(value, shots, base.slopes.clone(), &base.tangent)?;
+        Some(CurvePoint { tangent: base.tangent.clone(), ..point })
     }
 
     /// The curve a step beyond the corner at `before`. Its direction there is that of the other

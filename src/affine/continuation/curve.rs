@@ -179,7 +179,8 @@ impl<'a> Curve<'a> {
         self.point_with(value, shots, slopes, along)
     }
 
-    fn point_with(
+    /// A closed iterate with these derivatives by the parameter.
+    pub fn point_with(
         &self,
         value: f64,
         shots: OrbitShots,
@@ -270,7 +271,8 @@ impl<'a> Curve<'a> {
         })
     }
 
-    /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve.
+    /// The uncertainty of the parameter's value at a place of the curve that rounding of the map
+    /// leaves.
     pub fn uncertainty(&self, point: &CurvePoint) -> f64 {
         let Bordered { matrix, .. } =
             self.bordered(&point.shots, &point.slopes, &point.tangent, &point.shots);
