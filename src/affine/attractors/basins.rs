@@ -54,18 +54,8 @@ impl Plane {
         self.columns as usize * self.rows as usize
     }
 
-    /// All starts of a solver's system, row by row from the lowest on, at a start but for the two
-    /// states.
-    pub(super) fn places(
-        &self,
-        solver: &Solver<f64>,
-        start: &StartPoint,
-    ) -> Result<Vec<Place<f64>>, SystemError> {
-        self.starts(&PlaneStart::of(solver, start, &self.axes)?)
-    }
-
     /// All starts, row by row from the lowest on, at a start but for the two states.
-    fn starts(&self, at: &PlaneStart<'_>) -> Result<Vec<Place<f64>>, SystemError> {
+    pub(super) fn starts(&self, at: &PlaneStart<'_>) -> Result<Vec<Place<f64>>, SystemError> {
         let [across, up] = [0, 1].map(|axis| self.centres(axis));
         up.iter()
             .flat_map(|y| across.iter().map(move |x| [*x, *y]))
@@ -75,14 +65,14 @@ impl Plane {
 }
 
 /// The start of which two states are moved, in each of the modes in which it may lie.
-struct PlaneStart<'a> {
+pub(super) struct PlaneStart<'a> {
     system: &'a System,
     start: &'a StartPoint,
     places: Vec<Place<f64>>,
 }
 
 impl<'a> PlaneStart<'a> {
-    fn of(
+    pub(super) fn of(
         solver: &'a Solver<f64>,
         start: &'a StartPoint,
         axes: &[usize],

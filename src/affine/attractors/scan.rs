@@ -1,6 +1,6 @@
 //! Orbits found without a guess: Newton's method from the starts of a plane.
 
-use super::basins::Plane;
+use super::basins::{Plane, PlaneStart};
 use super::space::{Space, Spot};
 use super::{first, from_smallest};
 use crate::affine::model::error::SystemError;
@@ -9,9 +9,8 @@ use crate::affine::returns::map::SectionMap;
 use crate::affine::returns::orbit::Orbit;
 use crate::affine::run::place::Place;
 use crate::dynamics::linear::modulus;
-use crate::dynamics::orbit::scan::{SAME, SETTLING, WATCHED};
+use crate::dynamics::orbit::scan::{Rank, SAME, SETTLING, WATCHED, are_one};
 use crate::dynamics::parallel;
-use std::cmp::Ordering;
 
 impl SectionMap<'_, f64> {
     /// The orbits of `period` returns, or of a divisor of it, that Newton's method reaches from the
@@ -20,8 +19,8 @@ impl SectionMap<'_, f64> {
     ///
     /// Orbits of the whole period come first; among these, stable ones; then the least leading
     /// multiplier, then the smallest first state. `seen` is told of how many starts more are done.
-    /// What is found is there; what is not found may be there too. Results are the same for any
-    /// number of threads.
+    /// An orbit that is found is there; one that is not found may be there too. Results are the same
+    /// for any number of threads.
     ///
     /// # Errors
     /// A start in no mode, with more or fewer states than the system has, or whose structural zeros
@@ -34,7 +33,7 @@ impl SectionMap<'_, f64> {
         seen: &(dyn Fn(u64) + Sync),
     ) -> Result<Vec<Orbit>, SystemError> {
         let space = Space::of(self);
-        let starts = plane.places(self.solver(), start)?;
+        let starts = plane.starts(&PlaneStart::of(self.solver(), start, &plane.axes)?)?;
         let reached = parallel::map(&starts, |start| {
             let reached = space.reached(start, period);
             seen(1);
@@ -46,7 +45,7 @@ impl SectionMap<'_, f64> {
                 found.push(orbit);
             }
         }
-        found.sort_by(|a, b| preferred(a, b, period));
+        found.sort_by(|a, b| rank(a).preferred(&rank(b), period));
         Ok(found)
     }
 }
@@ -101,22 +100,15 @@ impl Space<'_> {
             spots.collect::<Vec<_>>()
         });
         let size = |it: &Spot| it.at.iter().fold(0.0_f64, |most, it| it.abs().max(most));
-        let is_near = |(a, b): (&Spot, &Spot)| self.apart(a, b) <= SAME * (1.0 + size(a));
-        let count = other.len();
-        one.len() == count
-            && (0..count).any(|turn| one.iter().zip(other.iter().cycle().skip(turn)).all(is_near))
+        are_one(&one, &other, |a, b| self.apart(a, b) <= SAME * (1.0 + size(a)))
     }
 }
 
-/// The order of preference.
-fn preferred(a: &Orbit, b: &Orbit, period: u32) -> Ordering {
-    let is_shorter = |it: &Orbit| it.period() != period as usize;
-    let leading = |it: &Orbit| it.multipliers.first().map_or(0.0, |it| modulus(*it));
-    let smallest = |it: &Orbit| it.points.first().map_or(0.0, |it| first(&it.state));
-    is_shorter(a)
-        .cmp(&is_shorter(b))
-        .then(b.period().cmp(&a.period()))
-        .then(b.is_stable().cmp(&a.is_stable()))
-        .then(leading(a).total_cmp(&leading(b)))
-        .then(smallest(a).total_cmp(&smallest(b)))
+fn rank(orbit: &Orbit) -> Rank {
+    Rank {
+        period: orbit.period(),
+        is_stable: orbit.is_stable(),
+        leading: orbit.multipliers.first().map_or(0.0, |it| modulus(*it)),
+        first: orbit.points.first().map_or(0.0, |it| first(&it.state)),
+    }
 }

@@ -35,20 +35,40 @@ pub fn scan(map: &StrobeMap, period: u32, told: &mut dyn FnMut(f64)) -> Vec<Orbi
         }
     }
     let mut found: Vec<_> = found.into_iter().map(|it| from_least(map, it)).collect();
-    found.sort_by(|a, b| preferred(a, b, period));
+    found.sort_by(|a, b| rank(a).preferred(&rank(b), period));
     found
 }
 
-/// The order of preference.
-fn preferred(a: &Orbit, b: &Orbit, period: u32) -> Ordering {
-    let whole = |it: &Orbit| it.period() != period;
-    let leading = |it: &Orbit| super::super::linear::modulus(it.multipliers[0]);
-    whole(a)
-        .cmp(&whole(b))
-        .then(b.period().cmp(&a.period()))
-        .then(b.is_stable().cmp(&a.is_stable()))
-        .then(leading(a).total_cmp(&leading(b)))
-        .then(a.points[0][0].total_cmp(&b.points[0][0]))
+/// What the order of preference of orbits goes by.
+pub(crate) struct Rank {
+    pub period: usize,
+    pub is_stable: bool,
+    /// The modulus of the leading multiplier.
+    pub leading: f64,
+    /// The first co-ordinate of the first point.
+    pub first: f64,
+}
+
+impl Rank {
+    /// The order of preference where so long a period is looked for.
+    pub(crate) fn preferred(&self, other: &Self, period: u32) -> Ordering {
+        let is_shorter = |it: &Self| it.period != period as usize;
+        is_shorter(self)
+            .cmp(&is_shorter(other))
+            .then(other.period.cmp(&self.period))
+            .then(other.is_stable.cmp(&self.is_stable))
+            .then(self.leading.total_cmp(&other.leading))
+            .then(self.first.total_cmp(&other.first))
+    }
+}
+
+fn rank(orbit: &Orbit) -> Rank {
+    Rank {
+        period: orbit.points.len(),
+        is_stable: orbit.is_stable(),
+        leading: super::super::linear::modulus(orbit.multipliers[0]),
+        first: orbit.points[0][0],
+    }
 }
 
 fn side(period: u32) -> u32 {
@@ -94,12 +114,15 @@ fn apart(a: &StrobePoint, b: &StrobePoint) -> f64 {
 }
 
 /// Whether two orbits are one, wherever they begin.
+pub(crate) fn are_one<P>(one: &[P], other: &[P], is_near: impl Fn(&P, &P) -> bool) -> bool {
+    let count = other.len();
+    let agree =
+        |turn: usize| one.iter().zip(other.iter().cycle().skip(turn)).all(|(a, b)| is_near(a, b));
+    one.len() == count && (0..count).any(agree)
+}
+
 fn is_same(a: &Orbit, b: &Orbit) -> bool {
-    let near =
-        |(a, b): (&StrobePoint, &StrobePoint)| apart(a, b) <= SAME * (1.0 + apart(a, &[0.0; 3]));
-    let count = b.points.len();
-    a.points.len() == count
-        && (0..count).any(|turn| a.points.iter().zip(b.points.iter().cycle().skip(turn)).all(near))
+    are_one(&a.points, &b.points, |a, b| apart(a, b) <= SAME * (1.0 + apart(a, &[0.0; 3])))
 }
 
 /// The orbit from its strobe of least p on: what is found does not depend on which start found it.
