@@ -1,4 +1,4 @@
-//! What a grid of a system's starts leads to: attractors with their basins, and orbits.
+//! The attractors of a grid of a system's starts with their basins, and the orbits.
 
 use crate::dynamics::check_period;
 use crate::failure::value;

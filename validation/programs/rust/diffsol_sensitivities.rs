@@ -48,7 +48,7 @@ impl Now {
         }
     }
 
-    /// What a change of the names adds to the right-hand side.
+    /// The change of the right-hand side that a change of the names adds.
     fn field_by(&self, t: f64, z: &[f64], changes: &[f64]) -> Vec<f64> {
         sum(changes, z.len(), |n| self.by[n].field(self.field(), t, z))
     }

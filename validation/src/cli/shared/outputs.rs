@@ -44,7 +44,7 @@ impl<F: ValueEnum + PartialEq + Copy> Outputs<F> {
             let destination = Destination::Stdout;
             return Ok(Self(vec![(stated.unwrap_or_else(|| usual(&destination)), destination)]));
         }
-        // Of several outputs the format that is stated is that of those without an extension.
+        // The format that is stated is that of the outputs without an extension, where several are.
         let is_open = |path: &&PathBuf| path.extension().is_none();
         let is_of_others = paths.len() > 1 && paths.iter().any(|path| is_open(&path));
         let output = |path: &PathBuf| {
