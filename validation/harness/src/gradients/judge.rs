@@ -164,11 +164,13 @@ impl<'a> OneName<'a> {
     /// Whether the answer at a tighter tolerance is right: no term is missing there, and so none
     /// is at this tolerance.
     fn is_right_when_tighter(&self, at: usize) -> bool {
-        (0..self.answers.len()).any(|it| {
-            let (tolerance, _) = self.answers[it];
-            let Some(answer) = self.answer(it) else { return false };
+        let is_tighter = |it: &usize| self.answers[*it].0 < self.answers[at].0;
+        (0..self.answers.len()).filter(is_tighter).any(|it| {
+            let (tolerance, Some(answer)) = (self.answers[it].0, self.answer(it)) else {
+                return false;
+            };
             let worst = self.worst(answer, &self.cells(tolerance, answer), tolerance);
-            tolerance < self.answers[at].0 && worst.is_some_and(|it| it.units <= ALLOWED_UNITS)
+            worst.is_some_and(|it| it.units <= ALLOWED_UNITS)
         })
     }
 
