@@ -19,8 +19,8 @@ impl SectionMap<'_, f64> {
     ///
     /// Orbits of the whole period come first; among these, stable ones; then the least leading
     /// multiplier, then the smallest first state. `seen` is told of how many starts more are done.
-    /// An orbit that is found is there; one that is not found may be there too. Results are the same
-    /// for any number of threads.
+    /// An orbit that is found is there; one that is not found may be there too. Results are the
+    /// same for any number of threads.
     ///
     /// # Errors
     /// A start in no mode, with more or fewer states than the system has, or whose structural zeros
