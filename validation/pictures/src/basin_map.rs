@@ -2,7 +2,7 @@
 
 use super::canvas::{At, Canvas, TextSide};
 use super::colour::{Colour, WHITE};
-use super::fitted::{APART, BELOW, BESIDE, MARGIN, NAME_BELOW, TALL, fewer_ticks};
+use super::fitted::{self, BELOW, MARGIN, NAME_BELOW};
 use super::frame::{Panel, Ruler};
 use super::key::{KeyItem, KeyLayout, key};
 use super::look::Marker;
@@ -74,7 +74,7 @@ impl Drawing for BasinMap {
             let at = (24.0, 916.0 + 26.0 * k as f64);
             canvas.text(line, at, TEXT - 2.0, TextSide::Left, palette::INK);
         }
-        let [x, y] = self.window.map(|[from, to]| Ruler::between(from, to));
+        let [x, y] = self.rulers();
         let panel = Panel { from: FROM, to: TO, x, y };
         let [across, up] = &self.axes;
         self.fill(canvas, &panel, |canvas| panel.draw_over(canvas, across, up));
@@ -92,22 +92,13 @@ impl Drawing for BasinMap {
         let others = self.others().into_iter().map(|it| it.0.to_owned());
         let widths = names.chain(others).map(|it| font::width(&it, KEY_TEXT));
         let key = KEY_ROOM + widths.fold(0.0, f64::max);
-        let y = fewer_ticks(self.ruler(1), |ticks| {
-            (f64::from(size.1) - MARGIN - BELOW) / ticks.len().max(1) as f64 > TALL
-        });
-        let left = BESIDE + y.ticks.iter().map(|it| font::width(&it.1, TEXT)).fold(0.0, f64::max);
-        let from = (left, MARGIN);
         let to = (f64::from(size.0) - key - MARGIN, f64::from(size.1) - BELOW);
-        let x = fewer_ticks(self.ruler(0), |ticks| {
-            let room = (to.0 - from.0) / ticks.len().max(1) as f64;
-            ticks.iter().all(|it| font::width(&it.1, TEXT) + APART < room)
-        });
-        let panel = Panel { from, to, x, y };
+        let panel = fitted::panel(self.rulers(), (0.0, MARGIN), to);
         let [across, up] = &self.axes;
         self.fill(canvas, &panel, |canvas| {
-            panel.draw_named(canvas, (across, NAME_BELOW), (up, left - MARGIN));
+            panel.draw_named(canvas, (across, NAME_BELOW), (up, panel.from.0 - MARGIN));
         });
-        let at = (to.0 + MARGIN, from.1 + MARGIN);
+        let at = (to.0 + MARGIN, MARGIN + MARGIN);
         self.key(canvas, at, KeyLayout::Column(30.0), first_line);
     }
 }
@@ -123,9 +114,8 @@ impl BasinMap {
         }
     }
 
-    fn ruler(&self, axis: usize) -> Ruler {
-        let [from, to] = self.window[axis];
-        Ruler::between(from, to)
+    fn rulers(&self) -> [Ruler; 2] {
+        self.window.map(|[from, to]| Ruler::between(from, to))
     }
 
     /// Draws the cells, the frame and the attractors above them.

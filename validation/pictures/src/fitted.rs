@@ -1,6 +1,8 @@
 //! The margins of panels that fill a given size, and axes with as many ticks as have room.
 
-use super::frame::Ruler;
+use super::canvas::At;
+use super::font;
+use super::frame::{Panel, Ruler};
 
 /// Room above a panel and right of it.
 pub(super) const MARGIN: f64 = 18.0;
@@ -9,17 +11,32 @@ pub(super) const BELOW: f64 = 66.0;
 /// The distance of the horizontal axis's name from the panel.
 pub(super) const NAME_BELOW: f64 = 48.0;
 /// Room for the name of the vertical axis, and between its labels and the panel.
-pub(super) const BESIDE: f64 = 44.0;
+const BESIDE: f64 = 44.0;
 /// Room between labels beside each other.
-pub(super) const APART: f64 = 16.0;
+const APART: f64 = 16.0;
 /// The height of a label with the room around it.
-pub(super) const TALL: f64 = 30.0;
+const TALL: f64 = 30.0;
+
+/// The size of an axis's labels.
+const TEXT: f64 = 20.0;
 
 /// The largest number of ticks that is tried.
 const MOST_TICKS: u32 = 8;
 
+/// The panel between two corners that leaves room for the labels and the name beside it.
+pub(super) fn panel([x, y]: [Ruler; 2], from: At, to: At) -> Panel {
+    let width = |it: &(f64, String)| font::width(&it.1, TEXT);
+    let y = fewer_ticks(y, |ticks| (to.1 - from.1) / ticks.len().max(1) as f64 > TALL);
+    let left = from.0 + BESIDE + y.ticks.iter().map(width).fold(0.0, f64::max);
+    let x = fewer_ticks(x, |ticks| {
+        let room = (to.0 - left) / ticks.len().max(1) as f64;
+        ticks.iter().all(|it| width(it) + APART < room)
+    });
+    Panel { from: (left, from.1), to, x, y }
+}
+
 /// The axis with the most ticks that have room.
-pub(super) fn fewer_ticks(ruler: Ruler, has_room: impl Fn(&[(f64, String)]) -> bool) -> Ruler {
+fn fewer_ticks(ruler: Ruler, has_room: impl Fn(&[(f64, String)]) -> bool) -> Ruler {
     let mut ruler = ruler.with_ticks(f64::from(MOST_TICKS));
     for most in (2..MOST_TICKS).rev() {
         if has_room(&ruler.ticks) {

@@ -1,8 +1,7 @@
 //! A panel that fills a given size: its margins are as large as its labels are.
 
 use super::super::canvas::{At, Canvas, TextSide};
-use super::super::fitted::{APART, BELOW, BESIDE, MARGIN, NAME_BELOW, TALL, fewer_ticks};
-use super::super::frame::Panel;
+use super::super::fitted::{self, BELOW, MARGIN, NAME_BELOW};
 use super::super::{font, palette};
 use super::layer::{KeyEntry, Layer};
 use super::plot::Plot;
@@ -26,25 +25,21 @@ impl Plot {
         let keys = self.key_rows(width - 2.0 * MARGIN);
         let titles = usize::from(!self.title.is_empty());
         let head = MARGIN + LINE * (titles + keys.len()) as f64;
-        let tall = height - head - BELOW;
-        let y = fewer_ticks(y, |ticks| tall / ticks.len().max(1) as f64 > TALL);
-        let widest = y.ticks.iter().map(|it| font::width(&it.1, TEXT)).fold(0.0, f64::max);
-        let left = BESIDE + widest;
-        let wide = width - left - MARGIN;
-        let x = fewer_ticks(x, |ticks| {
-            let room = wide / ticks.len().max(1) as f64;
-            ticks.iter().all(|it| font::width(&it.1, TEXT) + APART < room)
-        });
-        let from = (corner.0 + left, corner.1 + head);
-        let panel = Panel { from, to: (from.0 + wide, from.1 + tall), x, y };
-        let at = (from.0, corner.1 + MARGIN + 0.4 * TEXT);
+        let to = (corner.0 + width - MARGIN, corner.1 + height - BELOW);
+        let panel = fitted::panel([x, y], (corner.0, corner.1 + head), to);
+        let (wide, tall) = (to.0 - panel.from.0, to.1 - panel.from.1);
+        let at = (panel.from.0, corner.1 + MARGIN + 0.4 * TEXT);
         canvas.text(&self.title, at, TEXT, TextSide::Left, palette::INK);
         let below = font::shortened(&self.axes[0], TEXT + 2.0, wide);
         // The name is centred on the panel, and ends below what is above it.
         let beside = font::shortened(&self.axes[1], TEXT + 2.0, tall + 2.0 * MARGIN);
         let bare = Self { layers: self.without_keys(), ..self.clone() };
         bare.fill(canvas, &panel, |canvas| {
-            panel.draw_named(canvas, (&below, NAME_BELOW), (&beside, left - MARGIN));
+            panel.draw_named(
+                canvas,
+                (&below, NAME_BELOW),
+                (&beside, panel.from.0 - corner.0 - MARGIN),
+            );
         });
         let first = head - LINE * keys.len() as f64 + 0.4 * TEXT;
         for (n, row) in keys.into_iter().enumerate() {
