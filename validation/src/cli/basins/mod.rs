@@ -108,16 +108,6 @@ enum Labels {
     Svg,
 }
 
-impl Labels {
-    const fn picture(self) -> Option<PictureFormat> {
-        match self {
-            Self::Npz => None,
-            Self::Png => Some(PictureFormat::Png),
-            Self::Svg => Some(PictureFormat::Svg),
-        }
-    }
-}
-
 /// An SVG of more cells is not small.
 const MAX_SVG_CELLS: u64 = 250_000;
 
@@ -178,7 +168,7 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
     let BasinArguments { system, grid, section, model, print, .. } = arguments;
     if let Some(chosen) = system.chosen(model)? {
         let survey = system::Survey::of(&chosen, grid, section, threads)?;
-        outputs.each(|format, out| match format.picture() {
+        outputs.each(|format, out| match PictureFormat::of(format) {
             None => Ok(out.write_all(&survey.npz()?)?),
             Some(format) => print.write(&survey.map(), format, out),
         })?;
@@ -186,7 +176,7 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
     }
     arguments.refuse_flags_of_system()?;
     let survey = arguments.grid.survey(&arguments.model, threads)?;
-    outputs.each(|format, out| match format.picture() {
+    outputs.each(|format, out| match PictureFormat::of(format) {
         None => Ok(out.write_all(&npz::bytes(&survey, &json::Json::of(&survey))?)?),
         Some(format) => print.write(&draw::map(&survey), format, out),
     })?;
@@ -207,8 +197,7 @@ fn outputs_of_labels(arguments: &BasinArguments) -> Result<Outputs<Labels>> {
     }
     let labels = only(&arguments.format, BasinFormat::of_labels)?;
     let outputs = Outputs::of(paths, labels, |_| Labels::Npz)?;
-    let pictures: Vec<_> = outputs.formats().filter_map(Labels::picture).collect();
-    arguments.print.check(&pictures)?;
+    arguments.print.check(&outputs.pictures())?;
     let [columns, rows] = arguments.grid.grid;
     if outputs.any(|it| it == Labels::Svg) && u64::from(columns) * u64::from(rows) > MAX_SVG_CELLS {
         bail!("--grid {columns}x{rows} is not accepted for svg: at most {MAX_SVG_CELLS} cells are");

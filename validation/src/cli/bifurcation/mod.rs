@@ -83,8 +83,7 @@ const MAX_SVG: u64 = 20_000;
 /// Writes the diagram; whether the motion was decided to its end at every value.
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     let outputs = arguments.output.outputs(|_| Format::Csv)?;
-    let pictures: Vec<_> = outputs.formats().filter_map(Format::picture).collect();
-    arguments.picture.check(&pictures)?;
+    arguments.picture.check(&outputs.pictures())?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
         return system::run(arguments, &chosen, &outputs, threads);
     }
@@ -97,23 +96,13 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     bar.finish_and_clear();
     let steps =
         steps.map_err(|error| anyhow!("--parameter {}: {error}", diagram.parameter.as_str()))?;
-    outputs.each(|format, out| match format.picture() {
+    outputs.each(|format, out| match PictureFormat::of(format) {
         None => write_csv(&steps, out),
         Some(format) => arguments.picture.write(drawing(&diagram, &steps), format, out),
     })?;
     tell_escapes(&diagram, &steps);
     tell_endless(&steps);
     Ok(tell_undecidable(diagram.parameter, &steps))
-}
-
-impl Format {
-    const fn picture(self) -> Option<PictureFormat> {
-        match self {
-            Self::Csv => None,
-            Self::Png => Some(PictureFormat::Png),
-            Self::Svg => Some(PictureFormat::Svg),
-        }
-    }
 }
 
 /// The most rows, or points of a picture.

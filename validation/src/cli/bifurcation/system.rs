@@ -4,7 +4,7 @@ use super::{Arguments, Format, check_size, most_rows, told_start};
 use crate::cli::note;
 use crate::cli::shared::long_work;
 use crate::cli::shared::outputs::Outputs;
-use crate::cli::shared::picture::{Shown, place};
+use crate::cli::shared::picture::{PictureFormat, Shown, place};
 use crate::cli::shared::section::{is_told_by_model, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::number::shortest;
@@ -44,7 +44,7 @@ pub(super) fn run(
     });
     bar.finish_and_clear();
     let steps = steps.map_err(|error| anyhow!("--parameter {}: {error}", arguments.parameter))?;
-    outputs.each(|format, out| match format.picture() {
+    outputs.each(|format, out| match PictureFormat::of(format) {
         None => write_csv(&system, &steps, out),
         Some(format) => {
             let points = points(chosen, &arguments.parameter, &shown, &steps)?;
@@ -103,8 +103,7 @@ fn points(
     let mut file = chosen.file.clone();
     let mut points = Vec::new();
     for step in steps {
-        file.set(parameter, step.value, "--parameter")?;
-        let observables = shown.observables(&file)?;
+        let observables = shown.observables_at(&mut file, parameter, step.value)?;
         let of = |it: &Return<f64>| place(&observables, step.value, it.time, &it.state);
         points.extend(step.points.iter().map(of));
     }

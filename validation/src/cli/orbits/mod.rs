@@ -6,7 +6,6 @@ pub(super) mod json;
 mod of_system;
 mod table;
 
-use crate::cli::shared::picture::PictureFormat;
 use clap::ValueEnum;
 
 /// The output format of a branch.
@@ -15,14 +14,4 @@ pub(super) enum Format {
     Json,
     Png,
     Svg,
-}
-
-impl Format {
-    const fn picture(self) -> Option<PictureFormat> {
-        match self {
-            Self::Json => None,
-            Self::Png => Some(PictureFormat::Png),
-            Self::Svg => Some(PictureFormat::Svg),
-        }
-    }
 }

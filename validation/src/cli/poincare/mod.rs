@@ -69,16 +69,6 @@ enum Format {
     Svg,
 }
 
-impl Format {
-    const fn picture(self) -> Option<PictureFormat> {
-        match self {
-            Self::Csv | Self::Npy | Self::Npz => None,
-            Self::Png => Some(PictureFormat::Png),
-            Self::Svg => Some(PictureFormat::Svg),
-        }
-    }
-}
-
 /// A picture of more points shows no more.
 const MAX_PICTURE: u64 = 5_000_000;
 /// An SVG of more points is not small.
@@ -86,7 +76,7 @@ const MAX_SVG: u64 = 20_000;
 
 /// Refuses a picture of more points than show anything, or than stay small.
 fn check_size(outputs: &Outputs<Format>, flag: &str, count: u64) -> Result<()> {
-    let is_picture = outputs.any(|it| it.picture().is_some());
+    let is_picture = outputs.any(|it| PictureFormat::of(it).is_some());
     for (is_drawn, most, kind) in [
         (is_picture, MAX_PICTURE, "a picture"),
         (outputs.any(|it| it == Format::Svg), MAX_SVG, "svg"),
@@ -101,8 +91,7 @@ fn check_size(outputs: &Outputs<Format>, flag: &str, count: u64) -> Result<()> {
 /// Writes the section; whether the motion was decided to its end.
 pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let outputs = arguments.output.outputs(|_| Format::Csv)?;
-    let pictures: Vec<_> = outputs.formats().filter_map(Format::picture).collect();
-    arguments.picture.check(&pictures)?;
+    arguments.picture.check(&outputs.pictures())?;
     match (arguments.system.chosen(&arguments.model)?, arguments.periods, arguments.returns) {
         (Some(_), Some(periods), _) => {
             bail!("--periods {periods} is not accepted with SYSTEM: --returns is")
@@ -217,7 +206,7 @@ fn sink<'s>(
     section: &'s ShownSection<'s>,
     problem: &'s Problem,
 ) -> Result<Box<dyn Sink + 's>> {
-    Ok(match format.picture() {
+    Ok(match PictureFormat::of(format) {
         Some(format) => Box::new(Collected {
             out,
             of: Box::new(|it| [it.state[0], it.state[1]]),

@@ -5,7 +5,7 @@ use super::{Arguments, Format, figure};
 use crate::cli::shared::long_work::{self, Bar};
 use crate::cli::shared::output::Opened;
 use crate::cli::shared::outputs::Outputs;
-use crate::cli::shared::picture::{Shown, place};
+use crate::cli::shared::picture::{PictureFormat, Shown, place};
 use crate::cli::shared::run_arrays::Arrays;
 use crate::cli::shared::section::{RARELY, tell_no_return, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
@@ -68,7 +68,7 @@ struct Made<'a> {
 
 impl Made<'_> {
     fn sink<'s>(&'s self, format: Format, out: &'s mut Opened) -> Result<Box<dyn Sink + 's>> {
-        if let Some(format) = format.picture() {
+        if let Some(format) = PictureFormat::of(format) {
             return Ok(Box::new(Collected {
                 out,
                 of: Box::new(|it| place(self.observables, it.n as f64, it.time, it.state)),

@@ -3,6 +3,7 @@
 
 use super::format::chosen;
 use super::output::{Destination, Opened};
+use super::picture::PictureFormat;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use std::io::Write;
@@ -60,6 +61,11 @@ impl<F: ValueEnum + PartialEq + Copy> Outputs<F> {
     /// The formats, each once for each output of it.
     pub(in crate::cli) fn formats(&self) -> impl Iterator<Item = F> {
         self.0.iter().map(|it| it.0)
+    }
+
+    /// The formats of pictures among them.
+    pub(in crate::cli) fn pictures(&self) -> Vec<PictureFormat> {
+        self.formats().filter_map(PictureFormat::of).collect()
     }
 
     /// Whether one of the formats is of a kind.

@@ -4,7 +4,7 @@ use super::parse::{self, Typed};
 use super::section::without_system;
 use crate::picture::{Drawing, Figure, PlotWindow, Print};
 use anyhow::{Result, anyhow, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use percuss::affine::SystemFile;
 use percuss::system::Observable;
 use std::io::Write;
@@ -14,6 +14,17 @@ use std::io::Write;
 pub(in crate::cli) enum PictureFormat {
     Png,
     Svg,
+}
+
+impl PictureFormat {
+    /// The format of a picture that a verb's format is by its name; none of data.
+    pub(in crate::cli) fn of(format: impl ValueEnum) -> Option<Self> {
+        match format.to_possible_value()?.get_name() {
+            "png" => Some(Self::Png),
+            "svg" => Some(Self::Svg),
+            _ => None,
+        }
+    }
 }
 
 /// The size of a picture on paper.
@@ -45,10 +56,15 @@ pub(in crate::cli) struct PictureFlags {
 }
 
 impl PrintFlags {
+    /// The flags that are given, as they are written: the size, and the density.
+    fn given(&self) -> [Option<String>; 2] {
+        let size = self.size.as_ref().map(|it| format!("--size {it}"));
+        [size, self.dpi.as_ref().map(|it| format!("--dpi {it}"))]
+    }
+
     /// Refuses the flags where no picture is drawn, and those that it takes no notice of.
     pub(in crate::cli) fn check(&self, pictures: &[PictureFormat]) -> Result<()> {
-        let size = self.size.as_ref().map(|it| format!("--size {it}"));
-        let dpi = self.dpi.as_ref().map(|it| format!("--dpi {it}"));
+        let [size, dpi] = self.given();
         refuse(size.filter(|_| pictures.is_empty()), "png and svg")?;
         refuse(dpi.filter(|_| !pictures.contains(&PictureFormat::Png)), "png")
     }
@@ -68,11 +84,7 @@ impl PrintFlags {
             PictureFormat::Png => print.png(drawing),
             PictureFormat::Svg => print.svg(drawing).map(String::into_bytes),
         };
-        let flags = [
-            self.size.as_ref().map(|it| format!("--size {it}")),
-            self.dpi.as_ref().map(|it| format!("--dpi {it}")),
-        ];
-        let flags: Vec<String> = flags.into_iter().flatten().collect();
+        let flags: Vec<String> = self.given().into_iter().flatten().collect();
         let bytes = bytes.map_err(|error| match flags.is_empty() {
             true => anyhow!(error),
             false => anyhow!("{}: {error}", flags.join(" ")),
@@ -178,6 +190,17 @@ impl Shown {
     pub(in crate::cli) fn observables(&self, file: &SystemFile) -> Result<Vec<Observable>> {
         let read = |name: &String| Ok(file.observable(name, &format!("--show {name:?}"))?);
         self.names.iter().map(read).collect()
+    }
+
+    /// The expressions where a parameter has a value, which the file has from then on.
+    pub(in crate::cli) fn observables_at(
+        &self,
+        file: &mut SystemFile,
+        parameter: &str,
+        value: f64,
+    ) -> Result<Vec<Observable>> {
+        file.set(parameter, value, "--parameter")?;
+        self.observables(file)
     }
 
     /// The names of the axes, with that of the horizontal one where an expression stands alone.

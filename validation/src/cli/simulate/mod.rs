@@ -75,21 +75,10 @@ enum Format {
     Npz,
 }
 
-impl Format {
-    const fn picture(self) -> Option<PictureFormat> {
-        match self {
-            Self::Csv | Self::Json | Self::Npy | Self::Npz => None,
-            Self::Png => Some(PictureFormat::Png),
-            Self::Svg => Some(PictureFormat::Svg),
-        }
-    }
-}
-
 /// Makes the run; whether it was decided to its end.
 pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let outputs = arguments.output.outputs(|_| Format::Csv)?;
-    let pictures: Vec<_> = outputs.formats().filter_map(Format::picture).collect();
-    arguments.picture.check(&pictures)?;
+    arguments.picture.check(&outputs.pictures())?;
     match arguments.system.chosen(&arguments.model)? {
         Some(system) => system::run(arguments, &system, &outputs),
         None => run_oscillator(arguments, &outputs),
@@ -115,7 +104,7 @@ fn sink<'a>(
     format: Format,
     out: &'a mut Opened,
 ) -> Box<dyn rows::Sink + 'a> {
-    match (format.picture(), format) {
+    match (PictureFormat::of(format), format) {
         (Some(format), _) => {
             let flags = &arguments.picture;
             Box::new(drawn::Drawn { out, flags, format, segments: Vec::new() })
@@ -138,7 +127,7 @@ fn check_effect(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<()> 
         bail!("--max-periods {most} has no effect here: accepted is it with --events");
     }
     if let Some(rows) =
-        arguments.samples.filter(|_| outputs.formats().all(|it| it.picture().is_some()))
+        arguments.samples.filter(|_| outputs.formats().all(|it| PictureFormat::of(it).is_some()))
     {
         bail!("--samples {rows} has no effect on a picture: accepted is it with csv and json");
     }

@@ -13,7 +13,7 @@ use crate::cli::shared::model::ModelFlags;
 use crate::cli::shared::output::json;
 use crate::cli::shared::outputs::OutputsFlags;
 use crate::cli::shared::parse::{self, MAX_PERIODS, Typed};
-use crate::cli::shared::picture::PictureFlags;
+use crate::cli::shared::picture::{PictureFlags, PictureFormat};
 use crate::cli::shared::section::{SectionFlags, without_system};
 use crate::cli::shared::system_choice::SystemChoice;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
@@ -67,8 +67,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     let outputs = arguments.output.outputs(|_| Format::Json)?;
-    let pictures: Vec<_> = outputs.formats().filter_map(Format::picture).collect();
-    arguments.picture.check(&pictures)?;
+    arguments.picture.check(&outputs.pictures())?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
         return of_system::run(arguments, &chosen, &outputs);
     }
@@ -80,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     let (followed, why) =
         followed(arguments, &arguments.model, Reporting::Told(&|share| bar.show_share(share)))?;
     bar.finish_and_clear();
-    outputs.each(|format, out| match format.picture() {
+    outputs.each(|format, out| match PictureFormat::of(format) {
         None => json(out, &followed),
         Some(format) => arguments.picture.write(drawing(arguments, &followed)?, format, out),
     })?;

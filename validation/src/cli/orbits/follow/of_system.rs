@@ -7,7 +7,7 @@ use super::draw::{self, DrawnBifurcation, DrawnOrbit, DrawnPoints};
 use crate::cli::shared::long_work;
 use crate::cli::shared::output;
 use crate::cli::shared::outputs::Outputs;
-use crate::cli::shared::picture::{Shown, place};
+use crate::cli::shared::picture::{PictureFormat, Shown, place};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
 use crate::picture::Figure;
@@ -79,7 +79,7 @@ pub(super) fn run(
     bar.finish_and_clear();
     let branch = branch?;
     let told = json(&first, parameter, branch.as_ref().ok());
-    outputs.each(|format, out| match format.picture() {
+    outputs.each(|format, out| match PictureFormat::of(format) {
         None => output::json(out, &told),
         Some(format) => {
             let figure = drawing(arguments, chosen, &first, &shown, branch.as_ref().ok())?;
@@ -135,8 +135,7 @@ fn drawing(
 ) -> Result<Figure> {
     let mut file = chosen.file.clone();
     let mut points = |value: f64, orbit: &Orbit| -> Result<Vec<f64>> {
-        file.set(&arguments.parameter, value, "--parameter")?;
-        let observables = shown.observables(&file)?;
+        let observables = shown.observables_at(&mut file, &arguments.parameter, value)?;
         let of = |it: &Return<f64>| place(&observables, value, it.time, &it.state)[1];
         Ok(orbit.points.iter().map(of).collect())
     };

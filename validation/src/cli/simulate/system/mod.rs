@@ -12,7 +12,7 @@ use crate::cli::note;
 use crate::cli::shared::long_work::{self, Bar};
 use crate::cli::shared::output::Opened;
 use crate::cli::shared::outputs::Outputs;
-use crate::cli::shared::picture::Shown;
+use crate::cli::shared::picture::{PictureFormat, Shown};
 use crate::cli::shared::run_arrays::Arrays;
 use crate::cli::shared::system_choice::ChosenSystem;
 use anyhow::{Result, bail};
@@ -35,7 +35,7 @@ pub(super) fn run(
     let bar = long_work::run_bar(outputs.is_terminal());
     let plan = PlannedRun::new(&solver, arguments, bar.as_ref())?;
     let end = outputs.together(|opened| {
-        let sinks = opened.iter_mut().map(|(format, out)| match format.picture() {
+        let sinks = opened.iter_mut().map(|(format, out)| match PictureFormat::of(*format) {
             None => sink_of_rows(*format, &system, out),
             Some(format) => {
                 let (flags, stops) = (&arguments.picture, Vec::new());
