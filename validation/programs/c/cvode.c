@@ -16,26 +16,15 @@
  * - There is no limit on steps between outputs.
  * - Adams has a fixed-point iteration, which its problems are meant for. */
 
-#include "percuss_sundials.h"
-
 #include <cvode/cvode.h>
+
+#include "percuss_cvode.h"
+
 #include <string.h>
 #include <sundials/sundials_version.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-static const sundials_calls CVODE = {
-    .begin = CVodeReInit,
-    .root_init = CVodeRootInit,
-    .set_root_direction = CVodeSetRootDirection,
-    .set_stop_time = CVodeSetStopTime,
-    .step = CVode,
-    .get_dky = CVodeGetDky,
-    .get_root_info = CVodeGetRootInfo,
-    .get_steps = CVodeGetNumSteps,
-    .get_jacobians = CVodeGetNumJacEvals,
-    .get_iterations = CVodeGetNumNonlinSolvIters,
-    .get_name = CVodeGetReturnFlagName,
-};
+static const sundials_calls CVODE = {CVODE_CALLS};
 
 static void make(percuss_course *course) {
     SUNContext context;
@@ -46,21 +35,10 @@ static void make(percuss_course *course) {
     run.is_implicit = !is_adams || run.is_default;
     sundials_prepare(&run, context);
     SUNNonlinearSolver fixed = SUNNonlinSol_FixedPoint(run.z, 0, context);
-    run.memory = CVodeCreate(is_adams ? CV_ADAMS : CV_BDF, context);
-    CVodeInit(run.memory, sundials_rates, course->t, run.z);
-    CVodeSStolerances(run.memory, course->relative, course->absolute);
-    CVodeSetUserData(run.memory, &run);
-    CVodeSetErrFile(run.memory, stderr);
-    if (run.is_implicit) {
-        CVodeSetLinearSolver(run.memory, run.linear, run.matrix);
-        CVodeSetJacFn(run.memory, sundials_jacobian);
-    } else {
-        CVodeSetNonlinearSolver(run.memory, fixed);
-    }
-    if (!run.is_default) {
-        CVodeSetMaxStep(run.memory, sundials_longest_step(course));
-        CVodeSetMaxNumSteps(run.memory, -1);
-    }
+    cvode_create(&run, is_adams ? CV_ADAMS : CV_BDF, context);
+    if (run.is_implicit) cvode_set_linear_solver(&run);
+    else CVodeSetNonlinearSolver(run.memory, fixed);
+    if (!run.is_default) cvode_set_steps(&run);
     sundials_make(&run);
     CVodeFree(&run.memory);
     SUNNonlinSolFree(fixed);

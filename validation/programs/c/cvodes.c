@@ -8,9 +8,10 @@
  * guard over the guard's rate, the state along its rates, and the reset is differentiated. Each
  * name is one sensitivity, whose right-hand side is given. */
 
-#include "percuss_sundials.h"
-
 #include <cvodes/cvodes.h>
+
+#include "percuss_cvode.h"
+
 #include <string.h>
 #include <sundials/sundials_version.h>
 
@@ -67,17 +68,7 @@ static int take_sensitivities(sundials_run *run) {
 }
 
 static const sundials_calls CVODES = {
-    .begin = CVodeReInit,
-    .root_init = CVodeRootInit,
-    .set_root_direction = CVodeSetRootDirection,
-    .set_stop_time = CVodeSetStopTime,
-    .step = CVode,
-    .get_dky = CVodeGetDky,
-    .get_root_info = CVodeGetRootInfo,
-    .get_steps = CVodeGetNumSteps,
-    .get_jacobians = CVodeGetNumJacEvals,
-    .get_iterations = CVodeGetNumNonlinSolvIters,
-    .get_name = CVodeGetReturnFlagName,
+    CVODE_CALLS,
     .begin_sensitivities = begin_sensitivities,
     .take_sensitivities = take_sensitivities,
 };
@@ -89,17 +80,9 @@ static void make(percuss_course *course) {
     run.is_default = strstr(course->setup, "-default") != NULL;
     course->has_jumps = !run.is_default;
     sundials_prepare(&run, context);
-    run.memory = CVodeCreate(CV_BDF, context);
-    CVodeInit(run.memory, sundials_rates, course->t, run.z);
-    CVodeSStolerances(run.memory, course->relative, course->absolute);
-    CVodeSetUserData(run.memory, &run);
-    CVodeSetErrFile(run.memory, stderr);
-    CVodeSetLinearSolver(run.memory, run.linear, run.matrix);
-    CVodeSetJacFn(run.memory, sundials_jacobian);
-    if (!run.is_default) {
-        CVodeSetMaxStep(run.memory, sundials_longest_step(course));
-        CVodeSetMaxNumSteps(run.memory, -1);
-    }
+    cvode_create(&run, CV_BDF, context);
+    cvode_set_linear_solver(&run);
+    if (!run.is_default) cvode_set_steps(&run);
     sundials_make(&run);
     CVodeFree(&run.memory);
     if (run.sensitivities) N_VDestroyVectorArray(run.sensitivities, course->name_count);

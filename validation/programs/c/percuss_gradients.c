@@ -8,17 +8,8 @@
 #include <string.h>
 
 static void read_mode(percuss_mode *mode, const cJSON *wire, int size) {
-    const char *keys[] = {"A", "B", "c"};
-    const int places[] = {0, size, size + 2};
     const cJSON *item, *row;
-    for (int key = 0; key < 3; key++) {
-        int i = 0;
-        cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(wire, keys[key])) {
-            if (key == 2) mode->matrix[i][places[key]] = item->valuedouble;
-            else percuss_numbers(item, mode->matrix[i] + places[key]);
-            i++;
-        }
-    }
+    percuss_read_rows(mode, wire, size);
     const cJSON *events = cJSON_GetObjectItem(wire, "events");
     mode->events = calloc((size_t)cJSON_GetArraySize(events) + 1, sizeof *mode->events);
     cJSON_ArrayForEach(item, events) {

@@ -41,7 +41,7 @@ static void read_event(percuss_event *event, const cJSON *wire, int size) {
     }
 }
 
-static void read_mode(percuss_mode *mode, const cJSON *wire, int size, double omega) {
+void percuss_read_rows(percuss_mode *mode, const cJSON *wire, int size) {
     const cJSON *item;
     int row = 0;
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(wire, "A"))
@@ -52,6 +52,11 @@ static void read_mode(percuss_mode *mode, const cJSON *wire, int size, double om
     row = 0;
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(wire, "c"))
         mode->matrix[row++][size + 2] = item->valuedouble;
+}
+
+static void read_mode(percuss_mode *mode, const cJSON *wire, int size, double omega) {
+    const cJSON *item;
+    percuss_read_rows(mode, wire, size);
     mode->matrix[size][size + 1] = -omega;
     mode->matrix[size + 1][size] = omega;
     const cJSON *events = cJSON_GetObjectItem(wire, "events");

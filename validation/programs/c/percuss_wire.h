@@ -34,6 +34,9 @@ void percuss_report(percuss_course *course, double t, int event, int mode, const
 /* Fills a row from a list of numbers; returns how many there were. */
 int percuss_numbers(const cJSON *list, double *values);
 
+/* Reads the coefficients of a mode into the rows of its states. */
+void percuss_read_rows(percuss_mode *mode, const cJSON *wire, int size);
+
 /* Reads the names by which derivatives are asked for, and forgets them. */
 void percuss_read_names(percuss_course *course, const cJSON *list);
 void percuss_forget_names(percuss_course *course);
