@@ -8,7 +8,7 @@ use crate::survey::check_grid;
 use crate::system::System;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use percuss::InputError;
-use percuss::affine::{Plane, ReturnAttractor, ReturnBasins};
+use percuss::affine::{Plane, ReturnAttractor, ReturnBasins, SectionMap, StartPoint, SystemError};
 use percuss::dynamics::attractor::{Label, SearchLimits, Window};
 use pyo3::IntoPyObject;
 use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyfunction};
@@ -87,6 +87,27 @@ fn plane(
     Ok(Plane { axes, window: [across, up], columns, rows })
 }
 
+/// Does work on the starts of a plane, which tells of how many more are done.
+fn on_starts<T: Send>(
+    py: Python<'_>,
+    (system, section): (&System, &Section),
+    plane: &Plane,
+    told: Option<Py<PyAny>>,
+    work: impl FnOnce(&SectionMap<'_, f64>, &StartPoint, &Seen<'_>) -> Result<T, SystemError> + Send,
+) -> PyResult<T> {
+    let solver = solver(system)?;
+    let map = section.map(&solver)?;
+    let start = system.shared.system.start().map_err(value)?;
+    let all = plane.count() as u64;
+    let done = interruptible(py, &Progress { told, all }, |stop| {
+        work(&map, start, &|count| stop.passed(count))
+    })?;
+    done.map_err(value)
+}
+
+/// Hears of how many starts more are done.
+type Seen<'s> = dyn Fn(u64) + Sync + 's;
+
 /// The orbits that Newton's method reaches from a grid of a system's starts in two states.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the face in Python gives them names")]
@@ -103,14 +124,10 @@ pub(crate) fn system_orbits<'py>(
     check_period(period)?;
     check_grid(grid, 1, 1)?;
     let plane = plane(axes, window, grid)?;
-    let solver = solver(system)?;
-    let (map, system) = (section.map(&solver)?, &system.shared.system);
-    let start = system.start().map_err(value)?;
-    let all = plane.count() as u64;
-    let found = interruptible(py, &Progress { told, all }, |stop| {
-        map.orbits(start, &plane, period, &|count| stop.passed(count))
+    let found = on_starts(py, (system, section), &plane, told, |map, start, seen| {
+        map.orbits(start, &plane, period, seen)
     })?;
-    found.map_err(value)?.iter().map(|it| ReturnOrbit::of(py, system, it)).collect()
+    found.iter().map(|it| ReturnOrbit::of(py, &system.shared.system, it)).collect()
 }
 
 /// The attractors of a grid of a system's starts in two states, and the label of each start.
@@ -129,15 +146,11 @@ pub(crate) fn system_basins<'py>(
 ) -> PyResult<ReturnsSurveyed<'py>> {
     check_grid(grid, transient, max_period)?;
     let plane = plane(axes, window, grid)?;
-    let solver = solver(system)?;
-    let (map, system) = (section.map(&solver)?, &system.shared.system);
-    let start = system.start().map_err(value)?;
     let limits = SearchLimits { transient, max_period };
-    let all = plane.count() as u64;
-    let found = interruptible(py, &Progress { told, all }, |stop| {
-        map.basins(start, &plane, limits, &|count| stop.passed(count))
+    let found = on_starts(py, (system, section), &plane, told, |map, start, seen| {
+        map.basins(start, &plane, limits, seen)
     })?;
-    let found = found.map_err(value)?;
+    let system = &system.shared.system;
     let labels = found.labels.iter().map(|it| it.number()).collect();
     let [columns, rows] = grid.map(|it| it as usize);
     let listed = found.attractors.iter().enumerate();
