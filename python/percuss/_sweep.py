@@ -7,7 +7,8 @@ import math
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -53,11 +54,38 @@ class Sweep:
         return f"Sweep({sizes}; {', '.join(self.arrays)})"
 
 
+# Flags of the command that a system in Python has already.
+_OF_SYSTEM = {"set": "system(NAME=VALUE)", "start": "system.at(...)"}
+
+
+@dataclass
+class SweptSystem:
+    """The texts and values of which a system is made."""
+
+    text: str
+    parameters: Mapping[str, float]
+    start: str | None
+
+    def lines(self, folder: Path, axes: Iterable[str]) -> tuple[list[str], list[str]]:
+        """Write the files that a plan names; the plan's lines about it, for [sweep] and [fixed]."""
+        (folder / "swept.system.toml").write_text(self.text, encoding="utf-8")
+        fixed = []
+        if self.start is not None:
+            (folder / "start.toml").write_text(self.start, encoding="utf-8")
+            fixed.append('start = "start.toml"')
+        given = {name: value for name, value in self.parameters.items() if name not in axes}
+        if given:
+            entries = (f"{json.dumps(name)} = {value!r}" for name, value in given.items())
+            fixed.append(f"set = {{ {', '.join(entries)} }}")
+        return ['system = "swept.system.toml"'], fixed
+
+
 def sweep(
     verb: str,
     axes: Mapping[str, Sequence[float] | Floats],
     fixed: Mapping[str, Any],
     out: str | Path | None,
+    system: SweptSystem | None = None,
 ) -> Sweep:
     """Run the plan of a sweep by the command, and read the arrays that it merges.
 
@@ -66,9 +94,12 @@ def sweep(
     ValueError
         A plan that the command does not accept, with its reason.
     """
-    plan = _plan(name_of("verb", verb), axes, fixed)
+    if system is not None and (name := next((it for it in fixed if it in _OF_SYSTEM), None)):
+        raise ValueError(f"{name} is not accepted: {_OF_SYSTEM[name]} is")
     with tempfile.TemporaryDirectory(prefix="percuss-") as own:
         path, merged = Path(own) / "plan.toml", Path(own) / "merged.npz"
+        of_system = ([], []) if system is None else system.lines(Path(own), axes)
+        plan = _plan(name_of("verb", verb), axes, fixed, of_system)
         path.write_text(plan, encoding="utf-8")
         folder = Path(own) / "shards" if out is None else Path(out)
         where = ("--plan", str(path), "--out", str(folder))
@@ -76,7 +107,9 @@ def sweep(
         _command("merge", *where, "--output", str(merged))
         with np.load(merged) as stored:
             arrays = {name: stored[name] for name in stored.files}
-    return Sweep({name: arrays.pop(name) for name in axes}, arrays)
+    # An axis whose name is that of an array is stored under a longer one.
+    stored_as = {name: f"parameter.{name}" for name in axes if f"parameter.{name}" in arrays}
+    return Sweep({name: arrays.pop(stored_as.get(name, name)) for name in axes}, arrays)
 
 
 def _command(step: str, *words: str) -> None:
@@ -87,10 +120,16 @@ def _command(step: str, *words: str) -> None:
         raise ValueError(lines[0].removeprefix("percuss: ") if lines else "the sweep failed")
 
 
-def _plan(verb: str, axes: Mapping[str, Any], fixed: Mapping[str, Any]) -> str:
+def _plan(
+    verb: str,
+    axes: Mapping[str, Any],
+    fixed: Mapping[str, Any],
+    of_system: tuple[list[str], list[str]],
+) -> str:
     if not 1 <= len(axes) <= 2:
         raise ValueError(f"axes of {len(axes)} parameters are not accepted: one or two are")
-    lines = ["[sweep]", f"verb = {json.dumps(verb)}", "shards = 1", "[fixed]"]
+    head, given = of_system
+    lines = ["[sweep]", f"verb = {json.dumps(verb)}", "shards = 1", *head, "[fixed]", *given]
     for name, value in fixed.items():
         if name not in axes and value is not None:
             lines.append(f"{name.replace('_', '-')} = {_toml(name, value)}")

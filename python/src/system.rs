@@ -23,13 +23,30 @@ const MOST_DIGITS: usize = 300;
 pub(crate) struct System {
     pub(crate) file: SystemFile,
     pub(crate) shared: Arc<Shared>,
+    origin: Origin,
+}
+
+/// The texts and values of which a system is made.
+#[derive(Clone, Default)]
+struct Origin {
+    /// The text of its file.
+    text: Arc<str>,
+    /// The parameters that have other values than in the file.
+    set: BTreeMap<String, f64>,
+    /// The text with the table `[start]` that replaces the file's.
+    start: Option<Arc<str>>,
 }
 
 impl System {
-    fn of(file: SystemFile) -> Result<Self, SystemError> {
+    fn of(file: SystemFile, origin: Origin) -> Result<Self, SystemError> {
         let system = file.system()?;
         let shared = Arc::new(Shared { system, directions: Default::default() });
-        Ok(Self { file, shared })
+        Ok(Self { file, shared, origin })
+    }
+
+    fn read(place: &str, text: &str) -> Result<Self, SystemError> {
+        let origin = Origin { text: Arc::from(text), ..Origin::default() };
+        Self::of(SystemFile::read(place, text)?, origin)
     }
 
     /// The run that is asked for, whose numbers are checked.
@@ -79,19 +96,18 @@ impl System {
     /// Reads the text of a system's file; errors say `place` and the line.
     #[staticmethod]
     fn parse(place: &str, text: &str) -> PyResult<Self> {
-        SystemFile::read(place, text).and_then(Self::of).map_err(value)
+        Self::read(place, text).map_err(value)
     }
 
     /// The system of the program that has this name, if there is one.
     #[staticmethod]
     fn named(name: &str) -> PyResult<Option<Self>> {
-        let read = |text| SystemFile::read(name, text).and_then(Self::of).map_err(value);
-        named(name).map(read).transpose()
+        named(name).map(|text| Self::read(name, text).map_err(value)).transpose()
     }
 
     /// The system with other values of some parameters.
     fn with_parameters(&self, values: BTreeMap<String, f64>) -> PyResult<Self> {
-        let mut file = self.file.clone();
+        let (mut file, mut origin) = (self.file.clone(), self.origin.clone());
         for (name, number) in values {
             if !number.is_finite() {
                 return Err(value(format!(
@@ -99,15 +115,25 @@ impl System {
                 )));
             }
             file.set(&name, number, &format!("{name} = {number}")).map_err(value)?;
+            origin.set.insert(name, number);
         }
-        Self::of(file).map_err(value)
+        Self::of(file, origin).map_err(value)
     }
 
     /// The system with the start of a text that holds the table `[start]`.
     fn with_start(&self, text: &str) -> PyResult<Self> {
         let mut file = self.file.clone();
         file.replace_from("start", text, false).map_err(value)?;
-        Self::of(file).map_err(value)
+        let origin = Origin { start: Some(Arc::from(text)), ..self.origin.clone() };
+        Self::of(file, origin).map_err(value)
+    }
+
+    /// The text of the file, the parameters that have other values than there, and the text of the
+    /// start that replaces the file's.
+    #[getter]
+    fn origin(&self) -> (&str, BTreeMap<String, f64>, Option<&str>) {
+        let Origin { text, set, start } = &self.origin;
+        (text, set.clone(), start.as_deref())
     }
 
     #[getter]

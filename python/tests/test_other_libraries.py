@@ -72,6 +72,57 @@ def test_sweeps_are_those_of_single_runs(tmp_path):
             assert found["drift_per_period"][i, k] == spectrum.drift
 
 
+def test_sweeps_of_a_system_are_those_of_single_runs():
+    rig = percuss.systems["rigid-impact-oscillator"](r=0.7).at(x=-0.5, v=0.1)
+    axes = {"A": [0.5, 0.6], "r": [0.6, 0.7]}
+    found = rig.sweep("lyapunov", axes, transient=20, returns=50)
+    states = rig.sweep("bifurcation", axes, transient=20, returns=3, reset=True)["state"]
+    for i, amplitude in enumerate(axes["A"]):
+        for k, r in enumerate(axes["r"]):
+            alone = rig(A=amplitude, r=r)
+            exponents = alone.lyapunov(transient=20, returns=50).exponents
+            assert found["exponents_per_return"][i, k].tolist() == exponents.tolist()
+            points = alone.poincare(returns=3, transient=20).state
+            assert states[i, k].tolist() == points.tolist()
+    built = percuss.System(RIG).sweep("basins", {"mode": [0.5, 0.6]}, **GRID)
+    assert built.axes["mode"].tolist() == [0.5, 0.6]
+    assert built["labels"].shape == (2, 3, 3) and built["x"].shape == (3,)
+
+
+# A parameter has the name of an array: its axis is stored under a longer one.
+RIG = """
+schema = 1
+name = "rig"
+states = ["x", "v"]
+[parameters]
+mode = 0.5
+speed = 2.8
+damping = 0.1
+gap = 0.125
+[forcing]
+omega = "speed"
+[[mode]]
+name = "free"
+equations = ["x' = v", "v' = -x - damping*v + mode*cos"]
+[[mode.until]]
+name = "impact"
+guard = "x > gap"
+reset = ["x = gap", "v = -v/2"]
+[start]
+mode = "free"
+x = 0
+v = 0
+"""
+GRID = {"grid": "3x3", "window": [-1, 0.1, -1, 1], "transient": 20}
+
+
+@pytest.mark.parametrize("flags", [{"set": "A=1"}, {"start": "x.toml"}, {"periods": 3}])
+def test_flags_that_a_system_has_already_are_told(flags):
+    rig = percuss.systems["rigid-impact-oscillator"]
+    with pytest.raises(ValueError, match=next(iter(flags))):
+        rig.sweep("lyapunov", {"A": [0.5, 0.6]}, transient=1, returns=2, **flags)
+
+
 def test_sweeps_are_data_sets():
     pytest.importorskip("xarray")
     found = percuss.Oscillator().sweep("lyapunov", {"b": [0.1, 0.2]}, transient=5, periods=20)

@@ -427,8 +427,8 @@ Examples:
       one file of arrays
 
 Words:
-  plan   a TOML file: the verb, its flags, what varies, and the number
-         of shards
+  plan   a TOML file: the verb, its flags, its SYSTEM if it has one,
+         what varies, and the number of shards
   shard  one part of a sweep, which any machine may compute; the result
          does not depend on their number";
 

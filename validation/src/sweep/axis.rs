@@ -1,6 +1,6 @@
 //! The parameters that vary in a sweep.
 
-use percuss::{Parameter, Parameters};
+use percuss::Parameter;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -8,8 +8,8 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweepAxis {
-    /// The parameter that varies.
-    pub parameter: Parameter,
+    /// The name of the parameter that varies.
+    pub parameter: String,
     /// The first value.
     pub from: f64,
     /// The last value, which may be the smaller one.
@@ -35,21 +35,20 @@ impl SweepAxis {
 pub struct SweepPoint {
     /// The number of the point; the last axis varies fastest.
     pub number: u64,
-    /// The parameters that vary, and their values.
-    pub values: Vec<(Parameter, f64)>,
+    /// The names of the parameters that vary, and their values.
+    pub values: Vec<(String, f64)>,
 }
 
 impl SweepPoint {
-    /// Parameters with the values of this point.
-    #[must_use]
-    pub fn set(&self, parameters: Parameters) -> Parameters {
-        self.values.iter().fold(parameters, |all, (parameter, value)| parameter.set(all, *value))
+    /// The values of the impact oscillator's parameters: all, in a plan without a system.
+    pub fn of_oscillator(&self) -> impl Iterator<Item = (Parameter, f64)> {
+        self.values.iter().filter_map(|(name, value)| Some((name.parse().ok()?, *value)))
     }
 }
 
 impl fmt::Display for SweepPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let values = self.values.iter().map(|(name, value)| format!("{} = {value}", name.as_str()));
+        let values = self.values.iter().map(|(name, value)| format!("{name} = {value}"));
         f.write_str(&values.collect::<Vec<_>>().join(", "))
     }
 }

@@ -71,15 +71,21 @@ impl<'a> Merge<'a> {
     }
 }
 
-/// Writes the axes, the verb's own axes, and what the spools hold.
+/// Writes the axes, the verb's own axes, what the spools hold, and lists of names.
 fn archive(sweep: &Sweep<'_>, spools: Vec<Spool>, out: &mut dyn Write) -> Result<()> {
     let axes = &sweep.plan.axes;
+    let (coordinates, names) = (sweep.work.coordinates(), sweep.work.names());
     let mut archive = Npz::new(out);
     for axis in axes {
         let values = (0..axis.steps).map(|step| axis.value(step));
-        archive.add(axis.parameter.as_str(), &[axis.steps as usize], values)?;
+        let name = &axis.parameter;
+        let is_taken = coordinates.iter().any(|it| it.name == *name)
+            || names.iter().any(|it| it.0 == name)
+            || spools.iter().any(|it| it.name == *name);
+        let name = if is_taken { format!("parameter.{name}") } else { name.clone() };
+        archive.add(&name, &[axis.steps as usize], values)?;
     }
-    for Array { name, shape, values } in sweep.work.coordinates() {
+    for Array { name, shape, values } in coordinates {
         match values {
             ArrayValues::F8(values) => archive.add(&name, &shape, values)?,
             ArrayValues::I4(values) => archive.add(&name, &shape, values)?,
@@ -94,6 +100,7 @@ fn archive(sweep: &Sweep<'_>, spools: Vec<Spool>, out: &mut dyn Write) -> Result
             NumberType::U1 => add::<u8>(&mut archive, &front, spool)?,
         }
     }
+    names.iter().try_for_each(|(name, list)| archive.add_texts(name, list))?;
     archive.finish()?;
     Ok(())
 }

@@ -1,9 +1,12 @@
 //! The plan of a sweep, read from a TOML file.
 
 use super::{SweepAxis, SweepPoint};
+use crate::systems::named;
 use anyhow::{Result, anyhow, bail};
+use percuss::Parameter;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -17,6 +20,11 @@ const NOT_FIXED: [&str; 11] = [
     "output", "format", "show", "range", "size", "dpi", "threads", "quiet", "color", "help",
     "version",
 ];
+
+/// Flags of a verb that are given once for each of their values.
+const REPEATED: [&str; 2] = ["set", "at"];
+/// Flags of a verb that name a file, which counts by what is in it, wherever it lies.
+const FILES: [&str; 2] = ["problem", "start"];
 
 /// A plan as its file has it.
 #[derive(Clone, Debug, Deserialize)]
@@ -34,6 +42,9 @@ pub struct PlanFile {
 struct PlanHead {
     verb: String,
     shards: u32,
+    /// A *.system.toml, relative to the plan, or a name of a system; without it the plan is of the
+    /// impact oscillator.
+    system: Option<String>,
     /// The index that the first task of an array has, where an engine counts from another number.
     first: Option<u32>,
 }
@@ -47,7 +58,7 @@ pub struct Plan {
     pub shards: u32,
     /// The index of the first task of an engine's array, where the plan states one.
     pub first: Option<u32>,
-    /// The verb's flags, as words of its command line.
+    /// The verb's SYSTEM, if the plan has one, and its flags, as words of its command line.
     pub words: Vec<String>,
     /// The verb's switches that are stated to be off.
     pub off: Vec<String>,
@@ -64,7 +75,8 @@ struct Hashed<'a> {
     shards: u32,
     words: &'a [String],
     axes: &'a [SweepAxis],
-    problem: Option<&'a str>,
+    /// The texts of the files that the plan names.
+    files: &'a BTreeMap<&'static str, String>,
 }
 
 impl Plan {
@@ -96,7 +108,7 @@ impl Plan {
         let values = self.axes.iter().zip(steps);
         SweepPoint {
             number,
-            values: values.map(|(it, step)| (it.parameter, it.value(step))).collect(),
+            values: values.map(|(it, step)| (it.parameter.clone(), it.value(step))).collect(),
         }
     }
 
@@ -122,36 +134,78 @@ impl Plan {
 impl PlanFile {
     /// Checks all that can be checked without the verb.
     fn check(self, folder: &Path) -> Result<Plan> {
-        let Self { sweep: PlanHead { verb, shards, first }, fixed, axis: axes } = self;
+        let Self { sweep: PlanHead { verb, shards, first, system }, fixed, axis: axes } = self;
         if !(1..=MOST_SHARDS).contains(&shards) {
             bail!("shards = {shards} is not accepted: accepted are 1 to {MOST_SHARDS}");
         }
         check_axes(&axes, &fixed)?;
-        let mut problem = None;
-        let (mut words, mut off) = (Vec::new(), Vec::new());
-        for (name, value) in &fixed {
-            if NOT_FIXED.contains(&name.as_str()) {
-                bail!("[fixed] {name} is not accepted: the sweep decides where and how it writes");
-            }
-            if name == "problem" {
-                let path = folder.join(value.as_str().unwrap_or_default());
-                let read = fs::read_to_string(&path);
-                let text = read.map_err(|error| anyhow!("[fixed] problem {value}: {error}"))?;
-                problem = Some(text);
-                words.push(format!("--problem={}", path.display()));
-            } else if let Some(word) = word(name, value)? {
-                words.push(word);
-            } else {
-                off.push(name.clone());
-            }
+        if system.is_none() {
+            check_parameters(&axes, &fixed)?;
         }
-        // A problem file counts by what is in it, wherever it lies.
-        let hashed: Vec<_> =
-            words.iter().filter(|it| !it.starts_with("--problem=")).cloned().collect();
-        let problem = problem.as_deref();
-        let hash = Hashed { verb: &verb, shards, words: &hashed, axes: &axes, problem };
+        let mut read = PlanWords::default();
+        if let Some(system) = &system {
+            read.system(system, folder);
+        }
+        for (name, value) in &fixed {
+            read.fixed(name, value, folder)?;
+        }
+        let PlanWords { places, flags, off, files } = read;
+        let hash = Hashed { verb: &verb, shards, words: &flags, axes: &axes, files: &files };
         let hash = digest(&serde_json::to_vec(&hash)?);
-        Ok(Plan { verb, shards, first, words, off, axes, hash })
+        Ok(Plan { verb, shards, first, words: [places, flags].concat(), off, axes, hash })
+    }
+}
+
+/// The words of a verb's command line, as a plan gives them.
+#[derive(Default)]
+struct PlanWords {
+    /// Words that say where files are: the system first.
+    places: Vec<String>,
+    /// All other words.
+    flags: Vec<String>,
+    /// Switches that are stated to be off.
+    off: Vec<String>,
+    /// The texts of the files.
+    files: BTreeMap<&'static str, String>,
+}
+
+impl PlanWords {
+    /// Takes up the system, a file or a name. The verb says what is wrong with one that is neither.
+    fn system(&mut self, system: &str, folder: &Path) {
+        let path = folder.join(system);
+        let text = match path.is_file() {
+            true => fs::read_to_string(&path).ok(),
+            false => named(system).map(str::to_owned),
+        };
+        self.files.insert("system", text.unwrap_or_default());
+        let is_file = path.is_file();
+        self.places.push(if is_file { path.display().to_string() } else { system.to_owned() });
+    }
+
+    /// Takes up an entry of `[fixed]`.
+    fn fixed(&mut self, name: &str, value: &toml::Value, folder: &Path) -> Result<()> {
+        if NOT_FIXED.contains(&name) {
+            bail!("[fixed] {name} is not accepted: the sweep decides where and how it writes");
+        }
+        if let Some(name) = FILES.into_iter().find(|it| *it == name) {
+            let path = folder.join(value.as_str().unwrap_or_default());
+            let read = fs::read_to_string(&path);
+            let text = read.map_err(|error| anyhow!("[fixed] {name} {value}: {error}"))?;
+            self.files.insert(name, text);
+            self.places.push(format!("--{name}={}", path.display()));
+            return Ok(());
+        }
+        match value {
+            toml::Value::Boolean(true) => self.flags.push(format!("--{name}")),
+            toml::Value::Boolean(false) => self.off.push(name.to_owned()),
+            value if REPEATED.contains(&name) => self.flags.extend(repeated(name, value)?),
+            toml::Value::Array(values) => {
+                let texts: Result<Vec<_>> = values.iter().map(|it| plain(name, it)).collect();
+                self.flags.push(format!("--{name}={}", texts?.join(",")));
+            }
+            value => self.flags.push(format!("--{name}={}", plain(name, value)?)),
+        }
+        Ok(())
     }
 }
 
@@ -183,15 +237,12 @@ fn check_axes(axes: &[SweepAxis], fixed: &toml::Table) -> Result<()> {
         if *steps == 1 && from != to {
             bail!("axis {name}: to = {to} has no effect with steps = 1; accepted is {from}");
         }
-        if fixed.contains_key(name) {
-            bail!("{name} is both an axis and in [fixed]: accepted is one of them");
-        }
         if fixed.get("parameter").and_then(toml::Value::as_str) == Some(name) {
             bail!("{name} is both an axis and the verb's own parameter: accepted is one of them");
         }
     }
     if axes.len() == 2 && axes[0].parameter == axes[1].parameter {
-        bail!("both axes are {}: accepted are two parameters", axes[0].parameter.as_str());
+        bail!("both axes are {}: accepted are two parameters", axes[0].parameter);
     }
     let points: u64 = axes.iter().map(|axis| u64::from(axis.steps)).product();
     if points > MOST_POINTS {
@@ -200,17 +251,33 @@ fn check_axes(axes: &[SweepAxis], fixed: &toml::Table) -> Result<()> {
     Ok(())
 }
 
-/// A fixed flag as a word of a command line; none for a switch that is off.
-fn word(name: &str, value: &toml::Value) -> Result<Option<String>> {
-    let text = match value {
-        toml::Value::Boolean(on) => return Ok(on.then(|| format!("--{name}"))),
-        toml::Value::Array(values) => {
-            let texts: Result<Vec<_>> = values.iter().map(|it| plain(name, it)).collect();
-            texts?.join(",")
+/// Refuses an axis that is no parameter of the impact oscillator, or that `[fixed]` sets as well.
+fn check_parameters(axes: &[SweepAxis], fixed: &toml::Table) -> Result<()> {
+    for SweepAxis { parameter: name, .. } in axes {
+        if name.parse::<Parameter>().is_err() {
+            bail!(
+                "axis {name} is not accepted: accepted are a, b, xi, omega, g, phi, and with system \
+                 in [sweep] a parameter of it"
+            );
         }
-        value => plain(name, value)?,
-    };
-    Ok(Some(format!("--{name}={text}")))
+        if fixed.contains_key(name) {
+            bail!("{name} is both an axis and in [fixed]: accepted is one of them");
+        }
+    }
+    Ok(())
+}
+
+/// A flag once for each entry of a table, or for each text of a list.
+fn repeated(name: &str, value: &toml::Value) -> Result<Vec<String>> {
+    let entry = |text: String| format!("--{name}={text}");
+    match value {
+        toml::Value::Table(entries) => entries
+            .iter()
+            .map(|(key, value)| Ok(entry(format!("{key}={}", plain(name, value)?))))
+            .collect(),
+        toml::Value::Array(values) => values.iter().map(|it| Ok(entry(plain(name, it)?))).collect(),
+        value => Ok(vec![entry(plain(name, value)?)]),
+    }
 }
 
 fn plain(name: &str, value: &toml::Value) -> Result<String> {
@@ -219,8 +286,8 @@ fn plain(name: &str, value: &toml::Value) -> Result<String> {
         toml::Value::Integer(number) => Ok(number.to_string()),
         toml::Value::Float(number) => Ok(number.to_string()),
         _ => bail!(
-            "[fixed] {name} is not accepted: accepted are numbers, texts, true, false and lists of \
-             numbers"
+            "[fixed] {name} is not accepted: accepted are numbers, texts, true, false, lists of \
+             numbers, and for set and at tables"
         ),
     }
 }

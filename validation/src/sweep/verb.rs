@@ -46,4 +46,9 @@ pub trait SweepVerb: Sync {
     fn coordinates(&self) -> Vec<Array> {
         Vec::new()
     }
+
+    /// Lists of names to which numbers in the arrays refer, each under the list's own name.
+    fn names(&self) -> Vec<(&'static str, Vec<String>)> {
+        Vec::new()
+    }
 }

@@ -10,6 +10,7 @@ use tempfile::TempDir;
 
 mod plans;
 mod shards;
+mod systems;
 
 const DRIFT: &str = r#"
 [sweep]

@@ -58,7 +58,11 @@ fn plans_that_are_refused() {
         ("transient = 20", "transient = 20\nproblem = \"no.toml\"", &["problem", "no.toml"]),
         ("transient = 20", "transient = 1979-05-27", &["transient is not accepted"]),
         ("parameter = \"b\"", "parameter = \"omega\"", &["both axes are omega"]),
-        ("parameter = \"b\"", "parameter = \"p\"", &["line"]),
+        (
+            "parameter = \"b\"",
+            "parameter = \"p\"",
+            &["axis p is not accepted", "accepted are a, b"],
+        ),
         ("steps = 5", "steps = 0", &["omega", "steps = 0"]),
         ("steps = 5", "steps = 5.5", &["line 13", "steps = 5.5", "an integer"]),
         ("from = 0.6", "from = \"0.6\"", &["line 11", "from = \"0.6\"", "a number"]),

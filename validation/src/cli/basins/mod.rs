@@ -3,7 +3,7 @@
 mod draw;
 pub(super) mod json;
 mod npz;
-mod system;
+pub(super) mod system;
 mod table;
 
 use super::help;
@@ -14,11 +14,14 @@ use super::shared::output::Destination;
 use super::shared::outputs::Outputs;
 use super::shared::parse::{self, MAX_TRANSIENT};
 use super::shared::picture::{PictureFormat, PrintFlags};
+use super::shared::plane::plane;
 use super::shared::section::{SectionFlags, without_system};
 use super::shared::system_choice::SystemChoice;
 use crate::case::Problem;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
+use percuss::System;
+use percuss::affine::Plane;
 use percuss::dynamics::attractor::{
     Basins, Grid, MAX_PERIOD, SearchLimits, UnresolvedStart, Window,
 };
@@ -37,7 +40,7 @@ pub(super) struct AttractorArguments {
     #[command(flatten)]
     pub(super) grid: GridFlags,
     #[command(flatten)]
-    section: SectionFlags,
+    pub(super) section: SectionFlags,
     #[command(flatten)]
     output: OutputFlags<AttractorFormat>,
     #[command(flatten)]
@@ -65,7 +68,7 @@ pub(super) struct BasinArguments {
     #[command(flatten)]
     pub(super) grid: GridFlags,
     #[command(flatten)]
-    section: SectionFlags,
+    pub(super) section: SectionFlags,
     /// Where the labels go; its extension (npz, png, svg) is its format. Given again, the same
     /// labels go there, too
     #[arg(long, value_name = "FILE")]
@@ -258,6 +261,11 @@ impl GridFlags {
     pub(super) fn grid_of(&self, q: Option<f64>) -> Grid {
         let [columns, rows] = self.grid;
         Grid { window: self.window, columns, rows, q: q.unwrap_or(0.0) }
+    }
+
+    /// The grid in two states of a SYSTEM.
+    pub(super) fn plane(&self, system: &System) -> Result<Plane> {
+        plane(system, self.axes.as_deref(), self.grid, self.window)
     }
 
     fn survey(&self, model: &ModelFlags, threads: Option<u16>) -> Result<Survey> {

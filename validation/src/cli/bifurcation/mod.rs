@@ -1,7 +1,7 @@
 //! `bifurcation`: a brute-force diagram of the impact oscillator or of a SYSTEM, as a table or a
 //! picture.
 
-mod system;
+pub(super) mod system;
 
 use super::help;
 use super::note;
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     pub(super) system: SystemChoice,
     /// What varies: a, b, xi, omega, g or phi; with SYSTEM a parameter of it
     #[arg(long, value_name = "NAME")]
-    parameter: String,
+    pub(super) parameter: String,
     /// The parameter's first value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
     pub(super) from: Typed<f64>,
@@ -48,10 +48,10 @@ pub(super) struct Arguments {
     pub(super) transient: u64,
     /// Points at each value, one a forcing period, at least 1
     #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, MAX_PERIODS), allow_hyphen_values = true)]
-    periods: Option<u32>,
+    pub(super) periods: Option<u32>,
     /// With SYSTEM: points at each value, one a return to the section, at least 1
     #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, MAX_PERIODS), allow_hyphen_values = true)]
-    returns: Option<u32>,
+    pub(super) returns: Option<u32>,
     /// Starts each value from the last state of the one before (the default)
     #[arg(long, conflicts_with = "reset")]
     carry: bool,
@@ -59,7 +59,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     pub(super) reset: bool,
     #[command(flatten)]
-    section: SectionFlags,
+    pub(super) section: SectionFlags,
     #[command(flatten)]
     output: OutputsFlags<Format>,
     #[command(flatten)]

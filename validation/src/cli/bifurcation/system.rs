@@ -23,7 +23,7 @@ pub(super) fn run(
     outputs: &Outputs<Format>,
     threads: Option<u16>,
 ) -> Result<bool> {
-    let returns = returns(arguments, outputs)?;
+    let returns = returns(arguments, most_rows(outputs))?;
     let system = chosen.system()?;
     let shown = arguments.picture.shown(1)?;
     let shown = shown.unwrap_or_else(|| Shown::first_states(&system.states, 1));
@@ -34,16 +34,11 @@ pub(super) fn run(
     let diagram = diagram(arguments, returns)?;
     let values = values(arguments.from.value, arguments.to.value, arguments.steps);
     let bar = long_work::bar(u64::from(arguments.steps), "values");
-    let steps = long_work::pool(threads)?.install(|| {
-        let at = |value: f64| {
-            let mut file = chosen.file.clone();
-            file.set(&arguments.parameter, value, "--parameter")?;
-            file.system()
-        };
-        diagram.steps(&values, at, || bar.inc(1))
-    });
+    let seen = || bar.inc(1);
+    let steps = long_work::pool(threads)?
+        .install(|| steps(&diagram, chosen, &arguments.parameter, &values, seen));
     bar.finish_and_clear();
-    let steps = steps.map_err(|error| anyhow!("--parameter {}: {error}", arguments.parameter))?;
+    let steps = steps?;
     outputs.each(|format, out| match PictureFormat::of(format) {
         None => write_csv(&system, &steps, out),
         Some(format) => {
@@ -56,8 +51,26 @@ pub(super) fn run(
     Ok(tell_left_out(&arguments.parameter, diagram.follow, &steps))
 }
 
-/// The number of returns that are shown at each value; refuses flags that do not fit.
-fn returns(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<u32> {
+/// The steps of a diagram at some values of a parameter; `seen` is called as values are done.
+pub(in crate::cli) fn steps(
+    diagram: &ReturnDiagram,
+    chosen: &ChosenSystem,
+    parameter: &str,
+    values: &[f64],
+    seen: impl Fn() + Sync + Send,
+) -> Result<Vec<ReturnDiagramStep>> {
+    let at = |value: f64| {
+        let mut file = chosen.file.clone();
+        file.set(parameter, value, "--parameter")?;
+        file.system()
+    };
+    let steps = diagram.steps(values, at, seen);
+    steps.map_err(|error| anyhow!("--parameter {parameter}: {error}"))
+}
+
+/// The number of returns that are shown at each value; refuses flags that do not fit, and more rows
+/// than `most`.
+pub(in crate::cli) fn returns(arguments: &Arguments, most: u64) -> Result<u32> {
     if let Some(periods) = arguments.periods {
         bail!("--periods {periods} is not accepted with SYSTEM: --returns is");
     }
@@ -69,11 +82,12 @@ fn returns(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<u32> {
     }
     arguments.check_steps()?;
     arguments.system.check_varied(&arguments.parameter)?;
-    check_size(arguments, returns, most_rows(outputs))?;
+    check_size(arguments, returns, most)?;
     Ok(returns)
 }
 
-fn diagram(arguments: &Arguments, returns: u32) -> Result<ReturnDiagram> {
+/// The diagram that the flags ask for, with so many returns at each value.
+pub(in crate::cli) fn diagram(arguments: &Arguments, returns: u32) -> Result<ReturnDiagram> {
     let (section, longest) = arguments.section.section()?;
     let (transient, follow) = (arguments.transient, arguments.follow());
     Ok(ReturnDiagram { section, longest, transient, returns, follow })

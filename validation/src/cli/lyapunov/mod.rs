@@ -68,10 +68,7 @@ struct Json {
 pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     arguments.output.format(Format::Json)?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
-        if let Some(periods) = arguments.periods {
-            bail!("--periods {periods} is not accepted with SYSTEM: --returns is");
-        }
-        return system::run(arguments, &chosen, arguments.returns.unwrap_or(1));
+        return system::run(arguments, &chosen, arguments.returns_of_system()?);
     }
     let periods = arguments.periods_of_oscillator()?;
     let problem = arguments.model.problem()?;
@@ -104,6 +101,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
 }
 
 impl Arguments {
+    /// The number of returns of a SYSTEM's motion.
+    pub(super) fn returns_of_system(&self) -> Result<u64> {
+        if let Some(periods) = self.periods {
+            bail!("--periods {periods} is not accepted with SYSTEM: --returns is");
+        }
+        Ok(self.returns.unwrap_or(1))
+    }
+
     /// The number of forcing periods of the impact oscillator's motion.
     pub(super) fn periods_of_oscillator(&self) -> Result<u64> {
         self.section.refuse()?;

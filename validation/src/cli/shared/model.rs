@@ -69,7 +69,7 @@ impl ModelFlags {
     /// The model's flags at a point of a sweep.
     pub(in crate::cli) fn at(&self, point: &SweepPoint) -> Self {
         let mut at = self.clone();
-        for (parameter, value) in &point.values {
+        for (parameter, value) in point.of_oscillator() {
             let flag = match parameter {
                 Parameter::A => &mut at.a,
                 Parameter::B => &mut at.b,
@@ -78,7 +78,7 @@ impl ModelFlags {
                 Parameter::G => &mut at.g,
                 Parameter::Phi => &mut at.phi,
             };
-            *flag = Some(Typed { value: *value, text: shortest(*value) });
+            *flag = Some(Typed { value, text: shortest(value) });
         }
         at
     }

@@ -5,6 +5,7 @@ use super::model::ModelFlags;
 use super::names;
 use super::parse;
 use crate::case::{FileError, parse_system_case, read_text};
+use crate::sweep::SweepPoint;
 use crate::systems::{SYSTEMS, named};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
@@ -73,6 +74,11 @@ impl SystemChoice {
 }
 
 impl SystemChoice {
+    /// Whether `--set` replaces the value of a parameter.
+    pub(in crate::cli) fn sets(&self, parameter: &str) -> bool {
+        self.flags.set.iter().any(|it| it.0 == parameter)
+    }
+
     /// Refuses `--set` of the parameter that `--parameter` varies: it would have no effect.
     pub(in crate::cli) fn check_varied(&self, varied: &str) -> Result<()> {
         if let Some((name, value)) = self.flags.set.iter().find(|it| it.0 == varied) {
@@ -118,6 +124,14 @@ impl SystemFlags {
 }
 
 impl ChosenSystem {
+    /// The system with the values of a sweep's point.
+    pub(in crate::cli) fn at(&self, point: &SweepPoint) -> Result<Self> {
+        let Self { file, text, path } = self;
+        let mut file = file.clone();
+        point.values.iter().try_for_each(|(name, value)| file.set(name, *value, "axis"))?;
+        Ok(Self { file, text: text.clone(), path: path.clone() })
+    }
+
     /// The text of the system's file, as it was before flags replaced anything.
     pub(in crate::cli) fn text(&self) -> &str {
         &self.text

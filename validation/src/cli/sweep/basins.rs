@@ -22,7 +22,7 @@ pub(super) struct BasinWork {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Wanted {
+pub(super) enum Wanted {
     Labels,
     Attractors,
 }
@@ -38,15 +38,12 @@ struct Ground {
 const PILOT: u32 = 16;
 
 impl BasinWork {
-    // A system has no place in a plan, and its flags are refused without one.
     pub(super) fn labels(arguments: BasinArguments) -> Result<Self> {
-        arguments.system.chosen(&arguments.model)?;
         arguments.refuse_flags_of_system()?;
         Ok(Self::new(arguments.grid, arguments.model, Wanted::Labels))
     }
 
     pub(super) fn attractors(arguments: AttractorArguments) -> Result<Self> {
-        arguments.system.chosen(&arguments.model)?;
         arguments.refuse_flags_of_system()?;
         Ok(Self::new(arguments.grid, arguments.model, Wanted::Attractors))
     }
@@ -128,8 +125,8 @@ fn drift_error(attractor: &AttractorJson) -> f64 {
 }
 
 /// The number of a kind in files.
-fn kind(name: &str) -> i32 {
-    let names = ["periodic", "chaotic", "quasi-periodic", "escaping"];
+pub(super) fn kind(name: &str) -> i32 {
+    let names = ["periodic", "chaotic", "quasi-periodic", "escaping", "equilibrium"];
     names.iter().position(|it| *it == name).map_or(-1, |place| place as i32)
 }
 

@@ -67,7 +67,8 @@ fn arrays(followed: &Followed) -> Result<Vec<Array>> {
 }
 
 /// The number of a bifurcation's type in files.
-fn kind(name: &str) -> i32 {
-    let names = ["fold", "flip", "neimark-sacker", "grazing"];
+pub(super) fn kind(name: &str) -> i32 {
+    let names =
+        ["fold", "flip", "neimark-sacker", "grazing", "corner", "event-gained", "event-lost"];
     names.iter().position(|it| *it == name).map_or(-1, |place| place as i32)
 }

@@ -50,8 +50,6 @@ impl DiagramWork {
     }
 
     pub(super) fn new(arguments: Arguments, plan: &Plan) -> Result<Self> {
-        // A system has no place in a plan, and its flags are refused without one.
-        arguments.system.chosen(&arguments.model)?;
         let periods = arguments.periods_of_oscillator()?;
         bifurcation::check_size(&arguments, periods, MAX_ROWS)?;
         if names_parameter(plan) {
@@ -101,7 +99,8 @@ impl DiagramWork {
     }
 }
 
-fn names_parameter(plan: &Plan) -> bool {
+/// Whether each point has a whole diagram in a parameter of its own.
+pub(super) fn names_parameter(plan: &Plan) -> bool {
     plan.words.iter().any(|it| it.starts_with("--parameter="))
 }
 

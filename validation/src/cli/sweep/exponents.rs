@@ -17,8 +17,6 @@ pub(super) struct ExponentWork {
 
 impl ExponentWork {
     pub(super) fn new(arguments: Arguments) -> Result<Self> {
-        // A system has no place in a plan, and its flags are refused without one.
-        arguments.system.chosen(&arguments.model)?;
         let periods = arguments.periods_of_oscillator()?;
         long_work::check_horizon(arguments.transient, periods)?;
         Ok(Self { arguments, periods })
@@ -63,7 +61,7 @@ fn arrays(found: &Spectrum) -> Vec<Array> {
 }
 
 /// The number in files of whether batches scatter about one value: -1 where too few tell.
-const fn stationary(stationarity: Stationarity) -> i32 {
+pub(super) const fn stationary(stationarity: Stationarity) -> i32 {
     match stationarity {
         Stationarity::Unknown => -1,
         Stationarity::ChangesAfter(_) => 0,

@@ -5,6 +5,7 @@ mod branches;
 mod diagrams;
 mod exponents;
 mod index;
+mod of_system;
 mod records;
 mod shown;
 mod verb;

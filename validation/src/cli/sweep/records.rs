@@ -30,4 +30,4 @@ pub(super) fn events(model: &percuss::Model, entry: percuss::Entry, periods: u64
 /// Forcing periods over which events are counted, at most.
 const LOOKED_AT: u64 = 64;
 /// Costs are integers, so that all programs deal alike.
-const SCALE: u64 = 1024;
+pub(super) const SCALE: u64 = 1024;

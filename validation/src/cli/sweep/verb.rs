@@ -4,6 +4,11 @@ use super::basins::BasinWork;
 use super::branches::BranchWork;
 use super::diagrams::DiagramWork;
 use super::exponents::ExponentWork;
+use super::of_system::{
+    SweptSystem, SystemBasinWork, SystemBranchWork, SystemDiagramWork, SystemExponentWork,
+};
+use crate::cli::shared::model::ModelFlags;
+use crate::cli::shared::system_choice::SystemChoice;
 use crate::cli::{self, Verb};
 use crate::sweep::{Plan, SweepVerb};
 use anyhow::{Result, anyhow, bail};
@@ -26,14 +31,40 @@ pub(super) fn work(plan: &Plan) -> Result<Box<dyn SweepVerb>> {
     check_off(plan)?;
     let parsed = cli::Arguments::try_parse_from(words)
         .map_err(|error| anyhow!("[fixed]: {}", cli::objection(&error)))?;
-    Ok(match parsed.verb {
-        Verb::Basins(arguments) => Box::new(BasinWork::labels(*arguments)?),
-        Verb::Attractors(arguments) => Box::new(BasinWork::attractors(*arguments)?),
-        Verb::Lyapunov(arguments) => Box::new(ExponentWork::new(*arguments)?),
-        Verb::Bifurcation(arguments) => Box::new(DiagramWork::new(*arguments, plan)?),
-        Verb::Continue(arguments) => Box::new(BranchWork::new(*arguments)?),
-        _ => bail!("verb = \"{verb}\" is not accepted"),
+    of_verb(parsed.verb, plan)
+}
+
+/// The work of a verb that was read, of the system that it names or of the impact oscillator.
+fn of_verb(verb: Verb, plan: &Plan) -> Result<Box<dyn SweepVerb>> {
+    Ok(match verb {
+        Verb::Basins(it) => match swept(&it.system, &it.model, plan)? {
+            Some(swept) => Box::new(SystemBasinWork::labels(swept, *it)?),
+            None => Box::new(BasinWork::labels(*it)?),
+        },
+        Verb::Attractors(it) => match swept(&it.system, &it.model, plan)? {
+            Some(swept) => Box::new(SystemBasinWork::attractors(swept, *it)?),
+            None => Box::new(BasinWork::attractors(*it)?),
+        },
+        Verb::Lyapunov(it) => match swept(&it.system, &it.model, plan)? {
+            Some(swept) => Box::new(SystemExponentWork::new(swept, *it)?),
+            None => Box::new(ExponentWork::new(*it)?),
+        },
+        Verb::Bifurcation(it) => match swept(&it.system, &it.model, plan)? {
+            Some(swept) => Box::new(SystemDiagramWork::new(swept, *it, plan)?),
+            None => Box::new(DiagramWork::new(*it, plan)?),
+        },
+        Verb::Continue(it) => match swept(&it.system, &it.model, plan)? {
+            Some(swept) => Box::new(SystemBranchWork::new(swept, *it)?),
+            None => Box::new(BranchWork::new(*it)?),
+        },
+        _ => bail!("verb = \"{}\" is not accepted", plan.verb),
     })
+}
+
+/// The system of a plan, if it has one; the flags of a system are refused without it.
+fn swept(choice: &SystemChoice, model: &ModelFlags, plan: &Plan) -> Result<Option<SweptSystem>> {
+    let chosen = choice.chosen(model)?;
+    chosen.map(|chosen| SweptSystem::new(chosen, choice, plan)).transpose()
 }
 
 /// Refuses `false` for what is no switch of the verb.

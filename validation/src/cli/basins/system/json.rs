@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 #[derive(Serialize)]
-pub(super) struct Json<'a> {
+pub(in crate::cli) struct Json<'a> {
     schema: u32,
     percuss: &'static str,
     system: &'a str,
@@ -63,7 +63,7 @@ struct UnresolvedJson<'a> {
 }
 
 impl<'a> Json<'a> {
-    pub(super) fn of(survey: &'a Survey) -> Self {
+    pub(in crate::cli) fn of(survey: &'a Survey) -> Self {
         let Survey { system, limits, basins, section } = survey;
         let plane = &basins.plane;
         let listed = basins.attractors.iter().enumerate();

@@ -1,6 +1,6 @@
 //! `attractors SYSTEM` and `basins SYSTEM`: where the starts of a grid in two states lead.
 
-mod json;
+pub(in crate::cli) mod json;
 mod table;
 
 use super::draw::colours;
@@ -8,7 +8,6 @@ use super::{AttractorFormat, GridFlags};
 use crate::arrays::Npz;
 use crate::cli::shared::long_work;
 use crate::cli::shared::output::Destination;
-use crate::cli::shared::plane::plane;
 use crate::cli::shared::section::SectionFlags;
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::picture::{BasinMap, ShownAttractor};
@@ -18,10 +17,10 @@ use percuss::affine::{ReturnAttractor, ReturnBasins, Solver};
 use percuss::dynamics::attractor::{Label, SearchLimits};
 
 /// A surveyed grid of a system's starts.
-pub(super) struct Survey {
-    system: System,
+pub(in crate::cli) struct Survey {
+    pub(in crate::cli) system: System,
     limits: SearchLimits,
-    basins: ReturnBasins,
+    pub(in crate::cli) basins: ReturnBasins,
     /// The section as it was written.
     section: String,
 }
@@ -34,16 +33,25 @@ impl Survey {
         threads: Option<u16>,
     ) -> Result<Self> {
         let system = chosen.system()?;
-        let plane = plane(&system, grid.axes.as_deref(), grid.grid, grid.window)?;
-        let limits = grid.limits();
-        let solver = Solver::<f64>::new(&system)?;
-        let map = section.map(&solver)?;
-        let bar = long_work::bar(plane.count() as u64, "starts");
+        let bar = long_work::bar(grid.plane(&system)?.count() as u64, "starts");
         let seen = |count| bar.inc(count);
-        let start = system.start()?;
-        let basins =
-            long_work::pool(threads)?.install(|| map.basins(start, &plane, limits, &seen))?;
+        let survey =
+            long_work::pool(threads)?.install(|| Self::watched(system, grid, section, &seen));
         bar.finish_and_clear();
+        survey
+    }
+
+    /// The survey of a system that has a start; `seen` is told of how many starts more the label is
+    /// known.
+    pub(in crate::cli) fn watched(
+        system: System,
+        grid: &GridFlags,
+        section: &SectionFlags,
+        seen: &(dyn Fn(u64) + Sync),
+    ) -> Result<Self> {
+        let (plane, limits) = (grid.plane(&system)?, grid.limits());
+        let solver = Solver::<f64>::new(&system)?;
+        let basins = section.map(&solver)?.basins(system.start()?, &plane, limits, seen)?;
         Ok(Self { limits, basins, section: section.text().to_owned(), system })
     }
 
@@ -117,7 +125,7 @@ impl Survey {
 }
 
 /// The name of a state's array, which is none of the others'.
-fn array_name(state: &str) -> String {
+pub(in crate::cli) fn array_name(state: &str) -> String {
     match state {
         "labels" | "ids" | "meta" => format!("state.{state}"),
         _ => state.to_owned(),

@@ -1,7 +1,7 @@
 //! `continue`: a branch of periodic orbits, of the impact oscillator or of a SYSTEM.
 
 mod draw;
-mod of_system;
+pub(crate) mod of_system;
 
 use super::super::help;
 use super::Format;
@@ -36,16 +36,16 @@ use percuss::{InputError, Parameter};
 #[command(verbatim_doc_comment, after_long_help = help::CONTINUE)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    system: SystemChoice,
+    pub(crate) system: SystemChoice,
     /// What varies: a, b, xi, omega, g or phi; with SYSTEM a parameter of it
     #[arg(long, value_name = "NAME")]
-    parameter: String,
+    pub(crate) parameter: String,
     /// The parameter's first value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
-    from: Typed<f64>,
+    pub(crate) from: Typed<f64>,
     /// The parameter's last value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
-    to: Typed<f64>,
+    pub(crate) to: Typed<f64>,
     /// Forcing periods of the orbit, with SYSTEM returns to the section
     #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true)]
     period: u32,
@@ -54,9 +54,9 @@ pub(crate) struct Arguments {
     doubled: bool,
     /// With SYSTEM: returns after which the motion from the start is the guess [default: 0]
     #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
-    transient: Option<u64>,
+    pub(crate) transient: Option<u64>,
     #[command(flatten)]
-    section: SectionFlags,
+    pub(crate) section: SectionFlags,
     #[command(flatten)]
     output: OutputsFlags<Format>,
     #[command(flatten)]

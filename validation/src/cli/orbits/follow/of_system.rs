@@ -11,6 +11,7 @@ use crate::cli::shared::picture::{PictureFormat, Shown, place};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
 use crate::picture::Figure;
+use crate::returns::Guess;
 use anyhow::{Result, anyhow, bail};
 use percuss::affine::{
     NoOrbit, Orbit, Return, ReturnBifurcation, ReturnBranch, ReturnFamily, Solver, System,
@@ -21,7 +22,7 @@ use std::collections::BTreeMap;
 
 /// The JSON of `continue SYSTEM`; if there is no orbit to begin with, the lists are empty.
 #[derive(Serialize)]
-struct FollowedJson<'a> {
+pub(in crate::cli) struct FollowedJson<'a> {
     schema: u32,
     percuss: &'static str,
     system: &'a str,
@@ -75,7 +76,9 @@ pub(super) fn run(
     shown.observables(&chosen.file)?;
     at(arguments.to.value).map_err(|error| anyhow!("--to {}: {error}", arguments.to))?;
     let bar = long_work::share_bar();
-    let branch = branch(arguments, &first, &at, &mut |share| bar.show_share(share));
+    let solver = Solver::<f64>::new(&first)?;
+    let guess = guess(&arguments.section.map(&solver)?, arguments.transient)?;
+    let branch = branch(arguments, guess, &at, &mut |share| bar.show_share(share));
     bar.finish_and_clear();
     let branch = branch?;
     let told = json(&first, parameter, branch.as_ref().ok());
@@ -96,7 +99,7 @@ pub(super) fn run(
 }
 
 /// Refuses flags that do not fit a system.
-fn check(arguments: &Arguments, chosen: &ChosenSystem) -> Result<()> {
+pub(in crate::cli) fn check(arguments: &Arguments, chosen: &ChosenSystem) -> Result<()> {
     if arguments.doubled {
         bail!("--doubled is not accepted with SYSTEM, whose branch is that of one orbit");
     }
@@ -111,14 +114,13 @@ fn check(arguments: &Arguments, chosen: &ChosenSystem) -> Result<()> {
     arguments.section.map(&Solver::new(&system)?).map(drop)
 }
 
-fn branch(
+/// The branch of the orbit near a guess, in the systems of the parameter's values.
+pub(in crate::cli) fn branch(
     arguments: &Arguments,
-    first: &System,
+    guess: Guess,
     at: &dyn Fn(f64) -> Result<System, SystemError>,
     told: &mut dyn FnMut(f64),
 ) -> Result<Result<ReturnBranch, NoOrbit>> {
-    let solver = Solver::<f64>::new(first)?;
-    let guess = guess(&arguments.section.map(&solver)?, arguments.transient)?;
     let (section, longest) = arguments.section.section()?;
     let family = ReturnFamily::new(section, longest, at);
     let ends = [arguments.from.value, arguments.to.value];
@@ -162,7 +164,8 @@ fn drawing(
     Ok(draw::figure(system.name.clone(), caption, axes, &[orbits], &found))
 }
 
-fn json<'a>(
+/// The JSON of a branch, or of none.
+pub(in crate::cli) fn json<'a>(
     system: &'a System,
     parameter: &'a str,
     branch: Option<&'a ReturnBranch>,
