@@ -65,40 +65,51 @@ fn kinds(basins: &ReturnBasins) -> Vec<(AttractorKind, Option<usize>)> {
 }
 
 /// The oscillator's own labels of starts with q = 0 that fly.
-fn own(window: [f64; 4], columns: u32, rows: u32) -> Basins {
-    let parameters = Parameters { xi: 0.1, omega: 1.6, ..Parameters::default() };
-    let map = StrobeMap::new(Model::new(parameters).unwrap(), Instant::at(1.6, 0.0, 0));
+fn own(omega: f64, window: [f64; 4], columns: u32, rows: u32) -> Basins {
+    let parameters = Parameters { xi: 0.1, omega, ..Parameters::default() };
+    let map = StrobeMap::new(Model::new(parameters).unwrap(), Instant::at(omega, 0.0, 0));
     let [left, right, low, high] = window;
     let window = Window { p: [left, right], y: [low, high] };
     Basins::of(&map, &Grid { window, columns, rows, q: 0.0 }, 60, &|_| ())
 }
 
-/// Cells may differ whose own label hangs on the last digits: it changes where the start is
-/// shifted by 1e-12. The census is that of Fig. 7's window at xi = 0.1, omega = 1.6.
+/// The census of each frame of Fig. 7, whose window it is, at xi = 0.1. Cells may differ whose own
+/// label hangs on the last digits: it changes where the start is shifted by 1e-12.
 #[test]
 fn the_oscillators_census_is_its_own() {
+    let frames = [(1.4, 2), (1.45, 3), (1.56, 3), (1.58, 2), (1.6, 2), (1.7, 3)];
+    let differ: usize = frames.iter().map(|(omega, count)| census(*omega, *count)).sum();
+    // One of 1008 was seen to: a label may differ in each frame before this tells of more.
+    assert!(differ <= frames.len(), "{differ} cells differ");
+}
+
+/// Compares a frame's census, of so many attractors; the number of cells that differ.
+fn census(omega: f64, attractors: usize) -> usize {
     let (columns, rows, q_and_gap) = (14, 12, 0.02);
     let window = [-3.0, q_and_gap, -1.5, 1.5];
-    let system = with(OSCILLATOR, &[("xi", 0.1), ("frequency", 1.6)], "no-contact");
+    let system = with(OSCILLATOR, &[("xi", 0.1), ("frequency", omega)], "no-contact");
     let found = basins(&system, &Section::strobe(0.0), &plane(window, columns, rows), 60);
-    let known = own(window, columns, rows);
-    let listed: Vec<_> = known.attractors.iter().map(|it| (it.kind, it.period())).collect();
-    let listed: Vec<_> =
-        listed.iter().map(|(kind, it)| (*kind, it.map(|it| it as usize))).collect();
-    assert_eq!(kinds(&found), listed);
+    let known = own(omega, window, columns, rows);
+    let listed = known.attractors.iter();
+    let listed: Vec<_> = listed.map(|it| (it.kind, it.period().map(|it| it as usize))).collect();
+    assert_eq!(kinds(&found), listed, "omega = {omega}");
+    assert_eq!(listed.len(), attractors, "omega = {omega}");
     let shifted = [1e-12, -1e-12].map(|by| {
-        own([window[0] + by, window[1] + by, window[2], window[3]], columns, rows).labels
+        own(omega, [window[0] + by, window[1] + by, window[2], window[3]], columns, rows).labels
     });
+    let mut differ = 0;
     for (n, (label, own)) in found.labels.iter().zip(&known.labels).enumerate() {
         let hangs_on_digits = shifted.iter().any(|it| it[n] != *own);
-        assert!(label == own || hangs_on_digits, "{n}: {label:?} {own:?}");
+        assert!(label == own || hangs_on_digits, "omega = {omega}, {n}: {label:?} {own:?}");
+        differ += usize::from(label != own);
     }
     // Orbits have the oscillator's exponents, chaos the same to its standard errors.
     for (found, own) in found.attractors.iter().zip(&known.attractors) {
         let error = 5.0 * found.lyapunov_error.hypot(own.lyapunov_error) + 1e-8;
         let apart = (found.lyapunov_per_return - own.lyapunov_per_period).abs();
-        assert!(apart <= error, "{found:?} {own:?}");
+        assert!(apart <= error, "omega = {omega}: {found:?} {own:?}");
     }
+    differ
 }
 
 /// Near the bottom of each well a motion stays in it: the force moves it by 0.05/|1 - 1 + i/2| =

@@ -78,14 +78,13 @@ impl<F: ValueEnum + PartialEq + Copy> Outputs<F> {
         self.0.iter().any(|it| it.1.is_terminal())
     }
 
-    /// Writes what is known whole to one output after the other.
+    /// Writes what is known whole to one output after the other; no file is there before all are
+    /// written.
     pub(in crate::cli) fn each(
         &self,
         mut write: impl FnMut(F, &mut dyn Write) -> Result<()>,
     ) -> Result<()> {
-        self.0
-            .iter()
-            .try_for_each(|(format, destination)| destination.write(|out| write(*format, out)))
+        self.together(|opened| opened.iter_mut().try_for_each(|(format, out)| write(*format, out)))
     }
 
     /// Writes to all outputs at once what becomes known bit by bit.
