@@ -7,6 +7,7 @@ use crate::affine::modal::{self, Kind};
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::numeric::number::{Bound, Number};
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// A number in two words of an arithmetic.
 #[derive(Clone, Copy, Debug)]
@@ -41,12 +42,19 @@ pub(super) enum BlockMotion<T: Number> {
 #[derive(Clone, Debug)]
 pub(super) struct PowerTables<T> {
     step: f64,
-    /// exp(B step 16^j d) for d from 1 to 15.
-    tables: Vec<Vec<Vec<Vector<T>>>>,
+    /// The tables of the first digits, d_0 on.
+    tables: Vec<PowerTable<T>>,
+    /// The tables of all later digits, made when a run first waits so long.
+    later: OnceLock<Vec<PowerTable<T>>>,
+    /// The first power of the later tables.
+    beyond: Vec<Vec<BigReal>>,
     pub matrix: Vec<Vector<T>>,
     /// A bound of the logarithmic norm of B: negative where every state decays.
     growth: f64,
 }
+
+/// exp(B step 16^j d) of the j-th digit, for d from 1 to 15.
+type PowerTable<T> = Vec<Vec<Vector<T>>>;
 
 fn words<T: Number>(value: &BigReal) -> SplitNumber<T> {
     if is_f64::<T>() {
@@ -271,9 +279,21 @@ fn raised<T: Number>(factor: T, rate: &SplitNumber<T>, time: T) -> T::Bound {
     factor.bound() * (T::Bound::of(1.0) + angle * phase::<T>())
 }
 
+/// The table whose first power this is, which becomes the first of the next table.
+fn table<T: Number>(first: &mut Vec<Vec<BigReal>>) -> PowerTable<T> {
+    let mut multiples = modal::multiples(first, 16);
+    if let Some(last) = multiples.pop() {
+        *first = last;
+    }
+    multiples.iter().map(|it| it.iter().map(|row| vector(row)).collect()).collect()
+}
+
 impl<T: Number> PowerTables<T> {
     /// Tables up to 16^13 steps: f64 holds each smaller number of them.
     const LEVELS: usize = 13;
+    /// Tables that are made at once: up to 256 steps, each at least a quarter of the time in which
+    /// the fastest co-ordinate moves by its size.
+    const FIRST_LEVELS: usize = 2;
     const MOST_STEPS: f64 = (1_u64 << (4 * Self::LEVELS)) as f64;
 
     fn of(matrix: &[Vec<BigReal>]) -> Self {
@@ -282,32 +302,38 @@ impl<T: Number> PowerTables<T> {
         let size = modal::norm(matrix);
         let exponent = if size > 0.0 { -libm::ceil(libm::log2(size)) - 1.0 } else { 0.0 };
         let step = libm::exp2(exponent);
-        let mut tables = Vec::new();
-        let mut first = modal::exponential(matrix, exponent as isize);
-        for _ in 0..Self::LEVELS {
-            let multiples = modal::multiples(&first, 16);
-            let (last, table) = match multiples.split_last() {
-                Some(split) => split,
-                None => break,
-            };
-            let rounded = |it: &Vec<Vec<BigReal>>| it.iter().map(|row| vector(row)).collect();
-            tables.push(table.iter().map(rounded).collect());
-            first = last.clone();
-        }
+        let mut beyond = modal::exponential(matrix, exponent as isize);
+        let tables = (0..Self::FIRST_LEVELS).map(|_| table(&mut beyond)).collect();
         let growth = modal::logarithmic_norm(matrix) + ROOM * size;
-        Self { step, tables, matrix: matrix.iter().map(|row| vector(row)).collect(), growth }
+        let matrix = matrix.iter().map(|row| vector(row)).collect();
+        Self { step, tables, later: OnceLock::new(), beyond, matrix, growth }
+    }
+
+    /// The table of a digit.
+    #[inline]
+    fn table(&self, level: usize) -> &PowerTable<T> {
+        match self.tables.get(level) {
+            Some(table) => table,
+            None => &self.later.get_or_init(|| self.later_tables())[level - Self::FIRST_LEVELS],
+        }
+    }
+
+    #[cold]
+    fn later_tables(&self) -> Vec<PowerTable<T>> {
+        let mut first = self.beyond.clone();
+        (Self::FIRST_LEVELS..Self::LEVELS).map(|_| table(&mut first)).collect()
     }
 
     /// The matrices of the tables whose product is exp(B t), but for the rest of the time.
     #[inline]
     fn factors(&self, steps: f64) -> impl Iterator<Item = &Vec<Vector<T>>> {
         let mut digits = steps as u64;
-        let chosen = self.tables.iter().map_while(move |table| {
+        let chosen = (0..Self::LEVELS).map_while(move |level| {
             let digit = (digits > 0).then_some((digits & 15) as usize)?;
             digits >>= 4;
-            Some((table, digit))
+            Some((level, digit))
         });
-        chosen.filter_map(|(table, digit)| Some(&table[digit.checked_sub(1)?]))
+        chosen.filter_map(|(level, digit)| Some(&self.table(level)[digit.checked_sub(1)?]))
     }
 
     /// The number of the tables' steps in a time.

@@ -20,6 +20,24 @@ pub(super) fn components(exact: &[Row]) -> Vec<Vec<usize>> {
     parts
 }
 
+/// The entries of z in sets whose members depend on each other: ordered by them a matrix is block
+/// triangular, and its eigenvalues are those of the sets' own matrices.
+pub(super) fn irreducible(exact: &[Row]) -> Vec<Vec<usize>> {
+    let size = exact.len();
+    let mut leads: Vec<Vec<bool>> =
+        exact.iter().map(|row| row.iter().map(|it| !it.is_zero()).collect()).collect();
+    for over in 0..size {
+        for from in 0..size {
+            for to in 0..size {
+                leads[from][to] |= leads[from][over] && leads[over][to];
+            }
+        }
+    }
+    let is_first = |n: &usize| !(0..*n).any(|k| leads[*n][k] && leads[k][*n]);
+    let with = |n: usize| (n..size).filter(|k| *k == n || (leads[n][*k] && leads[*k][n])).collect();
+    (0..size).filter(is_first).map(with).collect()
+}
+
 impl Block {
     /// The block of a part of the entries of z as one of all of them.
     pub(super) fn embedded(self, part: &[usize], size: usize) -> Self {
@@ -44,4 +62,18 @@ fn spread_over<E: Clone>(part: &[usize], row: &[E], zero: &E, size: usize) -> Ve
     let mut whole = vec![zero.clone(); size];
     part.iter().zip(row).for_each(|(place, entry)| whole[*place] = entry.clone());
     whole
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::affine::model::rational::Rational;
+
+    /// 0 and 2 act on each other, 1 on both, and 3 on itself alone.
+    #[test]
+    fn entries_that_depend_on_each_other_are_together() {
+        let row = |entries: [i32; 4]| entries.map(Rational::from).to_vec();
+        let matrix = [row([0, 1, 1, 0]), row([0; 4]), row([-1, 0, 0, 0]), row([0, 0, 0, 5])];
+        assert_eq!(irreducible(&matrix), [vec![0, 2], vec![1], vec![3]]);
+    }
 }

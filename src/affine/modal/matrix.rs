@@ -129,20 +129,24 @@ pub fn inverse(matrix: &BigMatrix) -> Option<BigMatrix> {
     Some(rows.into_iter().map(|row| row[size..].to_vec()).collect())
 }
 
-/// exp(B 2^exponent), where |B 2^exponent| is at most 1/2: a Taylor series to the last bit.
+/// exp(B 2^exponent), where |B 2^exponent| is at most 1/2, to all bits but some more than their
+/// number's root: a Taylor series of a small part of it, squared again and again.
 pub fn exponential(matrix: &[Vec<BigReal>], exponent: isize) -> BigMatrix {
-    let scaled: BigMatrix =
-        matrix.iter().map(|row| row.iter().map(|it| it.scaled(exponent)).collect()).collect();
-    // Each term is below half of the one before it, divided by its number.
     let bits = matrix.first().map_or(0, |row| row[0].bits());
-    let mut sum = identity(matrix.len());
-    for k in (1..=3 * bits / 16).rev() {
+    // Squarings and terms are about as many.
+    let squarings = bits.isqrt();
+    let small = exponent - squarings as isize;
+    let scaled: BigMatrix =
+        matrix.iter().map(|row| row.iter().map(|it| it.scaled(small)).collect()).collect();
+    let mut power = identity(matrix.len());
+    // Each term is below 2^-(squarings + 1) of the one before it.
+    for k in (1..=bits / (squarings + 1) + 1).rev() {
         let factor = BigReal::exact(k as f64);
-        sum = product(&scaled, &sum);
-        sum.iter_mut().flatten().for_each(|it| *it = &*it / &factor);
-        sum = shifted(&sum, &BigReal::one());
+        power = product(&scaled, &power);
+        power.iter_mut().flatten().for_each(|it| *it = &*it / &factor);
+        power = shifted(&power, &BigReal::one());
     }
-    sum
+    (0..squarings).fold(power, |power, _| product(&power, &power))
 }
 
 /// The first, second, ... power of a matrix.

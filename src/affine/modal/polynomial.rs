@@ -1,9 +1,13 @@
-//! The characteristic polynomial with exact coefficients, its factors of equal multiplicity, and
-//! their roots.
+//! The characteristic polynomial with exact coefficients, and its factors: of equal multiplicity,
+//! and of entries of z that act on each other. The forcing's is one, so that the roots of most
+//! factors are known in closed form.
 
-use crate::affine::arithmetic::real::{BigComplex, BigReal};
+use super::components::irreducible;
+use super::roots::simple_roots;
+use crate::affine::arithmetic::real::BigComplex;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::Row;
+use std::cmp::Ordering;
 
 /// Coefficients, lowest first; the last is not zero.
 type Polynomial = Vec<Rational>;
@@ -26,15 +30,40 @@ impl Eigenvalue {
     }
 }
 
-/// The eigenvalues of a matrix; none if the iteration does not converge.
+/// The eigenvalues of a matrix, of each multiplicity the smallest first; none if the iteration does
+/// not converge.
 pub fn eigenvalues(matrix: &[Row], bits: usize) -> Option<Vec<Eigenvalue>> {
+    let own = |part: &Vec<usize>| {
+        let row = |i: &usize| part.iter().map(|j| matrix[*i][*j].clone()).collect();
+        characteristic(&part.iter().map(row).collect::<Vec<Row>>())
+    };
+    let parts: Vec<Polynomial> = irreducible(matrix).iter().map(own).collect();
+    let whole = parts.iter().fold(vec![Rational::ONE], |all, part| times(&all, part));
     let mut roots = Vec::new();
-    for (n, factor) in squarefree(&characteristic(matrix)).into_iter().enumerate() {
-        for value in simple_roots(&factor, bits)? {
-            roots.push(Eigenvalue { value, multiplicity: n + 1 });
+    for (n, factor) in squarefree(&whole).into_iter().enumerate() {
+        let mut values = Vec::new();
+        for part in shared(factor, &parts) {
+            values.extend(simple_roots(&part, bits)?);
         }
+        let size = |it: &BigComplex| it.norm_square();
+        values.sort_by(|a, b| size(a).partial_cmp(&size(b)).unwrap_or(Ordering::Equal));
+        roots.extend(values.into_iter().map(|value| Eigenvalue { value, multiplicity: n + 1 }));
     }
     Some(roots)
+}
+
+/// The factors that a polynomial, which has each root once, has in common with others, of which
+/// every root is one.
+fn shared(mut polynomial: Polynomial, others: &[Polynomial]) -> Vec<Polynomial> {
+    let mut factors = Vec::new();
+    for other in others {
+        let common = greatest_common_divisor(&polynomial, other);
+        if common.len() > 1 {
+            polynomial = divided(&polynomial, &common).0;
+            factors.push(common);
+        }
+    }
+    factors
 }
 
 /// Faddeev and Le Verrier's method, which is exact here.
@@ -77,6 +106,14 @@ fn squarefree(polynomial: &Polynomial) -> Vec<Polynomial> {
         factors.push(factor);
     }
     factors
+}
+
+fn times(a: &Polynomial, b: &Polynomial) -> Polynomial {
+    let mut product = vec![Rational::ZERO; a.len() + b.len() - 1];
+    for (n, entry) in a.iter().enumerate() {
+        product[n..].iter_mut().zip(b).for_each(|(sum, other)| *sum += entry * other);
+    }
+    product
 }
 
 fn derivative(polynomial: &Polynomial) -> Polynomial {
@@ -127,125 +164,4 @@ fn greatest_common_divisor(a: &Polynomial, b: &Polynomial) -> Polynomial {
         Some(leading) => a.into_iter().map(|it| it / &leading).collect(),
         None => a,
     }
-}
-
-/// The roots of a polynomial that has each once. A root at zero is exactly zero: an iteration would
-/// only come near it, and what stands still would then seem to grow or decay.
-fn simple_roots(polynomial: &[Rational], bits: usize) -> Option<Vec<BigComplex>> {
-    match polynomial.split_first() {
-        Some((lowest, [])) if !lowest.is_zero() => Some(Vec::new()),
-        Some((lowest, rest)) if lowest.is_zero() => {
-            let others = simple_roots(rest, bits)?;
-            Some([BigComplex::real(BigReal::zero())].into_iter().chain(others).collect())
-        }
-        _ => roots_away_from_zero(polynomial, bits),
-    }
-}
-
-/// The roots of a polynomial that has each once, and none at zero: Aberth's iteration, all of them
-/// at a time.
-fn roots_away_from_zero(polynomial: &[Rational], bits: usize) -> Option<Vec<BigComplex>> {
-    const ROUNDS: usize = 2000;
-    let coefficients: Vec<_> = polynomial.iter().map(|it| BigReal::of(it, bits)).collect();
-    let degree = coefficients.len() - 1;
-    if degree == 1 {
-        return Some(vec![BigComplex::real(&-&coefficients[0] / &coefficients[1])]);
-    }
-    let mut roots = beginnings(&coefficients);
-    for _ in 0..ROUNDS {
-        let mut settled = true;
-        for n in 0..degree {
-            let step = step(&coefficients, &roots, n);
-            settled &= is_small(&step, &roots[n]);
-            roots[n] = &roots[n] - &step;
-        }
-        if settled {
-            return Some(above_the_axis(roots));
-        }
-    }
-    None
-}
-
-/// Whether a step moves a root by less than the last quarter of its bits.
-fn is_small(step: &BigComplex, root: &BigComplex) -> bool {
-    let last = 3 * step.re.bits() as isize / 4;
-    step.norm_square() <= root.norm_square().scaled(-2 * last)
-}
-
-/// Starts on circles whose radii follow the coefficients (Bini's choice, by the upper hull of their
-/// logarithms).
-fn beginnings(coefficients: &[BigReal]) -> Vec<BigComplex> {
-    let logarithm = |it: &BigReal| {
-        let (mut size, mut shift) = (it.abs(), 0.0);
-        if size.is_zero() {
-            return f64::NEG_INFINITY;
-        }
-        // Into the range of f64.
-        while size > BigReal::exact(1e300) {
-            (size, shift) = (size.scaled(-900), shift + 900.0);
-        }
-        while size < BigReal::exact(1e-300) {
-            (size, shift) = (size.scaled(900), shift - 900.0);
-        }
-        libm::log2(size.to_f64()) + shift
-    };
-    let heights: Vec<f64> = coefficients.iter().map(logarithm).collect();
-    let degree = heights.len() - 1;
-    let mut roots = Vec::with_capacity(degree);
-    let mut from = 0;
-    while from < degree {
-        let slope = |to: usize| (heights[to] - heights[from]) / (to - from) as f64;
-        let to = (from + 1..=degree).max_by(|a, b| slope(*a).total_cmp(&slope(*b)));
-        let to = to.unwrap_or(degree);
-        let (radius, count) = (-slope(to), to - from);
-        for k in 0..count {
-            let angle = std::f64::consts::TAU * (k as f64 / count as f64) + 0.7 + from as f64;
-            let (sin, cos) = libm::sincos(angle);
-            let whole = libm::floor(radius);
-            let rest = libm::exp2(radius - whole);
-            let scaled = |it: f64| BigReal::exact(it * rest).scaled(whole as isize);
-            roots.push(BigComplex::new(scaled(cos), scaled(sin)));
-        }
-        from = to;
-    }
-    roots
-}
-
-fn step(coefficients: &[BigReal], roots: &[BigComplex], n: usize) -> BigComplex {
-    let at = &roots[n];
-    let mut value = BigComplex::real(BigReal::zero());
-    let mut slope = value.clone();
-    for coefficient in coefficients.iter().rev() {
-        slope = &(&slope * at) + &value;
-        value = &(&value * at) + &BigComplex::real(coefficient.clone());
-    }
-    if value.norm_square().is_zero() {
-        return value;
-    }
-    // 1/(p'/p - sum 1/(z - z_k))
-    let mut sum = &slope * &value.inverse();
-    for (_, other) in roots.iter().enumerate().filter(|(k, _)| *k != n) {
-        let gap = at - other;
-        if !gap.norm_square().is_zero() {
-            sum = &sum - &gap.inverse();
-        }
-    }
-    if sum.norm_square().is_zero() { value } else { sum.inverse() }
-}
-
-/// Real roots, and of each pair the one above the real axis.
-fn above_the_axis(roots: Vec<BigComplex>) -> Vec<BigComplex> {
-    let mut kept = Vec::new();
-    for root in roots {
-        let nothing = root.norm().scaled(-(root.re.bits() as isize) / 2);
-        if root.im.abs() <= nothing {
-            kept.push(BigComplex::real(root.re));
-        } else if root.im > BigReal::zero() && root.re.abs() <= nothing {
-            // An oscillation that neither grows nor decays is known to do so for ever.
-            kept.push(BigComplex::new(BigReal::zero(), root.im));
-        } else if root.im > BigReal::zero() {
-            kept.push(root);
-        }
-    }
-    kept
 }
