@@ -118,12 +118,10 @@ class DualBuilder(Builder):
     def check_drift(self, modes: list, start: list) -> None:
         """A drift is checked where the file is read without derivatives."""
 
-    def start_values(self, modes: dict) -> dict:
-        found = super().start_values(modes)
-        for state, row in zip(self.states, found["state"], strict=True):
-            if self.name == f"{START}{state}":
-                row[-1] = row[-1] + Dual(fmpq(0), fmpq(1))
-        return found
+    def start_state(self, name: str) -> list:
+        row = super().start_state(name)
+        moved = Dual(fmpq(0), fmpq(1)) if self.name == f"{START}{name}" else fmpq(0)
+        return [*row[:-1], row[-1] + moved]
 
 
 def read(path: Path, name: str, parameters: dict, start: dict | None) -> System:

@@ -345,16 +345,31 @@ class Builder:
         time = self.start_row(self.start.get("t", 0))
         if not constant(time):
             raise Refused("start: t is an expression of parameters")
-        state = [self.start_row(self.start[name]) for name in self.states]
+        state = self.resolved([self.start_state(name) for name in self.states])
         return {"modes": choices, "t": time[-1], "state": state}
 
     def start_row(self, value) -> list:
-        if not isinstance(value, str):
-            return self.constant(number(value))
-        row = self.row(value)
-        if any(row[: len(self.states)]):
-            raise Refused(f"start: {value!r} has a state in it")
-        return row
+        return self.row(value) if isinstance(value, str) else self.constant(number(value))
+
+    def start_state(self, name: str) -> list:
+        """The row of a state at the start, which may hang on other states."""
+        return self.start_row(self.start[name])
+
+    def resolved(self, rows: list) -> list:
+        """Rows in which the rows of the states that they hang on take the place of these."""
+        known = {}
+        while open_states := [n for n in range(len(rows)) if n not in known]:
+            others = {n: [k for k in range(len(rows)) if rows[n][k] != 0] for n in open_states}
+            ready = [n for n in open_states if all(k in known for k in others[n])]
+            if not ready:
+                raise Refused(f"start: {self.states[open_states[0]]} hangs on itself")
+            for n in ready:
+                row = [fmpq(0)] * len(rows) + rows[n][len(rows) :]
+                for k in others[n]:
+                    pairs = zip(row, known[k], strict=True)
+                    row = [own + rows[n][k] * other for own, other in pairs]
+                known[n] = row
+        return [known[n] for n in range(len(rows))]
 
     def system(self) -> System:
         modes = [self.mode(table) for table in self.table["mode"]]

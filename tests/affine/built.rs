@@ -328,7 +328,7 @@ fn an_error_of_the_start_names_it() {
     assert_eq!(begin(&[("x", 1.into()), ("y", 2.into())]), "start: y is no state: accepted are x");
     assert_eq!(
         begin(&[("x", [1, 1].into())]),
-        "start: x: a start is an expression of parameters, cos and sin"
+        "start: x: a start that hangs on itself, by way of other states or not, is not accepted"
     );
     assert_eq!(begin(&[("x", f64::NAN.into())]), "start: x: a finite number is accepted");
     assert_eq!(

@@ -31,6 +31,7 @@ mod returns;
 mod sizes;
 mod spectra;
 mod start_modes;
+mod start_rows;
 mod still;
 mod tables;
 mod together;

@@ -66,9 +66,12 @@ impl Plane {
 
 /// The start of which two states are moved, in each of the modes in which it may lie.
 pub(super) struct PlaneStart<'a> {
+    solver: &'a Solver<f64>,
     system: &'a System,
     start: &'a StartPoint,
     places: Vec<Place<f64>>,
+    /// Whether other states hang on the two as the expressions of the system's start say.
+    follows: bool,
 }
 
 impl<'a> PlaneStart<'a> {
@@ -82,23 +85,26 @@ impl<'a> PlaneStart<'a> {
         let modes: BTreeSet<usize> = listed.chain([start.mode]).collect();
         let place = |mode| solver.place_free_in(&StartPoint { mode, ..start.clone() }, axes);
         let places = modes.into_iter().map(place).collect::<Result<_, _>>()?;
-        Ok(Self { system, start, places })
+        let follows = !system.start_rows.is_empty() && system.follows_start(start, axes);
+        Ok(Self { solver, system, start, places, follows })
     }
 
-    /// The start with these values of two states, in the mode that the start's conditions choose,
-    /// or in its own where it has none.
+    /// The start with these values of two states, and what hangs on them, in the mode that the
+    /// start's conditions choose, or in its own where it has none.
     fn with(&self, axes: [usize; 2], values: [f64; 2]) -> Result<Place<f64>, SystemError> {
-        let mode = if self.system.start_modes.is_empty() {
-            self.start.mode
-        } else {
-            let mut moved = self.start.clone();
-            for (axis, value) in axes.into_iter().zip(values) {
-                let value = Rational::try_from(value).unwrap_or_default();
-                if let Some(entry) = moved.state.get_mut(axis) {
-                    *entry = [Rational::ZERO, Rational::ZERO, value];
-                }
+        let mut moved = self.start.clone();
+        for (axis, value) in axes.into_iter().zip(values) {
+            let value = Rational::try_from(value).unwrap_or_default();
+            if let Some(entry) = moved.state.get_mut(axis) {
+                *entry = [Rational::ZERO, Rational::ZERO, value];
             }
-            self.system.mode_by_conditions(&moved)?
+        }
+        if self.follows {
+            self.system.follow_start(&mut moved, &axes);
+        }
+        let mode = match self.system.start_modes.is_empty() {
+            true => self.start.mode,
+            false => self.system.mode_by_conditions(&moved)?,
         };
         let unknown = || SystemError::UnknownMode {
             item: "start".to_owned(),
@@ -107,6 +113,9 @@ impl<'a> PlaneStart<'a> {
         };
         let place = self.places.iter().find(|it| it.mode == mode).ok_or_else(unknown)?;
         let mut state = place.state.clone();
+        if self.follows {
+            state = self.solver.states_at(&moved);
+        }
         for (axis, value) in axes.into_iter().zip(values) {
             if let Some(entry) = state.get_mut(axis) {
                 *entry = value;
@@ -118,7 +127,8 @@ impl<'a> PlaneStart<'a> {
 
 impl SectionMap<'_, f64> {
     /// Labels every start of a plane. The other states and the time are those of a start, and so is
-    /// the mode, unless the system's start chooses it by conditions.
+    /// the mode, unless the system's start chooses it by conditions. A state whose start is an
+    /// expression of other states follows these.
     ///
     /// `limits` say how many returns a start is followed at first, and how long orbits may be;
     /// `seen` is told of how many starts more the label is known. Results are the same for any

@@ -3,7 +3,7 @@
 use super::error::SystemError;
 use super::naming::unknown_mode;
 use super::rational::Rational;
-use super::system::{StartPoint, System};
+use super::system::{StartPoint, StartRow, System};
 
 impl System {
     /// The start of the system.
@@ -12,6 +12,55 @@ impl System {
     /// A system that has none.
     pub fn start(&self) -> Result<&StartPoint, SystemError> {
         self.start.as_ref().ok_or_else(|| SystemError::NoStart { system: self.name.clone() })
+    }
+
+    /// Sets the states of a start that hang on others, but for those that are held.
+    pub(in crate::affine) fn follow_start(&self, start: &mut StartPoint, held: &[usize]) {
+        let states = self.states.len();
+        for StartRow { state, row } in self.start_rows.iter().filter(|it| !held.contains(&it.state))
+        {
+            let Some((others, own)) = row.split_at_checked(states) else { continue };
+            let mut entry = [0, 1, 2].map(|n| own.get(n).cloned().unwrap_or_default());
+            for (factor, other) in others.iter().zip(&start.state).filter(|it| !it.0.is_zero()) {
+                entry.iter_mut().zip(other).for_each(|(sum, number)| *sum += factor * number);
+            }
+            if let Some(place) = start.state.get_mut(*state) {
+                *place = entry;
+            }
+        }
+    }
+
+    /// Whether the states of a start that hang on others, but for those that are held, are as the
+    /// system's own start has them.
+    pub(in crate::affine) fn follows_start(&self, start: &StartPoint, held: &[usize]) -> bool {
+        let mut own = start.clone();
+        self.follow_start(&mut own, held);
+        own == *start
+    }
+
+    /// The changes of all states of a start where one of some that are held changes alone: those
+    /// that hang on it change with it, where they [follow](Self::follows_start).
+    pub(in crate::affine) fn start_changes(
+        &self,
+        start: &StartPoint,
+        of: usize,
+        held: &[usize],
+    ) -> Vec<Rational> {
+        let unit = |n: usize| if n == of { Rational::ONE } else { Rational::ZERO };
+        let mut changes: Vec<Rational> = (0..self.states.len()).map(unit).collect();
+        if self.follows_start(start, held) {
+            for StartRow { state, row } in
+                self.start_rows.iter().filter(|it| !held.contains(&it.state))
+            {
+                let terms = row.iter().zip(&changes).filter(|(factor, _)| !factor.is_zero());
+                let sum = terms.map(|(factor, change)| factor * change);
+                let sum = sum.fold(Rational::ZERO, |sum, term| sum + term);
+                if let Some(change) = changes.get_mut(*state) {
+                    *change = sum;
+                }
+            }
+        }
+        changes
     }
 
     /// Refuses a start in no mode, or with more or fewer states than the system has.

@@ -96,11 +96,22 @@ pub struct System {
     pub modes: Vec<Mode>,
     /// The point at which a run begins, if the file says so.
     pub start: Option<StartPoint>,
+    /// The states of the start that hang on others of its states, each after those.
+    pub(in crate::affine) start_rows: Vec<StartRow>,
     /// The modes in which a start may lie, where the file lists them: the first whose condition
     /// holds at the start is its mode.
     pub start_modes: Vec<Successor>,
     /// The file or the builder's items, whose expressions have the derivatives of all this.
     pub(super) file: Origin,
+}
+
+/// A state of a start that hangs on others of its states.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::affine) struct StartRow {
+    /// The index of the state.
+    pub state: usize,
+    /// The factors of the states, of cos theta, of sin theta and of 1.
+    pub row: Row,
 }
 
 /// The expressions that a system was made from, if it was.

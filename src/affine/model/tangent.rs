@@ -38,6 +38,14 @@ impl Name {
         unit(matches!(by, Some(Self::Parameter(own)) if own == name))
     }
 
+    /// The index of the state of the start that the name is, if it is one.
+    fn start_index(&self, states: &[String]) -> Option<usize> {
+        match self {
+            Self::Start(name) => states.iter().position(|it| it == name),
+            Self::Parameter(_) => None,
+        }
+    }
+
     /// 1 for the state by whose start is differentiated, 0 for any other.
     pub(super) fn is_start(by: Option<&Self>, name: &str) -> Rational {
         unit(matches!(by, Some(Self::Start(own)) if own == name))
@@ -124,8 +132,10 @@ impl SystemFile {
                 parameter.value = Scalar::Exact(apart(&parameter.value.number()?, sign));
             }
             let mut system = file.system().ok()?;
-            if let Some(start) = &mut system.start {
-                move_start(start, &system.states, by, sign);
+            if let Some(mut start) = system.start.take() {
+                move_start(&mut start, &system.states, by, sign);
+                system.follow_start(&mut start, by.start_index(&system.states).as_slice());
+                system.start = Some(start);
             }
             Some(Box::new(system))
         };
@@ -193,8 +203,7 @@ fn apart(value: &Rational, sign: i32) -> Rational {
 
 /// Moves the state of a start that is the name.
 fn move_start(start: &mut StartPoint, states: &[String], by: &Name, sign: i32) {
-    let Name::Start(name) = by else { return };
-    let Some(entry) = states.iter().position(|it| it == name) else { return };
+    let Some(entry) = by.start_index(states) else { return };
     if let Some([.., one]) = start.state.get_mut(entry) {
         *one = apart(one, sign);
     }

@@ -110,6 +110,11 @@ impl<T: Number> Solver<T> {
         }
     }
 
+    /// The states of a start, rounded to the arithmetic.
+    pub(in crate::affine) fn states_at(&self, start: &StartPoint) -> Vec<T> {
+        self.time_and_state(start).1[..start.state.len()].to_vec()
+    }
+
     /// The time and the state of a start, rounded to the arithmetic.
     fn time_and_state(&self, start: &StartPoint) -> (Time<T>, Vector<T>) {
         let time = Time::of(&start.time);

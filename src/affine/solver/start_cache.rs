@@ -78,7 +78,7 @@ impl<T: Copy> StartCache<T> {
 }
 
 /// The left kernel of the start's coefficients over cos theta, sin theta and 1, of which some
-/// states are free: they may be anywhere.
+/// states are free: they may be anywhere, and those that hang on them follow.
 pub fn zeros_at_start(system: &System, start: &StartPoint, free: &[usize]) -> Option<ZeroSpace> {
     let zero_angle = system.is_at_zero_angle(start);
     let mut rows: Vec<[Rational; 3]> = start.state.clone();
@@ -87,6 +87,7 @@ pub fn zeros_at_start(system: &System, start: &StartPoint, free: &[usize]) -> Op
         rows.push([Rational::ZERO, Rational::ONE, Rational::ZERO]);
     }
     rows.push([Rational::ZERO, Rational::ZERO, Rational::ONE]);
+    let changes: Vec<_> = free.iter().map(|it| system.start_changes(start, *it, free)).collect();
     let row = |(n, [cos, sin, one]): (usize, &[Rational; 3])| {
         // At theta = 0 the cosine is 1 and the sine 0.
         let mut row = if zero_angle {
@@ -94,8 +95,7 @@ pub fn zeros_at_start(system: &System, start: &StartPoint, free: &[usize]) -> Op
         } else {
             vec![cos.clone(), sin.clone(), one.clone()]
         };
-        let own = |it: &usize| if *it == n { Rational::ONE } else { Rational::ZERO };
-        row.extend(free.iter().map(own));
+        row.extend(changes.iter().map(|it| it.get(n).cloned().unwrap_or_default()));
         residues(&row)
     };
     let mut zeros = ZeroSpace::default();

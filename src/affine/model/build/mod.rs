@@ -3,19 +3,18 @@
 mod drift;
 mod mode;
 mod names;
+mod start;
 
-use crate::affine::model::dual::Dual;
 use crate::affine::model::error::SystemError;
-use crate::affine::model::file::{GivenParameter, StartTable, SystemFile};
-use crate::affine::model::naming::unknown_mode;
+use crate::affine::model::file::{GivenParameter, SystemFile};
 use crate::affine::model::observable::Observable;
 use crate::affine::model::scalar::Scalar;
 use crate::affine::model::system::{
-    LARGEST_COUNT, LARGEST_DIMENSION, Origin, Row, StartPoint, System, TROUBLE,
+    LARGEST_COUNT, LARGEST_DIMENSION, Origin, Row, System, TROUBLE,
 };
 use crate::affine::model::tangent::Name;
 use mode::ModeReader;
-use names::{Accepts, Names};
+use names::Names;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toml::Spanned;
@@ -88,6 +87,7 @@ fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
         forcing,
         modes: Vec::new(),
         start: None,
+        start_rows: Vec::new(),
         start_modes: Vec::new(),
         file: Origin(by.is_none().then(|| Arc::new(file.clone()))),
     };
@@ -109,12 +109,13 @@ fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
     }
     if let Some(start) = &file.start {
         system.start_modes = reader.start_modes(&mut names, start)?;
-        let mut point = start_point(&mut names, start, &places)?;
+        let (mut point, rows) = start::read(&mut names, start, &places)?;
         // A derivative's start is in no mode of its own.
         if by.is_none() && !system.start_modes.is_empty() {
             point.mode = system.mode_by_conditions(&point)?;
         }
         system.start = Some(point);
+        system.start_rows = rows;
     }
     // The derivatives of coefficients say nothing of what depends on what.
     if by.is_none() {
@@ -142,58 +143,4 @@ fn mode_places(file: &SystemFile) -> Result<BTreeMap<String, usize>, SystemError
         return Err(file.error(&file.tables.name.span(), &what));
     }
     Ok(places)
-}
-
-fn start_point(
-    names: &mut Names,
-    table: &StartTable,
-    places: &BTreeMap<String, usize>,
-) -> Result<StartPoint, SystemError> {
-    let refuse = |what: &str| SystemError::at(&table.place, what);
-    let known: Vec<_> = places.keys().map(String::as_str).collect();
-    let mode = match table.entries.get("mode") {
-        Some(GivenParameter { value: Scalar::Text(name), place }) => places
-            .get(name)
-            .copied()
-            .ok_or_else(|| SystemError::at(place, &unknown_mode(name, known.iter().copied())))?,
-        Some(GivenParameter { place, .. }) => {
-            let what = format!("mode is no number: accepted is one of {}", known.join(", "));
-            return Err(SystemError::at(place, &what));
-        }
-        None if !table.modes.is_empty() => 0,
-        None => {
-            let what = format!("the start has no mode: accepted is one of {}", known.join(", "));
-            return Err(refuse(&what));
-        }
-    };
-    names.accepts = Accepts::Forcing;
-    let time = match table.entries.get("t") {
-        Some(GivenParameter { value, place }) => names.constant_at("t", value, place)?,
-        _ => Dual::ZERO,
-    };
-    let time = names.wanted(time);
-    let states = names.states.clone();
-    let mut state = Vec::with_capacity(states.len());
-    for name in &states {
-        let Some(GivenParameter { value, place }) = table.entries.get(name) else {
-            return Err(refuse(&format!("the start has no state {name}")));
-        };
-        let form = names.affine(value);
-        let form = form.map_err(|what| SystemError::at(place, &format!("{name}: {what}")))?;
-        if form.has_states() {
-            let what = "a start is an expression of parameters, cos and sin";
-            return Err(SystemError::at(place, &format!("{name}: {what}")));
-        }
-        let [.., cos, sin, one] = form.0.as_slice() else { continue };
-        let mut entry = [cos, sin, one].map(|it| names.wanted(it.clone()));
-        entry[2] += names.start_rate(name);
-        state.push(entry);
-    }
-    let surplus = |key: &&String| !(["mode", "t"].contains(&key.as_str()) || states.contains(key));
-    if let Some(key) = table.entries.keys().find(surplus) {
-        let place = &table.entries[key].place;
-        let accepted = [names.file.source.keys_of_a_start(), &states.join(", ")].concat();
-        return Err(SystemError::at(place, &format!("{key} is no state: accepted are {accepted}")));
-    }
-    Ok(StartPoint { mode, time, state })
 }

@@ -32,8 +32,6 @@ pub(super) struct Names<'a> {
 pub(super) enum Accepts {
     /// States, cos, sin and constants.
     States,
-    /// Cos, sin and constants, as at a start.
-    Forcing,
     /// Constants only.
     Constants,
 }
@@ -252,9 +250,6 @@ impl Scope for Names<'_> {
         if let Some(index) = self.states.iter().position(|it| it == name) {
             return match self.accepts {
                 Accepts::States => Ok(Form::unit(states, index)),
-                Accepts::Forcing => Err(format!(
-                    "{name} is a state: a start is an expression of parameters, cos, sin"
-                )),
                 Accepts::Constants => {
                     Err(format!("{name} is a state: an expression of parameters is accepted"))
                 }
