@@ -12,8 +12,8 @@ use std::rc::Rc;
 pub struct Rates {
     pub wrt: String,
     pub value: f64,
-    omega: f64,
-    phi: f64,
+    pub omega: f64,
+    pub phi: f64,
     pub state: Vec<f64>,
     modes: Vec<ModeRates>,
 }
@@ -44,14 +44,27 @@ impl Rates {
 
     /// The derivative of the right-hand side at a fixed time and state.
     pub fn field(&self, mode: &Mode, t: f64, z: &[f64]) -> Vec<f64> {
-        let ModeRates { a, b, c, .. } = &self.modes[mode.place];
         let wide = mode.wide(t, z);
         let turned = self.wide(mode, t, 0.0, &vec![0.0; z.len()]);
-        let rate = |n: usize| {
-            let row = [a[n].as_slice(), &b[n], &[c[n]]].concat();
-            dot(&row, &wide) + dot(&mode.row(n), &turned)
-        };
+        let rate = |n: usize| dot(&self.row(mode, n), &wide) + dot(&mode.row(n), &turned);
         (0..z.len()).map(rate).collect()
+    }
+
+    /// The derivative of a state's rate as a row.
+    pub fn row(&self, mode: &Mode, state: usize) -> Row {
+        let ModeRates { a, b, c, .. } = &self.modes[mode.place];
+        [a[state].as_slice(), &b[state], &[c[state]]].concat()
+    }
+
+    /// The derivative of the row of a guard.
+    pub fn guard_row(&self, mode: &Mode, event: usize) -> Row {
+        self.modes[mode.place].events[event].guard.clone()
+    }
+
+    /// The derivative of a row of a reset, for an event that has one.
+    pub fn reset_row(&self, mode: &Mode, event: usize, state: usize) -> Row {
+        let EventRates { guard, reset } = &self.modes[mode.place].events[event];
+        reset.as_ref().map_or_else(|| vec![0.0; guard.len()], |rows| rows[state].clone())
     }
 
     /// The derivative of a guard at a fixed time, where the state has its own.

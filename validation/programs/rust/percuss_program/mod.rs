@@ -7,6 +7,7 @@
 #![allow(dead_code, reason = "each program uses a part of it")]
 
 pub mod derivatives;
+pub mod saltation;
 
 use derivatives::{Passed, Rates};
 use serde::Deserialize;
@@ -22,7 +23,7 @@ const MOST_AT_ONCE: usize = 64;
 const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
 
 /// A row over (z, cos theta, sin theta, 1).
-type Row = Vec<f64>;
+pub type Row = Vec<f64>;
 
 #[derive(Deserialize)]
 struct Request {
@@ -141,9 +142,19 @@ impl Mode {
         z.iter().copied().chain([theta.cos(), theta.sin(), 1.0]).collect()
     }
 
+    /// Counts a call of the right-hand side.
+    pub fn count_call(&self) {
+        self.calls.set(self.calls.get() + 1);
+    }
+
+    /// The forcing's frequency and phase.
+    pub fn forcing(&self) -> (f64, f64) {
+        (self.omega, self.phi)
+    }
+
     /// The right-hand side.
     pub fn rates(&self, t: f64, z: &[f64]) -> Vec<f64> {
-        self.calls.set(self.calls.get() + 1);
+        self.count_call();
         let (sin, cos) = (self.omega * t + self.phi).sin_cos();
         let ModeWire { a, b, c, .. } = &self.wire;
         let rate =
@@ -157,7 +168,7 @@ impl Mode {
     }
 
     /// A state's rate as a row.
-    fn row(&self, state: usize) -> Row {
+    pub fn row(&self, state: usize) -> Row {
         let ModeWire { a, b, c, .. } = &self.wire;
         [a[state].as_slice(), &b[state], &[c[state]]].concat()
     }
@@ -400,6 +411,7 @@ fn made(run: Run, make: Make) -> Value {
 }
 
 /// What a program declares of a set-up.
+#[derive(Clone, Copy)]
 pub struct Setup {
     pub name: &'static str,
     pub method: &'static str,
