@@ -2,7 +2,7 @@
 //! that starts at T at 1 again has dy/dp = e/2 at the time 1, which is 1.359140914.
 
 use differential_equations::prelude::*;
-use num_dual::{Dual64, DualNum};
+use num_dual::Dual64;
 
 struct Growth(Dual64);
 
@@ -25,16 +25,16 @@ fn main() {
     let [zero, one, two] = [0.0, 1.0, 2.0].map(Dual64::from_re);
     let p = Growth(one.derivative());
     let filters: [(&str, fn(Dual64) -> Dual64); 2] = [("", |h| h), ("filter, ", |h| h.re.into())];
-    for (tolerance, (name, filter)) in [1e-6, 1e-9].iter().flat_map(|it| filters.map(|f| (it, f))) {
-        let to = Dual64::from(*tolerance);
+    for (k, (name, filter)) in [6, 9].into_iter().flat_map(|k| filters.map(|it| (k, it))) {
+        let to = Dual64::from(0.1_f64.powi(k));
         let method = || ExplicitRungeKutta::dopri5().rtol(to).atol(to).filter(filter);
         let found = IVP::ode(&p, zero, two, one).event(&p).method(method()).solve().unwrap();
         let (t, y) = found.last().unwrap();
-        let newton = *t - (*y - two) / (p.0 * *y);
-        println!("{name}{tolerance:e}: T = {t:.6}, after a step of Newton {newton:.6}");
-        let again = IVP::ode(&p, DualNum::ln(&two) / p.0, one, one);
-        let at = again.clone().t_eval([one]).method(method()).solve().unwrap();
-        let last = again.method(method()).solve().unwrap();
-        println!("  y(1) by t_eval {:.6}, else at {:.6} {:.6}", at.y[0], last.t[1..].last().unwrap(), last.y.last().unwrap());
+        let newton = (*t - (*y - two) / (p.0 * *y)).eps;
+        println!("{name}1e-{k}: T {:.6}, dT/dp {:.6}, by Newton {newton:.6}", t.re, t.eps);
+        let again = IVP::ode(&p, Dual64::new(2_f64.ln(), -2_f64.ln()), one, one);
+        let asked = again.clone().t_eval([one]).method(method()).solve().unwrap().y[0].eps;
+        let last = again.method(method()).solve().unwrap().t.pop().unwrap().eps;
+        println!("    by t_eval dy/dp {asked:.6}, and that of the last time is {last:.6}");
     }
 }
