@@ -113,6 +113,9 @@ impl<T: Number> Numeric<T> {
         if found {
             return self.event(course, *t, z);
         }
+        if t.value() < course.run.span {
+            return Err("the solution has no state at the end".into());
+        }
         self.z.clone_from(z);
         (course.t, course.z) = (course.run.span, values(z));
         Ok(())

@@ -11,8 +11,12 @@ use crate::differential_equations_numbers::{
 };
 use crate::percuss_program::derivatives::Stretch;
 use crate::percuss_program::{Course, saltation};
-use differential_equations::ode::ODE;
-use differential_equations::prelude::{ExplicitRungeKutta, IVP};
+use differential_equations::control::ControlFlag;
+use differential_equations::interpolate::Interpolation;
+use differential_equations::methods::{ExplicitRungeKutta, Ordinary};
+use differential_equations::ode::{ODE, solve_ode};
+use differential_equations::solout::Solout;
+use differential_equations::solution::Solution;
 use differential_equations::tolerance::Tolerance;
 use differential_equations::traits::State;
 use std::error::Error;
@@ -86,6 +90,28 @@ impl ODE<Dual, Watched> for Equations<Dual> {
     }
 }
 
+/// Remembers the last state: where rounding ends a run just before its end, the library's own
+/// outputs at given times have none there.
+struct Last(Watched);
+
+impl Solout<Dual, Watched> for Last {
+    fn solout<I>(
+        &mut self,
+        _: Dual,
+        _: Dual,
+        state: &Watched,
+        _: &Watched,
+        _: &mut I,
+        _: &mut Solution<Dual, Watched>,
+    ) -> ControlFlag<Dual, Watched>
+    where
+        I: Interpolation<Dual, Watched> + ?Sized,
+    {
+        self.0.0.clone_from(&state.0);
+        ControlFlag::Continue
+    }
+}
+
 /// Derivatives at fixed times along a stretch without events.
 fn along(
     course: &Course,
@@ -97,18 +123,17 @@ fn along(
     let number = |(n, value): (usize, &f64)| Dual::of(*value, states.iter().map(|it| it[n]));
     let z = Watched(state.iter().enumerate().map(number).collect());
     let most = usize::try_from(course.run.limits.calls)?;
-    let method = ExplicitRungeKutta::rkv655e()
+    let mut method = ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv655e()
         .rtol(Dual::constant(course.run.tolerance.relative))
         .atol(Dual::constant(course.run.tolerance.absolute))
         .filter(without_derivatives)
         .max_steps(most)
         .max_rejects(most);
-    let [begin, end] = [begin, end].map(Dual::constant);
-    let solution = IVP::ode(&equations, begin, end, z).t_eval([end]).method(method).solve();
-    let solution = solution.map_err(|why| format!("{why:?}"))?;
+    let ([begin, end], mut last) = ([begin, end].map(Dual::constant), Last(z.clone()));
+    solve_ode(&mut method, &equations, begin, end, &z, &mut last)
+        .map_err(|why| format!("{why:?}"))?;
     course.within_limits()?;
-    let end = solution.y.last().ok_or("the solution is empty")?;
-    let by: Vec<_> = end.0.iter().map(derivatives).collect();
+    let by: Vec<_> = last.0.0.iter().map(derivatives).collect();
     Ok((0..states.len()).map(|n| by.iter().map(|it| it[n]).collect()).collect())
 }
 
