@@ -18,10 +18,10 @@
 //! ```
 
 pub use crate::affine::{
-    Direction, Exponents, Expression, Forcing, Guard, LARGEST_DIMENSION, LeftOut, Limit,
-    LimitBuilder, Mode, ModeBuilder, Name, NoOrbit, NoReturn, Observable, Orbit, Passage, Place,
-    Plane, RationalError, Return, ReturnAttractor, ReturnBasins, ReturnBifurcation, ReturnBranch,
-    ReturnDiagram, ReturnDiagramStep, ReturnFamily, Returns, Row, Section, SectionMap, StartPoint,
-    Successor, SystemBuilder, SystemFile, TROUBLE, Tangent, UnresolvedReturn, Until, UntilBuilder,
-    ValueError, Watch,
+    BifurcationCurve, BifurcationPoint, CurveEnding, Direction, Exponents, Expression, Forcing,
+    Guard, LARGEST_DIMENSION, LeftOut, Limit, LimitBuilder, Mode, ModeBuilder, Name, NoOrbit,
+    NoReturn, Observable, Orbit, Passage, Place, Plane, RationalError, Return, ReturnAttractor,
+    ReturnBasins, ReturnBifurcation, ReturnBranch, ReturnDiagram, ReturnDiagramStep, ReturnFamily,
+    ReturnPlane, Returns, Row, Section, SectionMap, StartPoint, Successor, SystemBuilder,
+    SystemFile, TROUBLE, Tangent, UnresolvedReturn, Until, UntilBuilder, ValueError, Watch,
 };

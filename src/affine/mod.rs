@@ -28,7 +28,10 @@ pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 pub use arithmetic::clock::Time;
 pub use attractors::{Plane, ReturnAttractor, ReturnBasins, UnresolvedReturn};
-pub use continuation::{ReturnBifurcation, ReturnBranch, ReturnFamily};
+pub use continuation::{
+    BifurcationCurve, BifurcationPoint, CurveEnding, ReturnBifurcation, ReturnBranch, ReturnFamily,
+    ReturnPlane,
+};
 pub use events::{BITS, LONGEST};
 pub use gradient::derivative::{Gradient, NoGradient};
 pub use gradient::walk::Walk;

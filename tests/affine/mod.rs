@@ -7,6 +7,7 @@ mod brute;
 mod built;
 mod by_hand;
 mod close_rates;
+mod curves;
 mod decided;
 mod diagrams;
 mod drifts;

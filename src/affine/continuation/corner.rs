@@ -47,9 +47,8 @@ impl Curve<'_> {
     /// The corner's error is what the halving leaves, and the distance at which the corner is found
     /// from the other side if it is, but at least what is looked for.
     pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
-        let Approach { last: before, rest, .. } = self.approached(base, distance);
-        let least = SHARP * before.value.abs() + self.uncertainty(&before) + self.blur(&before);
-        let own = rest * before.tangent.rate.abs();
+        let (before, own) = self.end(base, distance);
+        let least = self.least_error(&before);
         let mut best = Corner { before, beyond: None, error: f64::INFINITY };
         for step in BEYOND {
             let before = &best.before;
@@ -69,6 +68,26 @@ impl Curve<'_> {
         let error = if best.beyond.is_none() { own } else { best.error };
         best.error = error.max(least);
         best
+    }
+
+    /// The same corner where nothing is looked for beyond it, as where no orbit is.
+    pub fn lost_corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
+        let (before, own) = self.end(base, distance);
+        let error = own.max(self.least_error(&before));
+        Corner { before, beyond: None, error }
+    }
+
+    /// The last orbit of the piece along the curve from a point, and what the halving leaves
+    /// uncertain of the parameter's value at the piece's end.
+    fn end(&self, base: &CurvePoint, distance: f64) -> (CurvePoint, f64) {
+        let Approach { last, rest, .. } = self.approached(base, distance);
+        let own = rest * last.tangent.rate.abs();
+        (last, own)
+    }
+
+    /// The least error that is said of a corner.
+    fn least_error(&self, before: &CurvePoint) -> f64 {
+        SHARP * before.value.abs() + self.uncertainty(before) + self.blur(before)
     }
 
     /// The distance in the parameter between the corner and where it is found from beyond; none

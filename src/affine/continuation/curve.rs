@@ -62,14 +62,18 @@ fn sum(one: &Change, other: &Change, share: f64) -> Change {
 impl<'a> Curve<'a> {
     /// The curve of a family whose parameter is followed between two values.
     pub fn new(family: &'a ReturnFamily<'a>, [from, to]: [f64; 2]) -> Option<Self> {
-        let (scales, dimension) = family.at(from, |map| {
+        Self::about(family, from, if from == to { 1.0 } else { (to - from).abs() })
+    }
+
+    /// The curve of a family about a value of its parameter, which is measured in this unit.
+    pub fn about(family: &'a ReturnFamily<'a>, value: f64, unit: f64) -> Option<Self> {
+        let (scales, dimension) = family.at(value, |map| {
             let system = map.system();
             let mut scales = [1.0; MOST];
             let own = system.scales.iter().chain([&system.time_scale]);
             scales.iter_mut().zip(own).for_each(|(it, own)| *it = *own);
             Some((scales, system.dimension()))
         })?;
-        let unit = if from == to { 1.0 } else { (to - from).abs() };
         Some(Self { family, unit, scales, dimension })
     }
 

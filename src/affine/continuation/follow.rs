@@ -90,12 +90,15 @@ impl OrbitCurve for Curve<'_> {
         }
         let Meaning { kind, event } = self.meaning(before, beyond.as_ref())?;
         let (value, orbit, error) = (before.value, before.orbit.clone(), *error);
-        Some(ReturnBifurcation { kind, value, error, event: Some(event), turns, orbit })
+        let (point, is_lost) = (before.clone(), beyond.is_none());
+        let event = Some(event);
+        Some(ReturnBifurcation { kind, value, error, event, turns, orbit, point, is_lost })
     }
 
     fn bifurcation(&self, noted: Noted<CurvePoint>) -> ReturnBifurcation {
-        let Noted { kind, point: CurvePoint { value, orbit, .. }, error, turns } = noted;
-        ReturnBifurcation { kind, value, error, event: None, turns, orbit }
+        let Noted { kind, point, error, turns } = noted;
+        let (value, orbit) = (point.value, point.orbit.clone());
+        ReturnBifurcation { kind, value, error, event: None, turns, orbit, point, is_lost: false }
     }
 
     fn kept(&self, point: &CurvePoint) -> (f64, Orbit) {

@@ -10,12 +10,16 @@
 //! its tangent and the corrector, [`corner`] the ends of its pieces, [`halving`] those of a doubled
 //! branch, and [`mod@follow`] what step control asks for. Read them in this order.
 
+mod again;
+mod bifurcation_curve;
 mod corner;
 mod curve;
 mod family;
 mod follow;
 mod halving;
+mod plane;
 mod point;
+mod traced;
 mod words;
 
 use super::returns::orbit::{NoOrbit, Orbit};
@@ -23,8 +27,12 @@ use super::returns::section::Guard;
 use super::run::place::Place;
 use crate::dynamics::continuation::steps::{FollowedCurve, follow};
 use crate::dynamics::continuation::{BifurcationKind, BranchEnding};
+pub use bifurcation_curve::{BifurcationCurve, BifurcationPoint};
 use curve::Curve;
 pub use family::ReturnFamily;
+pub use plane::ReturnPlane;
+use point::CurvePoint;
+pub use traced::CurveEnding;
 
 /// A branch of orbits of a return map.
 #[derive(Clone, Debug)]
@@ -52,6 +60,10 @@ pub struct ReturnBifurcation {
     pub turns: bool,
     /// The orbit there; at a corner as the branch comes to it.
     pub orbit: Orbit,
+    /// The same orbit as a point of the branch's curve.
+    point: CurvePoint,
+    /// Whether no orbit was found beyond a corner.
+    is_lost: bool,
 }
 
 impl ReturnBranch {

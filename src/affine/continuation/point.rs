@@ -6,7 +6,7 @@ use super::super::returns::shooting::Change;
 use super::family::OrbitShots;
 
 /// An orbit on the curve, and the curve's direction there.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct CurvePoint {
     pub value: f64,
     pub shots: OrbitShots,
@@ -19,7 +19,7 @@ pub(super) struct CurvePoint {
 }
 
 /// Rates of all points and of the parameter with the arc length.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Direction {
     pub points: Vec<Change>,
     pub rate: f64,

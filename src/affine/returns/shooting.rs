@@ -61,7 +61,7 @@ pub struct Image<P, W> {
 }
 
 /// Points that are to be an orbit.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Shots<P, W> {
     pub points: Vec<P>,
     pub images: Vec<Image<P, W>>,

@@ -1,0 +1,105 @@
+//! A bifurcation that is known on one line, found again on another.
+
+use super::super::returns::section::Guard;
+use super::ReturnBifurcation;
+use super::curve::Curve;
+use super::point::CurvePoint;
+use super::words::cyclic;
+use crate::dynamics::continuation::BifurcationKind;
+use crate::dynamics::continuation::steps::{OrbitCurve, OrbitPoint};
+
+/// What is looked for on each line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sought {
+    pub kind: BifurcationKind,
+    pub event: Option<Guard>,
+    /// Whether no orbit was found beyond a corner: then none is looked for on other lines.
+    pub is_lost: bool,
+}
+
+/// A bifurcation on a line.
+pub(super) struct OnLine {
+    pub point: CurvePoint,
+    /// Bound on the error of the value of the line's parameter.
+    pub error: f64,
+}
+
+/// Distances beyond the place at which a corner is expected where the piece may have ended.
+const ENDS: [f64; 2] = [2.0, 4.0];
+
+impl Sought {
+    pub fn of(found: &ReturnBifurcation) -> Self {
+        let ReturnBifurcation { kind, event, is_lost, .. } = *found;
+        Self { kind, event, is_lost }
+    }
+}
+
+impl Curve<'_> {
+    /// The bifurcation within a reach of the place where it is expected, along the branch.
+    ///
+    /// The branch is entered before that place, by the corrector, which holds the distance along
+    /// the branch and leaves the parameter free: so it is entered next to a fold, too.
+    pub fn found_again(
+        &self,
+        sought: &Sought,
+        expected: &CurvePoint,
+        reach: f64,
+    ) -> Option<OnLine> {
+        let start = self.corrected(expected, -reach)?;
+        match sought.kind {
+            BifurcationKind::Fold => self.zero(&start, reach, &OrbitPoint::rate),
+            BifurcationKind::Flip => self.zero(&start, reach, &OrbitPoint::flip),
+            BifurcationKind::NeimarkSacker => {
+                let (_, pairs) = start.torus();
+                self.zero(&start, reach, &|it| match it.torus() {
+                    (test, count) if count == pairs => test,
+                    _ => f64::NAN,
+                })
+            }
+            _ => self.end_of_piece(sought, expected, &start, reach),
+        }
+    }
+
+    /// The zero of a test along the branch, on the piece of the point that it is looked for from.
+    fn zero(
+        &self,
+        start: &CurvePoint,
+        reach: f64,
+        test: &dyn Fn(&CurvePoint) -> f64,
+    ) -> Option<OnLine> {
+        let end = self.corrected(start, 2.0 * reach)?;
+        let is_between = end.is_on_piece_of(start) && test(start) * test(&end) < 0.0;
+        let located =
+            if is_between { self.located(start, 2.0 * reach, test)? } else { return None };
+        if !located.point.is_on_piece_of(start) {
+            return None;
+        }
+        let error = self.error(&located);
+        Some(OnLine { point: self.refreshed(located.point), error })
+    }
+
+    /// The end of the piece on which a point lies, if it is the corner that is sought.
+    fn end_of_piece(
+        &self,
+        sought: &Sought,
+        expected: &CurvePoint,
+        start: &CurvePoint,
+        reach: f64,
+    ) -> Option<OnLine> {
+        // An event that passes the section makes another piece of the same orbits.
+        if cyclic(&start.orbit.events) != cyclic(&expected.orbit.events) {
+            return None;
+        }
+        let leaves = |distance: &f64| {
+            self.corrected(start, *distance).is_none_or(|it| !it.is_on_piece_of(start))
+        };
+        let distance = ENDS.map(|it| it * reach).into_iter().find(leaves)?;
+        let corner = match sought.is_lost {
+            true => self.lost_corner(start, distance),
+            false => Self::corner(self, start, distance),
+        };
+        let found = self.of_corner(&corner, false)?;
+        let is_same = found.kind == sought.kind && found.event == sought.event;
+        is_same.then_some(OnLine { point: corner.before, error: corner.error })
+    }
+}

@@ -1,0 +1,257 @@
+//! Step control in the plane of two parameters: a curve of bifurcations, line by line.
+
+use super::again::{OnLine, Sought};
+use super::curve::Curve;
+use super::plane::{Axis, ReturnPlane, Way, cosine, length};
+use super::point::{CurvePoint, Direction};
+use crate::affine::returns::shooting::{MOST, ReturnMap};
+use crate::dynamics::continuation::BifurcationKind;
+
+/// A bifurcation in the plane.
+#[derive(Clone)]
+pub(super) struct Traced {
+    pub at: [f64; 2],
+    /// The parameter along which it was found.
+    pub axis: Axis,
+    /// Bound on the error of that parameter's value.
+    pub error: f64,
+    /// The orbit on the line on which that parameter varies.
+    pub point: CurvePoint,
+}
+
+/// One way along a curve.
+pub(super) struct Trace {
+    pub points: Vec<Traced>,
+    pub ending: CurveEnding,
+}
+
+/// How one way along a curve of bifurcations ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveEnding {
+    /// The curve leaves the window.
+    Left,
+    /// The curve comes back to the place where it began.
+    Closed,
+    /// The bifurcation was not found beyond the last place.
+    Lost,
+    /// The curve has more points than are kept.
+    Long,
+}
+
+/// The first step, and the longest and the shortest, in widths of the window.
+const FIRST: f64 = 1e-3;
+const LONGEST: f64 = 0.03;
+const SHORTEST: f64 = 1e-6;
+/// First steps, of which the first that leads anywhere tells the curve's direction.
+const BEGINNINGS: [f64; 3] = [1e-3, 1e-4, 1e-5];
+/// Places on a curve before it is given up.
+const POINTS: usize = 5_000;
+/// Cosine of the largest turn of the curve in a step.
+const TURN: f64 = 0.95;
+/// The reaches along the branch within which a bifurcation is looked for, in steps: the step's
+/// error, which is of second order, has to be smaller, and all else that the branch has further
+/// away.
+const REACHES: [f64; 3] = [1.0, 0.2, 0.04];
+/// The reach of a first step, whose direction is not known, in steps.
+const WIDE: [f64; 4] = [1.0, 4.0, 0.2, 16.0];
+/// A curve passes a place that is within this share of a step.
+const BESIDE: f64 = 0.3;
+
+/// The tracer of one curve.
+pub(super) struct Tracer<'a> {
+    pub plane: &'a ReturnPlane<'a>,
+    pub sought: Sought,
+}
+
+/// A step from one place to another, in a direction of length 1.
+struct Step<'a> {
+    from: &'a Traced,
+    /// The place before, if there was one.
+    before: Option<&'a Traced>,
+    way: Way,
+    length: f64,
+}
+
+impl Tracer<'_> {
+    /// The directions in which a curve leaves a place; none where it was found nowhere near.
+    pub fn ways(&self, start: &Traced) -> Option<Way> {
+        const TRIES: [Way; 4] = [[0.0, 1.0], [0.0, -1.0], [1.0, 0.0], [-1.0, 0.0]];
+        BEGINNINGS.iter().find_map(|length| {
+            TRIES.iter().find_map(|way| {
+                let step = Step { from: start, before: None, way: *way, length: *length };
+                if self.plane.room(start.at, *way) < *length {
+                    return None;
+                }
+                let target = self.plane.moved(start.at, way.map(|it| it * length));
+                let found = self.near(&step, target, axis_of(*way), &WIDE)?;
+                Some(self.plane.way(start.at, found.at))
+            })
+        })
+    }
+
+    /// Follows the curve from a place in a direction; `told` hears the places.
+    pub fn trace(&self, start: &Traced, way: Way, told: &mut dyn FnMut([f64; 2])) -> Trace {
+        let mut way = way.map(|it| it / length(way));
+        let mut points: Vec<Traced> = Vec::new();
+        let mut step = FIRST;
+        loop {
+            let (from, before) = match points.len() {
+                0 => (start, None),
+                1 => (&points[0], Some(start)),
+                count => (&points[count - 1], Some(&points[count - 2])),
+            };
+            let next = Step { from, before, way, length: step };
+            let Some((next, has_left)) = self.step(&next) else {
+                if step > SHORTEST {
+                    step *= 0.5;
+                    continue;
+                }
+                let is_at_edge = self.plane.room(from.at, way) <= 10.0 * SHORTEST;
+                let ending = if is_at_edge { CurveEnding::Left } else { CurveEnding::Lost };
+                return Trace { points, ending };
+            };
+            let chord = self.plane.way(from.at, next.at);
+            if points.len() > 2 && self.passes([from, &next], start) {
+                points.push(start.clone());
+                return Trace { points, ending: CurveEnding::Closed };
+            }
+            told(next.at);
+            if length(chord) > 0.0 {
+                way = chord.map(|it| it / length(chord));
+                points.push(next);
+            }
+            if has_left || points.len() >= POINTS {
+                let ending = if has_left { CurveEnding::Left } else { CurveEnding::Long };
+                return Trace { points, ending };
+            }
+            step = (1.5 * step).min(LONGEST);
+        }
+    }
+
+    /// The next place, and whether it lies on the window's edge.
+    fn step(&self, step: &Step<'_>) -> Option<(Traced, bool)> {
+        let Step { from, way, .. } = *step;
+        let axis = axis_of(way);
+        let mut target = self.plane.moved(from.at, way.map(|it| it * step.length));
+        let fixed = 1 - axis;
+        let edge = self.plane.passed(fixed, target[fixed]);
+        if let Some(edge) = edge {
+            target = between(from.at, target, fixed, edge);
+        }
+        let found = self.near(step, target, axis, &REACHES)?;
+        let Some(side) = self.plane.passed(axis, found.at[axis]) else {
+            return Some((found, edge.is_some()));
+        };
+        let target = between(from.at, found.at, axis, side);
+        let found = self.near(step, target, fixed, &REACHES)?;
+        self.plane.passed(fixed, found.at[fixed]).is_none().then_some((found, true))
+    }
+
+    /// The bifurcation on the line through a place on which one parameter varies, if it lies where
+    /// a step may lead.
+    fn near(
+        &self,
+        step: &Step<'_>,
+        target: [f64; 2],
+        axis: Axis,
+        reaches: &[f64],
+    ) -> Option<Traced> {
+        let from = self.turned(step.from, step.way, axis)?;
+        self.plane.on_line(axis, target, |curve| {
+            let expected = self.expected(curve, step, from, target, axis);
+            reaches.iter().find_map(|reach| {
+                let reach = reach * step.length;
+                let OnLine { point, error } = curve.found_again(&self.sought, &expected, reach)?;
+                let mut at = target;
+                at[axis] = point.value;
+                let chord = self.plane.way(step.from.at, at);
+                let is_ahead = step.before.is_none() || cosine(chord, step.way) >= TURN;
+                is_ahead.then_some(Traced { at, axis, error, point })
+            })
+        })
+    }
+
+    /// The orbit at a place as a point of the line on which one parameter varies. Towards a corner
+    /// the point's direction leads on this line, too.
+    fn turned(&self, from: &Traced, way: Way, axis: Axis) -> Option<CurvePoint> {
+        if from.axis == axis {
+            return Some(from.point.clone());
+        }
+        let CurvePoint { shots, tangent, .. } = &from.point;
+        self.plane.on_line(axis, from.at, |curve| {
+            let along = match self.sought.kind {
+                BifurcationKind::Fold => Direction { points: tangent.points.clone(), rate: 0.0 },
+                _ => {
+                    // The corner's other side is on the same side of the curve.
+                    let side = -(tangent.rate * way[0] * way[1]).signum();
+                    let points = vec![[0.0; MOST]; shots.points.len()];
+                    Direction { points, rate: side * self.plane.width(axis) }
+                }
+            };
+            curve.point(from.at[axis], shots.clone(), &along)
+        })
+    }
+
+    /// The orbit that is expected at a place, by the change from the place before.
+    fn expected(
+        &self,
+        curve: &Curve<'_>,
+        step: &Step<'_>,
+        from: CurvePoint,
+        target: [f64; 2],
+        axis: Axis,
+    ) -> CurvePoint {
+        let value = target[axis];
+        let ahead = step.before.and_then(|before| {
+            let [last, next] = [before.at, target].map(|it| self.plane.way(step.from.at, it));
+            let share = length(next) / length(last);
+            let pairs = from.carried.iter().zip(&before.point.carried);
+            curve.family.at(value, |map| {
+                let ahead = pairs.map(|(from, before)| {
+                    let [from, before] = [from, before].map(|it| map.taken_up(it));
+                    let is_same = from.mode == before.mode;
+                    let change = map.apart(&before, &from).map(|it| it * share);
+                    is_same.then(|| map.carried(&map.moved(&from, &change, &from)))
+                });
+                ahead.collect::<Option<Vec<_>>>()
+            })
+        });
+        let carried = ahead.unwrap_or_else(|| from.carried.clone());
+        CurvePoint { value, carried, ..from }
+    }
+
+    /// Whether a curve passes a bifurcation between two of its places: it is what is found again on
+    /// the line on which the other was found.
+    pub fn passes(&self, [from, next]: [&Traced; 2], other: &Traced) -> bool {
+        let way = self.plane.way(from.at, next.at);
+        let to = self.plane.way(from.at, other.at);
+        let size = length(way);
+        let along = (way[0] * to[0] + way[1] * to[1]) / size;
+        let aside = (way[0] * to[1] - way[1] * to[0]).abs() / size;
+        let slack = BESIDE * size;
+        if !(aside <= slack && along >= -slack && along <= size + slack) {
+            return false;
+        }
+        let nearer = if along > 0.5 * size { next } else { from };
+        let back = self.plane.way(nearer.at, other.at);
+        let reach = length(back).max(FIRST * BESIDE);
+        let step = Step { from: nearer, before: None, way, length: reach };
+        let found = self.near(&step, other.at, other.axis, &WIDE);
+        found.is_some_and(|it| {
+            (it.at[other.axis] - other.at[other.axis]).abs() <= it.error + other.error
+        })
+    }
+}
+
+/// The parameter that changes less along a way: the curve crosses the lines on which it varies.
+fn axis_of(way: Way) -> Axis {
+    usize::from(way[0].abs() > way[1].abs())
+}
+
+/// The place between two others at which a parameter has a value.
+fn between(from: [f64; 2], to: [f64; 2], axis: Axis, value: f64) -> [f64; 2] {
+    let share = (value - from[axis]) / (to[axis] - from[axis]);
+    let mut there = std::array::from_fn(|n| from[n] + share * (to[n] - from[n]));
+    there[axis] = value;
+    there
+}
