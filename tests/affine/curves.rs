@@ -22,12 +22,7 @@ struct Varied {
 }
 
 impl Varied {
-    fn new(
-        text: &str,
-        section: Section,
-        names: [&'static str; 2],
-        set: &[(&str, f64)],
-    ) -> Self {
+    fn new(text: &str, section: Section, names: [&'static str; 2], set: &[(&str, f64)]) -> Self {
         let mut file = SystemFile::read("test.system.toml", text).unwrap();
         for (name, value) in set {
             file.set(name, *value, "here").unwrap();
@@ -83,7 +78,12 @@ fn show(curves: &[BifurcationCurve]) {
         let worst = it.points.iter().map(|it| it.error).fold(0.0, f64::max);
         eprintln!(
             "{} {:?} {} points {:?} to {:?} {:?} worst {worst:e}",
-            it.kind, it.event, it.points.len(), a.values, b.values, it.endings
+            it.kind,
+            it.event,
+            it.points.len(),
+            a.values,
+            b.values,
+            it.endings
         );
     }
 }
@@ -157,7 +157,12 @@ impl OneImpact {
 
 #[test]
 fn explore() {
-    let varied = Varied::new(system!("rigid-impact-oscillator"), Section::strobe(0.0), ["A", "frequency"], &[]);
+    let varied = Varied::new(
+        system!("rigid-impact-oscillator"),
+        Section::strobe(0.0),
+        ["A", "frequency"],
+        &[],
+    );
     let guess = varied.settled([0.3, 2.75], Some(&[-0.2978346517671801, -0.010812597735035047]), 0);
     for to in [0.6, 0.12] {
         let branch = varied.branch(&guess, 2, [0.3, to], 2.75);
@@ -168,9 +173,12 @@ fn explore() {
         for it in &curves {
             for p in &it.points {
                 let exact = OneImpact::new(p.values[1], 2.0);
-                let exact = if it.kind == BifurcationKind::Fold { exact.fold() } else { exact.flip() };
+                let exact =
+                    if it.kind == BifurcationKind::Fold { exact.fold() } else { exact.flip() };
                 let off = (exact - p.values[0]).abs();
-                if off > p.error || p.error > 1e-9 { eprintln!("{:?} off {off:e} error {:e}", p.values, p.error); }
+                if off > p.error || p.error > 1e-9 {
+                    eprintln!("{:?} off {off:e} error {:e}", p.values, p.error);
+                }
             }
         }
     }

@@ -38,6 +38,19 @@ pub enum CurveEnding {
     Long,
 }
 
+impl CurveEnding {
+    /// The name used in files.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Closed => "closed",
+            Self::Lost => "lost",
+            Self::Long => "long",
+        }
+    }
+}
+
 /// The first step, and the longest and the shortest, in widths of the window.
 const FIRST: f64 = 1e-3;
 const LONGEST: f64 = 0.03;

@@ -4,7 +4,6 @@ mod system;
 
 use super::help;
 use super::note;
-use super::orbits::Format;
 use super::shared::format::OutputFlags;
 use super::shared::long_work;
 use super::shared::model::{ModelFlags, ParametersJson};
@@ -15,11 +14,19 @@ use super::shared::system_choice::SystemChoice;
 use super::shared::terminal::endless_notice;
 use crate::case::Problem;
 use anyhow::{Result, bail};
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueEnum};
 use percuss::Segment;
 use percuss::dynamics::batches::{BATCHES, Batches, LEAST_COUNT, LEAST_LENGTH, Stationarity};
 use percuss::dynamics::lyapunov::Spectrum;
 use serde::Serialize;
+
+/// The output format of exponents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Json,
+    Png,
+    Svg,
+}
 
 /// Compute the Lyapunov exponents of one motion, with their errors; of the oscillator its drift too
 ///

@@ -5,13 +5,3 @@ pub(super) mod follow;
 pub(super) mod json;
 mod of_system;
 mod table;
-
-use clap::ValueEnum;
-
-/// The output format of a branch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Format {
-    Json,
-    Png,
-    Svg,
-}

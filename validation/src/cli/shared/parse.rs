@@ -228,6 +228,17 @@ pub(in crate::cli) fn range(text: &str) -> Result<Typed<PlotWindow>, String> {
     Ok(Typed { value, text: text.to_owned() })
 }
 
+/// LO,HI, two numbers that rise.
+pub(in crate::cli) fn rising(text: &str) -> Result<Typed<[f64; 2]>, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok([low, high]) if low < high && low.is_finite() && high.is_finite() => {
+            Ok(Typed { value: [*low, *high], text: text.to_owned() })
+        }
+        _ => Err("accepted is LO,HI, two numbers of which the second is larger".to_owned()),
+    }
+}
+
 /// I/N, a shard of so many.
 pub(in crate::cli) fn shard(text: &str) -> Result<[u32; 2], String> {
     let parts = text.split_once('/').map(|(shard, shards)| [shard.parse(), shards.parse()]);

@@ -119,6 +119,16 @@ impl PictureFlags {
         }
     }
 
+    /// Refuses what a picture of curves in two parameters does not show.
+    pub(in crate::cli) fn refuse_show_of_curves(&self) -> Result<()> {
+        match &self.show {
+            Some(show) => bail!(
+                "--show {show} is not accepted with --second, whose picture shows both parameters"
+            ),
+            None => Ok(()),
+        }
+    }
+
     /// Refuses a range where panels are several and each has its own.
     pub(in crate::cli) fn refuse_range(&self) -> Result<()> {
         match &self.range {

@@ -1,10 +1,11 @@
 //! `continue`: a branch of periodic orbits, of the impact oscillator or of a SYSTEM.
 
+mod curves;
 mod draw;
+mod draw_curves;
 pub(crate) mod of_system;
 
 use super::super::help;
-use super::Format;
 use super::find::{first_scanned, preferred};
 use super::json::{BranchJson, Doubled, Followed, JsonPlace, Special};
 use crate::case::Problem;
@@ -19,7 +20,7 @@ use crate::cli::shared::system_choice::SystemChoice;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
 use crate::picture::{self, Figure};
 use anyhow::{Result, anyhow, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use draw::{DrawnBifurcation, DrawnOrbit, DrawnPoints};
 use percuss::dynamics::continuation::{
     BifurcationKind, Branch, BranchEnding, Criticality, Doubling, Family,
@@ -49,6 +50,12 @@ pub(crate) struct Arguments {
     /// Forcing periods of the orbit, with SYSTEM returns to the section
     #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true)]
     period: u32,
+    /// With SYSTEM: a second parameter, in which the bifurcations that are found are followed
+    #[arg(long, value_name = "NAME")]
+    second: Option<String>,
+    /// Values of --second between which curves are followed, its own value among them
+    #[arg(long, value_name = "LO,HI", value_parser = parse::rising, allow_hyphen_values = true)]
+    second_range: Option<Typed<[f64; 2]>>,
     /// Follows the branch of twice the period from the first flip too
     #[arg(long)]
     doubled: bool,
@@ -65,8 +72,22 @@ pub(crate) struct Arguments {
     pub(crate) model: ModelFlags,
 }
 
+/// The output format of a branch, or of curves of bifurcations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Json,
+    /// With --second
+    Csv,
+    Png,
+    Svg,
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
-    let outputs = arguments.output.outputs(|_| Format::Json)?;
+    let usual = if arguments.second.is_some() { Format::Csv } else { Format::Json };
+    let outputs = arguments.output.outputs(|_| usual)?;
+    if arguments.second.is_none() && outputs.any(|it| it == Format::Csv) {
+        bail!("--format csv is not accepted without --second: json, png and svg are");
+    }
     arguments.picture.check(&outputs.pictures())?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
         return of_system::run(arguments, &chosen, &outputs);
@@ -122,7 +143,35 @@ impl Arguments {
         if let Some(transient) = self.transient {
             bail!("{}", without_system("--transient", &transient));
         }
+        if let Some(second) = &self.second {
+            bail!("{}", without_system("--second", second));
+        }
+        if let Some(range) = &self.second_range {
+            bail!("{}", without_system("--second-range", range));
+        }
         Ok(())
+    }
+
+    /// Refuses a second parameter where branches alone are followed.
+    pub(crate) fn refuse_second(&self) -> Result<()> {
+        match self.second()? {
+            Some((second, _)) => bail!("--second {second} is not accepted in a sweep"),
+            None => Ok(()),
+        }
+    }
+
+    /// The second parameter and its range, if bifurcations are followed in one.
+    fn second(&self) -> Result<Option<(&str, &Typed<[f64; 2]>)>> {
+        match (&self.second, &self.second_range) {
+            (Some(second), Some(range)) => Ok(Some((second, range))),
+            (None, None) => Ok(None),
+            (Some(second), None) => {
+                bail!("--second {second} is not accepted alone: it is with --second-range LO,HI")
+            }
+            (None, Some(range)) => {
+                bail!("--second-range {range} is not accepted alone: it is with --second NAME")
+            }
+        }
     }
 
     /// Refuses the own flag of the parameter that varies.

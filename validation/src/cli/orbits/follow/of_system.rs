@@ -1,9 +1,8 @@
 //! `continue SYSTEM`: a branch of orbits of a section's return map.
 
-use super::super::Format;
 use super::super::of_system::{PointJson, guess, points};
-use super::Arguments;
 use super::draw::{self, DrawnBifurcation, DrawnOrbit, DrawnPoints};
+use super::{Arguments, Format, curves};
 use crate::cli::shared::long_work;
 use crate::cli::shared::output;
 use crate::cli::shared::outputs::Outputs;
@@ -64,6 +63,9 @@ pub(super) fn run(
 ) -> Result<u8> {
     let parameter = &arguments.parameter;
     check(arguments, chosen)?;
+    if let Some((second, range)) = arguments.second()? {
+        return curves::run(arguments, chosen, [parameter, second], range, outputs);
+    }
     let at = |value: f64| -> Result<System, SystemError> {
         let mut file = chosen.file.clone();
         file.set(parameter, value, "--parameter")?;

@@ -20,6 +20,7 @@ pub(in crate::cli::sweep) struct SystemBranchWork {
 impl SystemBranchWork {
     pub(in crate::cli::sweep) fn new(swept: SweptSystem, arguments: Arguments) -> Result<Self> {
         of_system::check(&arguments, &swept.chosen)?;
+        arguments.refuse_second()?;
         swept.check(&arguments.section)?;
         Ok(Self { swept, arguments })
     }
