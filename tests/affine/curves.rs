@@ -72,22 +72,6 @@ impl Varied {
     }
 }
 
-fn show(curves: &[BifurcationCurve]) {
-    for it in curves {
-        let [a, b] = [&it.points[0], &it.points[it.points.len() - 1]];
-        let worst = it.points.iter().map(|it| it.error).fold(0.0, f64::max);
-        eprintln!(
-            "{} {:?} {} points {:?} to {:?} {:?} worst {worst:e}",
-            it.kind,
-            it.event,
-            it.points.len(),
-            a.values,
-            b.values,
-            it.endings
-        );
-    }
-}
-
 /// The orbits of the rigid impact oscillator that impact once in several forcing periods, in closed
 /// form (Shaw and Holmes, J. Sound Vib. 90 (1983) 129): between impacts the motion is the forced
 /// one and a free one, of which both ends are known.
@@ -155,31 +139,175 @@ impl OneImpact {
     }
 }
 
-#[test]
-fn explore() {
-    let varied = Varied::new(
-        system!("rigid-impact-oscillator"),
-        Section::strobe(0.0),
-        ["A", "frequency"],
-        &[],
-    );
-    let guess = varied.settled([0.3, 2.75], Some(&[-0.2978346517671801, -0.010812597735035047]), 0);
-    for to in [0.6, 0.12] {
-        let branch = varied.branch(&guess, 2, [0.3, to], 2.75);
-        let time = std::time::Instant::now();
-        let curves = varied.curves(&branch, [[0.3, to], [2.1, 3.5]], 2.75);
-        show(&curves);
-        eprintln!("{:?}", time.elapsed());
-        for it in &curves {
-            for p in &it.points {
-                let exact = OneImpact::new(p.values[1], 2.0);
-                let exact =
-                    if it.kind == BifurcationKind::Fold { exact.fold() } else { exact.flip() };
-                let off = (exact - p.values[0]).abs();
-                if off > p.error || p.error > 1e-9 {
-                    eprintln!("{:?} off {off:e} error {:e}", p.values, p.error);
-                }
-            }
-        }
+/// An orbit with one impact in two forcing periods, near enough for Newton's method.
+const TWO_PERIODS: [f64; 2] = [-0.2978, -0.0108];
+
+/// Every place is on the curve within its error, with the roundings of the value it is held to, and
+/// no error is larger than `most`.
+fn assert_on(curve: &BifurcationCurve, most: f64, exact: impl Fn([f64; 2]) -> f64) {
+    for it in &curve.points {
+        let (off, [value, _]) = ((exact(it.values) - it.values[0]).abs(), it.values);
+        let within = it.error + 64.0 * f64::EPSILON * value.abs();
+        assert!(off <= within && it.error <= most, "{:?}: {off} {}", it.values, it.error);
     }
+}
+
+/// The ends of a curve.
+fn ends(curve: &BifurcationCurve) -> [[f64; 2]; 2] {
+    [curve.points[0].values, curve.points[curve.points.len() - 1].values]
+}
+
+fn range(curve: &BifurcationCurve, axis: usize) -> [f64; 2] {
+    let values = curve.points.iter().map(|it| it.values[axis]);
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], it| [a.min(it), b.max(it)])
+}
+
+/// The least force at the fold is at a frequency of 2.42, where the curve turns back in it.
+#[test]
+fn folds_of_an_impact_oscillator_are_those_of_its_closed_form() {
+    let text = system!("rigid-impact-oscillator");
+    let varied = Varied::new(text, Section::strobe(0.0), ["A", "frequency"], &[]);
+    let guess = varied.settled([0.3, 2.75], Some(&TWO_PERIODS), 0);
+    let branch = varied.branch(&guess, 2, [0.3, 0.1], 2.75);
+    let curves = varied.curves(&branch, [[0.3, 0.1], [2.2, 3.5]], 2.75);
+    let [fold] = &curves[..] else { panic!("{curves:?}") };
+    assert_eq!((fold.kind, fold.endings), (BifurcationKind::Fold, [CurveEnding::Left; 2]));
+    assert_on(fold, 1e-12, |[_, frequency]| OneImpact::new(frequency, 2.0).fold());
+    let [least, _] = range(fold, 0);
+    assert!(least < 0.109, "{least}");
+    let mut ends = ends(fold);
+    ends.sort_by(|a, b| a[1].total_cmp(&b[1]));
+    assert_eq!((ends[0][1], ends[1][0]), (2.2, 0.3));
+}
+
+/// The curve turns back in the second parameter, the force, at a frequency of 2.28.
+#[test]
+fn flips_of_an_impact_oscillator_are_those_of_its_closed_form() {
+    let text = system!("rigid-impact-oscillator");
+    let varied = Varied::new(text, Section::strobe(0.0), ["frequency", "A"], &[]);
+    let guess = varied.settled([2.75, 0.25], Some(&TWO_PERIODS), 0);
+    let branch = varied.branch(&guess, 2, [2.75, 2.19], 0.25);
+    let curves = varied.curves(&branch, [[2.75, 2.19], [0.2, 0.4]], 0.25);
+    let own: Vec<_> = curves.iter().filter(|it| it.kind == BifurcationKind::Flip).collect();
+    let [flip] = &own[..] else { panic!("{curves:?}") };
+    assert_eq!(flip.endings, [CurveEnding::Left; 2]);
+    let [least, most] = range(flip, 1);
+    assert!(least < 0.2275 && most == 0.4, "{least} {most}");
+    assert_eq!(range(flip, 0)[0], 2.19);
+    for it in &flip.points {
+        let [frequency, force] = it.values;
+        let beside = [-1.0, 1.0]
+            .map(|side| OneImpact::new(frequency + side * (it.error + 1e-14), 2.0).flip() - force);
+        // Where the curve turns both are on one side, or it is between them.
+        let is_turn = (force - least).abs() < 1e-9;
+        assert!(beside[0] * beside[1] <= 0.0 || is_turn, "{:?} {beside:?}", it.values);
+        assert!(it.error < 1e-11 || (force - least).abs() < 1e-4, "{:?} {}", it.values, it.error);
+    }
+}
+
+/// A mass that meets a spring whose distance grows with two parameters in every direction.
+const ROUND: &str = r#"
+schema = 1
+name = "round"
+states = ["x", "v"]
+forcing = { omega = "frequency", phi = 0 }
+[parameters]
+frequency = 0.8
+zeta = 0.05
+A = 0.6
+gap = 1.4
+c = 0.0
+d = 0.0
+[let]
+distance = "gap + c*c + d*d"
+[[mode]]
+name = "free"
+equations = ["x' = v", "v' = A*cos - 2*zeta*v - x"]
+[[mode.until]]
+name = "touch"
+guard = "x > distance"
+next = [{ mode = "contact" }]
+[[mode]]
+name = "contact"
+equations = ["x' = v", "v' = A*cos - 2*zeta*v - x - 5*(x - distance)"]
+[[mode.until]]
+name = "leave"
+guard = "x < distance"
+next = [{ mode = "free" }]
+[start]
+mode = "free"
+x = 0
+v = 0
+"#;
+
+/// The spring is touched on a circle: both touches of the branch are on one curve, which is closed
+/// and turns in both parameters.
+#[test]
+fn a_closed_curve_of_grazings_is_followed_once_around() {
+    let varied = Varied::new(ROUND, Section::strobe(0.0), ["c", "d"], &[]);
+    let branch = varied.branch(&varied.settled([-1.8, 0.1], None, 300), 1, [-1.8, 1.8], 0.1);
+    let kinds: Vec<_> = branch.bifurcations.iter().map(|it| it.kind).collect();
+    let [grazing, flip] = [BifurcationKind::Grazing, BifurcationKind::Flip];
+    assert_eq!(kinds, [grazing, flip, flip, grazing]);
+    let curves = varied.curves(&branch, [[-1.8, 1.8], [-2.0, 2.0]], 0.1);
+    let told: Vec<_> = curves.iter().map(|it| (it.kind, it.endings)).collect();
+    assert_eq!(told, [grazing, flip].map(|it| (it, [CurveEnding::Closed; 2])));
+    let squared = 0.6 / (0.36_f64).hypot(0.08) - 1.4;
+    assert_circle(&curves[0], squared.sqrt());
+    // The flip depends on the distance alone, too.
+    assert_circle(&curves[1], branch.bifurcations[1].value.hypot(0.1));
+}
+
+fn assert_circle(circle: &BifurcationCurve, radius: f64) {
+    for it in &circle.points {
+        let [c, d] = it.values;
+        // Inside and outside of the circle within the error, or beside its top.
+        let error = it.error + 8.0 * f64::EPSILON;
+        let off = [-1.0, 1.0].map(|side| (c + side * error).hypot(d) - radius);
+        let is_top = (d.abs() - radius).abs() < 1e-9;
+        assert!(off[0] * off[1] <= 0.0 || is_top, "{:?} {} {off:?}", it.values, it.error);
+        assert!(it.error <= 1e-10 || c.abs() < 0.1 * radius, "{:?} {}", it.values, it.error);
+    }
+    let [low, high] = range(circle, 1);
+    assert!(low < -0.999 * radius && high > 0.999 * radius, "{low} {high} {radius}");
+}
+
+/// Each of several places is found by a branch in the first parameter where the second has its
+/// value, and both ends are where the window ends.
+#[test]
+fn a_curve_is_where_branches_in_one_parameter_have_the_bifurcation() {
+    let text = system!("buck-converter");
+    let varied = Varied::new(text, Section::event("clock"), ["Vin", "R"], &[]);
+    let branch = varied.branch(&varied.settled([22.0, 22.0], None, 200), 1, [22.0, 26.0], 22.0);
+    let curves = varied.curves(&branch, [[22.0, 26.0], [15.0, 30.0]], 22.0);
+    let [flip] = &curves[..] else { panic!("{curves:?}") };
+    let mut seconds = ends(flip).map(|it| it[1]);
+    seconds.sort_by(f64::total_cmp);
+    assert_eq!((seconds, flip.endings), ([15.0, 30.0], [CurveEnding::Left; 2]));
+    for it in flip.points.iter().step_by(9) {
+        let [value, second] = it.values;
+        let guess = varied.settled([22.0, second], None, 200);
+        let branch = varied.branch(&guess, 1, [22.0, 26.0], second);
+        let [own] = &branch.bifurcations[..] else { panic!("{second}") };
+        assert_eq!(own.kind, BifurcationKind::Flip);
+        assert!((own.value - value).abs() <= own.error + it.error, "{value} {own:?}");
+        assert!(it.error <= 1e-10 * value, "{}", it.error);
+    }
+}
+
+/// A rigid stop is touched where the free motion is as large as the gap, whatever the frequency;
+/// beyond the touch no orbit is found.
+#[test]
+fn a_rigid_stop_is_touched_along_the_response() {
+    let text = system!("rigid-impact-oscillator");
+    let varied = Varied::new(text, Section::strobe(0.0), ["A", "frequency"], &[]);
+    let branch = varied.branch(&varied.settled([0.5, 2.75], None, 300), 1, [0.5, 0.9], 2.75);
+    // The window begins at the system's own value: the curve goes one way alone.
+    let curves = varied.curves(&branch, [[0.5, 0.9], [2.75, 3.5]], 2.75);
+    let graze = curves.iter().find(|it| it.kind == BifurcationKind::Grazing).unwrap();
+    assert_on(graze, 1e-10, |[_, frequency]| STOP / OneImpact::new(frequency, 1.0).response);
+    let mut ends = ends(graze);
+    ends.sort_by(|a, b| a[1].total_cmp(&b[1]));
+    assert_eq!((ends[0][1], ends[1][0]), (2.75, 0.9));
+    assert_eq!(graze.endings, [CurveEnding::Left; 2]);
 }

@@ -94,6 +94,62 @@ fn the_doubled_branch_of_period_three() {
     assert_eq!(doubled["complete"], true);
 }
 
+/// A converter's orbit and the flags of its curve of flips.
+const CONVERTER: [&str; 12] = [
+    "continue",
+    "buck-converter",
+    "--section",
+    "clock",
+    "--transient",
+    "200",
+    "--from",
+    "24",
+    "--to",
+    "25",
+    "--period",
+    "1",
+];
+
+#[test]
+fn the_curve_of_a_converters_flips() {
+    let flags = ["--parameter", "Vin", "--second", "R", "--second-range", "21.5,22.5"];
+    let told = |threads: &str| {
+        let output = run(&[&CONVERTER[..], &flags, &["--threads", threads]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    let csv = told("1");
+    assert_eq!(csv, told("2"));
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some("curve,type,parameter,second,error,event"));
+    let rows: Vec<Vec<&str>> = lines.map(|it| it.split(',').collect()).collect();
+    assert!(rows.iter().all(|it| it[..2] == ["0", "flip"] && it[5].is_empty()), "{csv}");
+    let mut ends = [rows[0][3], rows[rows.len() - 1][3]];
+    ends.sort_unstable();
+    assert_eq!(ends, ["21.5", "22.5"]);
+    // The branch's own flip is a place of the curve.
+    let (branch, _) = json(&[&CONVERTER[..], &["--parameter", "Vin"]].concat(), 0);
+    let own = branch["bifurcations"][0]["value"].to_string();
+    assert!(rows.iter().any(|it| it[2] == own && it[3] == "22"), "{own} {csv}");
+}
+
+#[test]
+fn a_second_parameter_is_refused_where_it_does_not_fit() {
+    let with = |more: &[&'static str]| [&CONVERTER[..], &["--parameter", "Vin"], more].concat();
+    refused(&with(&["--second", "R"]), &["--second R", "--second-range LO,HI"]);
+    refused(&with(&["--second-range", "1,2"]), &["--second-range 1,2", "--second NAME"]);
+    let range = |name: &'static str, range: &'static str| {
+        with(&["--second", name, "--second-range", range])
+    };
+    refused(&range("mass", "1,2"), &["--second", "mass", "gain"]);
+    refused(&range("Vin", "1,2"), &["--second Vin", "another"]);
+    refused(&range("R", "23,30"), &["--second-range 23,30", "22"]);
+    refused(&range("L", "0,1"), &["--second-range 0,1"]);
+    let set = ["--second", "R", "--second-range", "20,30", "--format", "csv", "--show", "v"];
+    refused(&with(&set), &["--show v"]);
+    refused(&with(&["--format", "csv"]), &["--format csv", "--second"]);
+}
+
 #[test]
 fn bad_input_is_one_line() {
     refused(&["orbit"], &["--period"]);

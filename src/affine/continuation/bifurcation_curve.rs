@@ -86,6 +86,9 @@ fn traced(found: &ReturnBifurcation, second: f64) -> Traced {
     Traced { at: [*value, second], axis: 0, error: *error, point: point.clone() }
 }
 
+/// Places after which half of a way along a curve is said to be done: its length is not known.
+const USUAL: f64 = 40.0;
+
 /// The curve through a place, from one end to the other.
 fn whole(
     tracer: &Tracer<'_>,
@@ -93,16 +96,14 @@ fn whole(
     told: &mut dyn FnMut(f64),
 ) -> (Vec<Traced>, [CurveEnding; 2]) {
     let Some(way) = tracer.ways(&start) else { return (vec![start], [CurveEnding::Lost; 2]) };
-    let mut half = 0.0;
-    let mut share = |_: [f64; 2]| told(half);
-    let Trace { points: ahead, ending: last } = tracer.trace(&start, way, &mut share);
+    let share = |half: f64, count: usize| half + 0.5 * count as f64 / (count as f64 + USUAL);
+    let Trace { points: ahead, ending: last } =
+        tracer.trace(&start, way, &mut |count| told(share(0.0, count)));
     if last == CurveEnding::Closed {
         return ([vec![start], ahead].concat(), [last; 2]);
     }
-    half = 0.5;
-    let mut share = |_: [f64; 2]| told(half);
     let Trace { points: mut whole, ending: first } =
-        tracer.trace(&start, way.map(|it| -it), &mut share);
+        tracer.trace(&start, way.map(|it| -it), &mut |count| told(share(0.5, count)));
     whole.reverse();
     whole.push(start);
     whole.extend(ahead);

@@ -102,8 +102,8 @@ impl Tracer<'_> {
         })
     }
 
-    /// Follows the curve from a place in a direction; `told` hears the places.
-    pub fn trace(&self, start: &Traced, way: Way, told: &mut dyn FnMut([f64; 2])) -> Trace {
+    /// Follows the curve from a place in a direction; `told` hears how many places there are.
+    pub fn trace(&self, start: &Traced, way: Way, told: &mut dyn FnMut(usize)) -> Trace {
         let mut way = way.map(|it| it / length(way));
         let mut points: Vec<Traced> = Vec::new();
         let mut step = FIRST;
@@ -128,7 +128,7 @@ impl Tracer<'_> {
                 points.push(start.clone());
                 return Trace { points, ending: CurveEnding::Closed };
             }
-            told(next.at);
+            told(points.len());
             if length(chord) > 0.0 {
                 way = chord.map(|it| it / length(chord));
                 points.push(next);

@@ -405,6 +405,11 @@ Examples:
       --parameter Vin --from 22 --to 26 --period 1 --show v-Vref \\
       --size 80x60 --output doubling.png --output doubling.json
       a picture of the branch, and its data
+  percuss continue buck-converter --section clock --transient 200 \\
+      --parameter Vin --from 22 --to 26 --period 1 --second R \\
+      --second-range 15,30 --output flips.csv
+      where it doubles in two parameters: curve, type, parameter,
+      second, error, event
 
 Words:
   branch          the orbits that one orbit becomes as the parameter

@@ -319,6 +319,10 @@ fn branch_of_a_system() {
     let found = json_of(&[&buck[..], &doubles].concat(), 0);
     assert_valid("continue-system.schema.json", &found);
     assert_eq!(found["bifurcations"][0]["type"], "flip");
+    let second = ["--second", "R", "--second-range", "21.9,22.1", "--format", "json"];
+    let curves = json_of(&[&buck[..], &doubles, &second].concat(), 0);
+    assert_valid("continue-second.schema.json", &curves);
+    assert_eq!(curves["curves"][0]["endings"], serde_json::json!(["left", "left"]));
     // Impacts that accumulate have no orbit.
     let ball = ["continue", "bouncing-ball", "--section", "impact", "--transient", "90"];
     let varied = ["--parameter", "g", "--from", "1", "--to", "2", "--period", "1"];
