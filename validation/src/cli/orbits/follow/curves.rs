@@ -3,7 +3,7 @@
 use super::super::of_system::guess;
 use super::draw_curves;
 use super::of_system::branch;
-use super::{Arguments, Format};
+use super::{Arguments, Format, Second};
 use crate::cli::shared::long_work;
 use crate::cli::shared::output;
 use crate::cli::shared::outputs::Outputs;
@@ -73,11 +73,12 @@ impl Plane<'_> {
 pub(super) fn run(
     arguments: &Arguments,
     chosen: &ChosenSystem,
-    names: [&str; 2],
-    range: &Typed<[f64; 2]>,
+    second: &Second<'_>,
     outputs: &Outputs<Format>,
 ) -> Result<u8> {
     arguments.picture.refuse_show_of_curves()?;
+    let Second { name, range } = *second;
+    let names = [arguments.parameter.as_str(), name];
     let window = [[arguments.from.value, arguments.to.value], range.value];
     let plane = Plane { chosen, names, window };
     let (first, own) = begun(arguments, &plane, range)?;

@@ -29,7 +29,8 @@ pub(super) fn figure(
     curves: &[BifurcationCurve],
 ) -> Figure {
     let mut layers: Vec<Layer> = curves.iter().map(line).collect();
-    layers.extend(curves.iter().enumerate().filter_map(|(n, curve)| name(system, n, curve)));
+    let numbered = curves.iter().enumerate();
+    layers.extend(numbered.filter_map(|(n, curve)| name(system, [n, curves.len()], curve)));
     let is_there = |kind: &BifurcationKind| curves.iter().any(|it| it.kind == *kind);
     let entry = |kind: BifurcationKind| KeyEntry {
         name: kind.to_string(),
@@ -55,9 +56,10 @@ fn line(curve: &BifurcationCurve) -> Layer {
     Layer::Line { points, colour: colour(curve.kind), width: 2.4, stroke: Stroke::Solid }
 }
 
-/// The number of a curve and its event, beside its middle.
-fn name(system: &System, n: usize, curve: &BifurcationCurve) -> Option<Layer> {
-    let at = curve.points.get(curve.points.len() / 2)?.values;
+/// The number of a curve and its event, each of several further along its curve: they are apart
+/// where curves run side by side.
+fn name(system: &System, [n, count]: [usize; 2], curve: &BifurcationCurve) -> Option<Layer> {
+    let at = curve.points.get(curve.points.len() * (n + 1) / (count + 1))?.values;
     let event = event(system, curve).map(|it| format!(" {it}")).unwrap_or_default();
     Some(Layer::Named { at, name: format!("{n}{event}"), colour: colour(curve.kind) })
 }

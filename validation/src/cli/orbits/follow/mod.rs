@@ -72,6 +72,12 @@ pub(crate) struct Arguments {
     pub(crate) model: ModelFlags,
 }
 
+/// A second parameter, and the values between which bifurcations are followed in it.
+struct Second<'a> {
+    name: &'a str,
+    range: &'a Typed<[f64; 2]>,
+}
+
 /// The output format of a branch, or of curves of bifurcations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
@@ -155,15 +161,15 @@ impl Arguments {
     /// Refuses a second parameter where branches alone are followed.
     pub(crate) fn refuse_second(&self) -> Result<()> {
         match self.second()? {
-            Some((second, _)) => bail!("--second {second} is not accepted in a sweep"),
+            Some(Second { name, .. }) => bail!("--second {name} is not accepted in a sweep"),
             None => Ok(()),
         }
     }
 
     /// The second parameter and its range, if bifurcations are followed in one.
-    fn second(&self) -> Result<Option<(&str, &Typed<[f64; 2]>)>> {
+    fn second(&self) -> Result<Option<Second<'_>>> {
         match (&self.second, &self.second_range) {
-            (Some(second), Some(range)) => Ok(Some((second, range))),
+            (Some(name), Some(range)) => Ok(Some(Second { name, range })),
             (None, None) => Ok(None),
             (Some(second), None) => {
                 bail!("--second {second} is not accepted alone: it is with --second-range LO,HI")

@@ -63,8 +63,8 @@ pub(super) fn run(
 ) -> Result<u8> {
     let parameter = &arguments.parameter;
     check(arguments, chosen)?;
-    if let Some((second, range)) = arguments.second()? {
-        return curves::run(arguments, chosen, [parameter, second], range, outputs);
+    if let Some(second) = arguments.second()? {
+        return curves::run(arguments, chosen, &second, outputs);
     }
     let at = |value: f64| -> Result<System, SystemError> {
         let mut file = chosen.file.clone();
