@@ -340,8 +340,12 @@ def moved(run, rates, step):
 
 def differences(make, setup, course, steps):
     """Derivatives by differences of whole runs. `steps` takes the rates of a name, and gives the
-    two steps of that name between whose runs the difference is taken. A name has none where the
-    two runs have other events."""
+    two steps of that name between whose runs the difference is taken. A name has none where one of
+    the two runs has other events than the course."""
+
+    def word(course):
+        return [(it["event"], it["mode"]) for it in course.events]
+
     found = []
     for rates in course.run["gradients"]:
         below, above = steps(rates)
@@ -351,8 +355,7 @@ def differences(make, setup, course, steps):
             other.meter = course.meter
             make(setup, other)
             runs.append(other)
-        words = [[(it["event"], it["mode"]) for it in run.events] for run in runs]
-        if words[0] != words[1]:
+        if any(word(run) != word(course) for run in runs):
             continue
         first, last = runs
 

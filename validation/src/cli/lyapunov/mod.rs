@@ -24,8 +24,6 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
     Json,
-    Png,
-    Svg,
 }
 
 /// Compute the Lyapunov exponents of one motion, with their errors; of the oscillator its drift too
