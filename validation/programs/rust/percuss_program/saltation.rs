@@ -1,5 +1,5 @@
-//! Derivatives by experts: one of percuss's own engines finds the events, a library's derivatives of
-//! each stretch between two of them are taken anew, and the jump at its end is added by hand.
+//! Derivatives by experts: one of percuss's own engines finds the events, a library's derivatives
+//! of each stretch between two of them are taken anew, and the jump at its end is added by hand.
 
 use super::derivatives::{Passed, Stretch, chained};
 use super::{Course, Event, Mode};
