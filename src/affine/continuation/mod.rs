@@ -8,7 +8,9 @@
 //!
 //! [`family`] has the maps at the parameter's values, [`point`] the points of the curve, [`curve`]
 //! its tangent and the corrector, [`corner`] the ends of its pieces, [`halving`] those of a doubled
-//! branch, and [`mod@follow`] what step control asks for. Read them in this order.
+//! branch, and [`mod@follow`] what step control asks for. Read them in this order. In two
+//! parameters, [`plane`] has the lines on which one varies, [`again`] a bifurcation on one of them,
+//! [`traced`] the steps from line to line, and [`bifurcation_curve`] whole curves.
 
 mod again;
 mod bifurcation_curve;

@@ -24,7 +24,7 @@ pub(super) type Way = [f64; 2];
 impl<'a> ReturnPlane<'a> {
     /// The plane of a section and of a window, which has the ends of each parameter's interval;
     /// `system` is the system at a pair of values, and `longest` the longest time of a return that
-    /// is waited for, if not that of [`SectionMap::new`](super::super::returns::map::SectionMap::new).
+    /// is waited for, if not that of [`ReturnFamily::new`].
     pub fn new(
         section: Section,
         longest: Option<f64>,
