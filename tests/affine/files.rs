@@ -40,7 +40,8 @@ fn each_mistake_is_named_with_its_line() {
         ("\"both\"", "\"up\"", "\"up\" is no direction: accepted are rising, falling, both"),
         ("\"touched\"", "\"impact\"", "the event \"impact\" is there twice"),
         ("v = 1\n", "", "the start has no state v"),
-        ("v = 1\n", "v = \"x\"\n", "x is a state"),
+        ("v = 1\n", "v = \"v + 1\"\n", "v: a start that hangs on itself"),
+        ("v = 1\n", "v = 1\nt = \"x\"\n", "x is a state: an expression of parameters"),
         ("v = 1\n", "v = 1\nw = 1\n", "w is no state: accepted are mode, t, x, v"),
         (
             "mode = \"flight\"",

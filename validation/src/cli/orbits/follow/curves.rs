@@ -1,7 +1,7 @@
 //! `continue SYSTEM --second NAME`: the bifurcations of a branch, followed in two parameters.
 
 use super::super::of_system::guess;
-use super::draw_curves;
+use super::draw_curves::{self, event};
 use super::of_system::branch;
 use super::{Arguments, Format, Second};
 use crate::cli::shared::long_work;
@@ -157,11 +157,6 @@ fn curves(
     let at = |values: [f64; 2]| plane.at(values);
     let maps = ReturnPlane::new(section, longest, plane.window, &at);
     Ok(BifurcationCurve::all(&maps, branch, own, told))
-}
-
-/// The event of a curve by its name.
-pub(super) fn event(system: &System, curve: &BifurcationCurve) -> Option<String> {
-    curve.event.map(|it| it.name(system))
 }
 
 fn csv(system: &System, curves: &[BifurcationCurve], out: &mut dyn Write) -> Result<()> {

@@ -2,7 +2,6 @@
 //! and each curve by its number and event.
 
 use super::Arguments;
-use super::curves::event;
 use crate::picture::{Colour, Figure, KeyEntry, Layer, Plot, Stroke};
 use percuss::affine::{BifurcationCurve, System};
 use percuss::dynamics::continuation::BifurcationKind;
@@ -62,4 +61,9 @@ fn name(system: &System, [n, count]: [usize; 2], curve: &BifurcationCurve) -> Op
     let at = curve.points.get(curve.points.len() * (n + 1) / (count + 1))?.values;
     let event = event(system, curve).map(|it| format!(" {it}")).unwrap_or_default();
     Some(Layer::Named { at, name: format!("{n}{event}"), colour: colour(curve.kind) })
+}
+
+/// The event of a curve by its name.
+pub(super) fn event(system: &System, curve: &BifurcationCurve) -> Option<String> {
+    curve.event.map(|it| it.name(system))
 }

@@ -96,7 +96,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     }
     arguments.picture.check(&outputs.pictures())?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
-        return of_system::run(arguments, &chosen, &outputs);
+        of_system::check(arguments, &chosen)?;
+        return match arguments.second()? {
+            Some(second) => curves::run(arguments, &chosen, &second, &outputs),
+            None => of_system::run(arguments, &chosen, &outputs),
+        };
     }
     arguments.picture.refuse_show()?;
     arguments.check_of_oscillator()?;

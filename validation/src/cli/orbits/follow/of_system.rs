@@ -2,7 +2,7 @@
 
 use super::super::of_system::{PointJson, guess, points};
 use super::draw::{self, DrawnBifurcation, DrawnOrbit, DrawnPoints};
-use super::{Arguments, Format, curves};
+use super::{Arguments, Format};
 use crate::cli::shared::long_work;
 use crate::cli::shared::output;
 use crate::cli::shared::outputs::Outputs;
@@ -62,10 +62,6 @@ pub(super) fn run(
     outputs: &Outputs<Format>,
 ) -> Result<u8> {
     let parameter = &arguments.parameter;
-    check(arguments, chosen)?;
-    if let Some(second) = arguments.second()? {
-        return curves::run(arguments, chosen, &second, outputs);
-    }
     let at = |value: f64| -> Result<System, SystemError> {
         let mut file = chosen.file.clone();
         file.set(parameter, value, "--parameter")?;
