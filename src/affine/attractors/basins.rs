@@ -92,6 +92,33 @@ impl<'a> PlaneStart<'a> {
     /// The start with these values of two states, and what hangs on them, in the mode that the
     /// start's conditions choose, or in its own where it has none.
     fn with(&self, axes: [usize; 2], values: [f64; 2]) -> Result<Place<f64>, SystemError> {
+        let chooses = !self.system.start_modes.is_empty();
+        // Most systems need no exact start for each cell.
+        let moved = (chooses || self.follows).then(|| self.moved(axes, values));
+        let mode = match &moved {
+            Some(moved) if chooses => self.system.mode_by_conditions(moved)?,
+            _ => self.start.mode,
+        };
+        let unknown = || SystemError::UnknownMode {
+            item: "start".to_owned(),
+            index: mode,
+            modes: self.system.modes.len(),
+        };
+        let place = self.places.iter().find(|it| it.mode == mode).ok_or_else(unknown)?;
+        let mut state = match &moved {
+            Some(moved) if self.follows => self.solver.states_at(moved),
+            _ => place.state.clone(),
+        };
+        for (axis, value) in axes.into_iter().zip(values) {
+            if let Some(entry) = state.get_mut(axis) {
+                *entry = value;
+            }
+        }
+        Ok(place.moved_to(place.time, state))
+    }
+
+    /// The exact start with these values of two states, and what hangs on them.
+    fn moved(&self, axes: [usize; 2], values: [f64; 2]) -> StartPoint {
         let mut moved = self.start.clone();
         for (axis, value) in axes.into_iter().zip(values) {
             let value = Rational::try_from(value).unwrap_or_default();
@@ -102,26 +129,7 @@ impl<'a> PlaneStart<'a> {
         if self.follows {
             self.system.follow_start(&mut moved, &axes);
         }
-        let mode = match self.system.start_modes.is_empty() {
-            true => self.start.mode,
-            false => self.system.mode_by_conditions(&moved)?,
-        };
-        let unknown = || SystemError::UnknownMode {
-            item: "start".to_owned(),
-            index: mode,
-            modes: self.system.modes.len(),
-        };
-        let place = self.places.iter().find(|it| it.mode == mode).ok_or_else(unknown)?;
-        let mut state = place.state.clone();
-        if self.follows {
-            state = self.solver.states_at(&moved);
-        }
-        for (axis, value) in axes.into_iter().zip(values) {
-            if let Some(entry) = state.get_mut(axis) {
-                *entry = value;
-            }
-        }
-        Ok(place.moved_to(place.time, state))
+        moved
     }
 }
 

@@ -8,7 +8,7 @@ use super::words::cyclic;
 use crate::dynamics::continuation::BifurcationKind;
 use crate::dynamics::continuation::steps::{OrbitCurve, OrbitPoint};
 
-/// What is looked for on each line.
+/// A kind of bifurcation, and its event, that are looked for on each line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sought {
     pub kind: BifurcationKind,

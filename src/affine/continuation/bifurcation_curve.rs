@@ -18,7 +18,7 @@ pub struct BifurcationCurve {
     /// The curve's places from one of its ends to the other; the last of a closed curve is the
     /// first again.
     pub points: Vec<BifurcationPoint>,
-    /// How the curve ends at its first place, and at its last.
+    /// The endings of the curve at its first place and at its last.
     pub endings: [CurveEnding; 2],
 }
 
@@ -112,8 +112,9 @@ fn whole(
 
 /// The error of the first parameter's value at a place of a curve where the second has its value.
 ///
-/// Of a place that was found along the second, it is as far as the curve has to be followed until
-/// the second has changed by its error: where the curve turns in the second, by a root of it.
+/// A place that was found along the second parameter has an error in that: the first is uncertain
+/// by as much as it changes along the curve until the second has changed by its error. Where the
+/// curve turns in the second that grows as the root of the error.
 fn across(plane: &ReturnPlane<'_>, points: &[Traced], n: usize) -> f64 {
     let Traced { at, axis, error, .. } = &points[n];
     if *axis == 0 {

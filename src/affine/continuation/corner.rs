@@ -70,7 +70,7 @@ impl Curve<'_> {
         best
     }
 
-    /// The same corner where nothing is looked for beyond it, as where no orbit is.
+    /// The end of a piece of the curve as a corner beyond which no orbit is looked for.
     pub fn lost_corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
         let (before, own) = self.end(base, distance);
         let error = own.max(self.least_error(&before));

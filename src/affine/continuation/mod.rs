@@ -62,7 +62,7 @@ pub struct ReturnBifurcation {
     pub turns: bool,
     /// The orbit there; at a corner as the branch comes to it.
     pub orbit: Orbit,
-    /// The same orbit as a point of the branch's curve.
+    /// The bifurcation's orbit as a point of the curve that the branch is.
     point: CurvePoint,
     /// Whether no orbit was found beyond a corner.
     is_lost: bool,

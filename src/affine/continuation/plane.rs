@@ -35,8 +35,8 @@ impl<'a> ReturnPlane<'a> {
         Self { section, longest, system, window }
     }
 
-    /// What the curve of orbits has on the line through `at` on which one parameter varies; none
-    /// where there is no such system.
+    /// Asks the curve of orbits on the line through `at` on which one parameter varies; none where
+    /// there is no such system.
     pub(super) fn on_line<R>(
         &self,
         axis: Axis,
@@ -78,7 +78,7 @@ impl<'a> ReturnPlane<'a> {
         }
     }
 
-    /// How far a place is from the window's edge that lies on a way, in widths of the window.
+    /// The distance from a place to the window's edge along a way, in widths of the window.
     pub(super) fn room(&self, from: [f64; 2], way: Way) -> f64 {
         let rooms = (0..2).filter(|axis| way[*axis] != 0.0).map(|axis| {
             let edge = self.window[axis][usize::from(way[axis] > 0.0)];
