@@ -173,13 +173,12 @@ impl PlanWords {
     /// Takes up the system, a file or a name. The verb says what is wrong with one that is neither.
     fn system(&mut self, system: &str, folder: &Path) {
         let path = folder.join(system);
-        let text = match path.is_file() {
-            true => fs::read_to_string(&path).ok(),
-            false => named(system).map(str::to_owned),
+        let (word, text) = match path.is_file() {
+            true => (path.display().to_string(), fs::read_to_string(&path).ok()),
+            false => (system.to_owned(), named(system).map(str::to_owned)),
         };
+        self.places.push(word);
         self.files.insert("system", text.unwrap_or_default());
-        let is_file = path.is_file();
-        self.places.push(if is_file { path.display().to_string() } else { system.to_owned() });
     }
 
     /// Takes up an entry of `[fixed]`.

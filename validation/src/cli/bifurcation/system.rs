@@ -59,12 +59,7 @@ pub(in crate::cli) fn steps(
     values: &[f64],
     seen: impl Fn() + Sync + Send,
 ) -> Result<Vec<ReturnDiagramStep>> {
-    let at = |value: f64| {
-        let mut file = chosen.file.clone();
-        file.set(parameter, value, "--parameter")?;
-        file.system()
-    };
-    let steps = diagram.steps(values, at, seen);
+    let steps = diagram.steps(values, |value| chosen.system_at(parameter, value), seen);
     steps.map_err(|error| anyhow!("--parameter {parameter}: {error}"))
 }
 

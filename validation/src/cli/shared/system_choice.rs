@@ -10,7 +10,7 @@ use crate::systems::{SYSTEMS, named};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use percuss::System;
-use percuss::affine::SystemFile;
+use percuss::affine::{SystemError, SystemFile};
 use std::path::{Path, PathBuf};
 
 /// The place in which a flag of SYSTEM is accepted.
@@ -130,6 +130,17 @@ impl ChosenSystem {
         let mut file = file.clone();
         point.values.iter().try_for_each(|(name, value)| file.set(name, *value, "axis"))?;
         Ok(Self { file, text: text.clone(), path: path.clone() })
+    }
+
+    /// The system where a parameter, which a verb varies, has a value.
+    pub(in crate::cli) fn system_at(
+        &self,
+        parameter: &str,
+        value: f64,
+    ) -> Result<System, SystemError> {
+        let mut file = self.file.clone();
+        file.set(parameter, value, "--parameter")?;
+        file.system()
     }
 
     /// The text of the system's file, as it was before flags replaced anything.

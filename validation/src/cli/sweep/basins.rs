@@ -10,6 +10,7 @@ use anyhow::Result;
 use percuss::dynamics::attractor::{Basins, BlockLabeller, Grid, Label, LabelledBlock};
 use percuss::dynamics::strobe::StrobeMap;
 use rayon::prelude::*;
+use serde::Serialize;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Labels or attractors at each point; a tile is a block of a grid's rows.
@@ -77,21 +78,26 @@ impl BasinWork {
     fn arrays(&self, problem: Problem, map: &StrobeMap, basins: Basins) -> Result<Vec<Array>> {
         let survey = Survey::new(problem, map, self.grid.limits(), basins);
         let json = Json::of(&survey);
+        let Basins { grid, attractors: found, labels: all } = &survey.basins;
         match self.wanted {
-            Wanted::Labels => labels(&survey.basins, &json),
+            Wanted::Labels => labels([grid.columns, grid.rows], all, found.len(), &json),
             Wanted::Attractors => Ok(attractors(&json)),
         }
     }
 }
 
-/// The arrays of the verb `basins`, except its axes.
-fn labels(basins: &Basins, json: &Json) -> Result<Vec<Array>> {
-    let shape = [basins.grid.rows as usize, basins.grid.columns as usize];
-    let labels = basins.labels.iter().map(|label| label.number()).collect();
-    let ids: Vec<i32> =
-        (0..basins.attractors.len()).map(|id| Label::Attractor(id).number()).collect();
+/// The arrays of the verb `basins`, except its axes: labels of rows and columns, the ids of so many
+/// attractors, and the verb's JSON.
+pub(super) fn labels(
+    [columns, rows]: [u32; 2],
+    labels: &[Label],
+    attractors: usize,
+    json: &impl Serialize,
+) -> Result<Vec<Array>> {
+    let shape = [rows as usize, columns as usize];
+    let ids: Vec<i32> = (0..attractors).map(|id| Label::Attractor(id).number()).collect();
     Ok(vec![
-        Array::i4("labels", &shape, labels),
+        Array::i4("labels", &shape, labels.iter().map(|label| label.number()).collect()),
         Array::i4("ids", &[ids.len()], ids),
         Array::text("meta", serde_json::to_vec(json)?),
     ])

@@ -62,11 +62,7 @@ pub(super) fn run(
     outputs: &Outputs<Format>,
 ) -> Result<u8> {
     let parameter = &arguments.parameter;
-    let at = |value: f64| -> Result<System, SystemError> {
-        let mut file = chosen.file.clone();
-        file.set(parameter, value, "--parameter")?;
-        file.system()
-    };
+    let at = |value: f64| chosen.system_at(parameter, value);
     let first =
         at(arguments.from.value).map_err(|error| anyhow!("--from {}: {error}", arguments.from))?;
     let shown = arguments.picture.shown(1)?;

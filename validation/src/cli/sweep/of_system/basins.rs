@@ -5,7 +5,7 @@ use crate::cli::basins::system::json::Json;
 use crate::cli::basins::system::{Survey, array_name};
 use crate::cli::basins::{AttractorArguments, BasinArguments, GridFlags};
 use crate::cli::shared::section::SectionFlags;
-use crate::cli::sweep::basins::{Wanted, kind};
+use crate::cli::sweep::basins::{Wanted, kind, labels};
 use crate::cli::sweep::records;
 use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
 use anyhow::Result;
@@ -46,18 +46,6 @@ impl SystemBasinWork {
         let plane = grid.plane(&swept.first)?;
         Ok(Self { swept, grid, section, plane, wanted })
     }
-}
-
-/// The arrays of the verb `basins`, except its axes.
-fn labels(survey: &Survey) -> Result<Vec<Array>> {
-    let ReturnBasins { plane, attractors, labels, .. } = &survey.basins;
-    let shape = [plane.rows as usize, plane.columns as usize];
-    let ids: Vec<i32> = (0..attractors.len()).map(|id| Label::Attractor(id).number()).collect();
-    Ok(vec![
-        Array::i4("labels", &shape, labels.iter().map(|label| label.number()).collect()),
-        Array::i4("ids", &[ids.len()], ids),
-        Array::text("meta", serde_json::to_vec(&Json::of(survey))?),
-    ])
 }
 
 /// What the verb `attractors` writes as JSON but the escaping starts' entry, of each attractor its
@@ -113,8 +101,10 @@ impl SweepVerb for SystemBasinWork {
     fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
         let system = self.swept.system(point)?;
         let survey = Survey::watched(system, &self.grid, &self.section, &|_| ())?;
+        let ReturnBasins { plane, attractors: found, labels: all, .. } = &survey.basins;
+        let size = [plane.columns, plane.rows];
         match self.wanted {
-            Wanted::Labels => records::bytes(&labels(&survey)?),
+            Wanted::Labels => records::bytes(&labels(size, all, found.len(), &Json::of(&survey))?),
             Wanted::Attractors => records::bytes(&attractors(&survey)),
         }
     }

@@ -3,13 +3,14 @@
 use super::{SweptSystem, columns};
 use crate::cli::orbits::follow::Arguments;
 use crate::cli::orbits::follow::of_system;
+use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::sweep::branches::kind;
 use crate::cli::sweep::records;
 use crate::returns;
 use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
 use anyhow::{Result, anyhow};
 use percuss::System;
-use percuss::affine::{NoOrbit, Orbit, ReturnBifurcation, ReturnBranch, Solver, SystemError};
+use percuss::affine::{NoOrbit, Orbit, ReturnBifurcation, ReturnBranch, Solver};
 
 /// A branch at each point; a point is one tile.
 pub(in crate::cli::sweep) struct SystemBranchWork {
@@ -25,28 +26,22 @@ impl SystemBranchWork {
         Ok(Self { swept, arguments })
     }
 
-    /// The system at a value of the verb's own parameter.
-    fn at(&self, point: &SweepPoint, value: f64) -> Result<System, SystemError> {
-        let mut file = self.swept.chosen.file.clone();
-        point.values.iter().try_for_each(|(name, value)| file.set(name, *value, "axis"))?;
-        file.set(&self.arguments.parameter, value, "--parameter")?;
-        file.system()
-    }
-
-    fn first(&self, point: &SweepPoint) -> Result<System> {
-        let from = &self.arguments.from;
-        self.at(point, from.value).map_err(|error| anyhow!("--from {from}: {error}"))
+    /// The system at the verb's own first value.
+    fn first(&self, chosen: &ChosenSystem) -> Result<System> {
+        let Arguments { parameter, from, .. } = &self.arguments;
+        let first = chosen.system_at(parameter, from.value);
+        first.map_err(|error| anyhow!("--from {from}: {error}"))
     }
 
     fn followed(
         &self,
-        point: &SweepPoint,
+        chosen: &ChosenSystem,
         first: &System,
     ) -> Result<Result<ReturnBranch, NoOrbit>> {
         let solver = Solver::<f64>::new(first)?;
         let map = self.arguments.section.map(&solver)?;
         let (guess, _) = returns::guess(&map, self.arguments.transient.unwrap_or(0))?;
-        let at = |value| self.at(point, value);
+        let at = |value| chosen.system_at(&self.arguments.parameter, value);
         of_system::branch(&self.arguments, guess, &at, &mut |_| ())
     }
 
@@ -88,14 +83,16 @@ impl SystemBranchWork {
 
 impl SweepVerb for SystemBranchWork {
     fn check(&self, point: &SweepPoint) -> Result<()> {
-        let to = &self.arguments.to;
-        self.first(point)?;
-        self.at(point, to.value).map(drop).map_err(|error| anyhow!("--to {to}: {error}"))
+        let (chosen, Arguments { parameter, to, .. }) = (self.swept.at(point)?, &self.arguments);
+        self.first(&chosen)?;
+        let last = chosen.system_at(parameter, to.value);
+        last.map(drop).map_err(|error| anyhow!("--to {to}: {error}"))
     }
 
     fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
-        let first = self.first(point)?;
-        let branch = self.followed(point, &first)?.ok();
+        let chosen = self.swept.at(point)?;
+        let first = self.first(&chosen)?;
+        let branch = self.followed(&chosen, &first)?.ok();
         records::bytes(&self.arrays(&first, branch.as_ref())?)
     }
 

@@ -97,6 +97,11 @@ fn number_of(left_out: Option<LeftOut>) -> i32 {
     }
 }
 
+/// A number of ties and touches in files, which hold no larger ones than this type.
+fn counted(number: u64) -> i32 {
+    i32::try_from(number).unwrap_or(i32::MAX)
+}
+
 /// The modes of some returns and their states, one after the other, as many as `count`: -1 and NaN
 /// where there are fewer.
 fn columns(returns: &[Return<f64>], count: usize, states: usize) -> (Vec<i32>, Vec<f64>) {
