@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from percuss._progress import Progress, telling
 from percuss._results import Attractor, Basins, Bifurcation, Lyapunov, Orbit, Section
 from percuss._returns import Branch
 from percuss._run import Floats, Run, Stream, Texts, pair, real, whole
-from percuss._sweep import Sweep, sweep
+from percuss._sweep import Swept, SweptSystem
 from percuss._system import System, exact, systems
 
 _STATES = ("p", "y", "q", "v")
@@ -64,7 +63,7 @@ class Simulation:
         return f"Simulation({len(self)} rows from {self.time[0]:.6g} to {self.time[-1]:.6g})"
 
 
-class Oscillator:
+class Oscillator(Swept):
     """The impact oscillator of Pavlovskaia and Wiercigroch (2004), at a start.
 
     Parameters
@@ -341,46 +340,12 @@ class Oscillator:
             )
         return Bifurcation(parameter, found)
 
-    def sweep(
-        self,
-        verb: str,
-        axes: Mapping[str, Sequence[float] | NDArray[np.float64]],
-        *,
-        out: str | Path | None = None,
-        **flags: Any,
-    ) -> Sweep:
-        """Run a verb at every point of one or two parameters, as ``percuss sweep`` does.
-
-        Parameters
-        ----------
-        verb : {'basins', 'attractors', 'bifurcation', 'lyapunov', 'continue'}
-            What is run.
-        axes : mapping of str to array_like
-            One or two parameters, each with its values in equal steps.
-        out : path, optional
-            A folder for the shards, from which a sweep that was interrupted goes on.
-        **flags
-            The flags of the verb by their long names, with ``from_`` for ``from``.
-
-        Raises
-        ------
-        ValueError
-            What the command does not accept, with its reason.
-
-        Examples
-        --------
-        >>> import percuss
-        >>> axes = {"omega": [0.9, 1.0, 1.1]}
-        >>> found = percuss.Oscillator().sweep("lyapunov", axes, transient=20, periods=50)
-        >>> found["drift_per_period"].shape
-        (3,)
-        """
+    def _of_sweep(self) -> tuple[Mapping[str, Any], SweptSystem | None]:
         _, _, p, y, q, v, phase = self._start
         tau, cycle = self._start[:2]
         start = {"tau": tau, "cycle": cycle, "p": p, "y": y, "q": q, "v": v, "phase": phase}
         given = {name: value for name, value in start.items() if value not in (None, 0.0)}
-        named = {name.rstrip("_"): value for name, value in flags.items()}
-        return sweep(verb, axes, self.parameters | given | named, out)
+        return self.parameters | given, None
 
     def basins(
         self,

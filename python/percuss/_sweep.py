@@ -80,22 +80,66 @@ class SweptSystem:
         return ['system = "swept.system.toml"'], fixed
 
 
-def sweep(
+class Swept:
+    """The method of a model that runs a verb over one or two of its parameters."""
+
+    def _of_sweep(self) -> tuple[Mapping[str, Any], SweptSystem | None]:
+        """The flags of the command that the model has itself, and its system if it is one."""
+        raise NotImplementedError
+
+    def sweep(
+        self,
+        verb: str,
+        axes: Mapping[str, Sequence[float] | Floats],
+        *,
+        out: str | Path | None = None,
+        **flags: Any,
+    ) -> Sweep:
+        """Run a verb at every point of one or two parameters, as ``percuss sweep`` does.
+
+        Parameters
+        ----------
+        verb : {'basins', 'attractors', 'bifurcation', 'lyapunov', 'continue'}
+            The verb that is run.
+        axes : mapping of str to array_like
+            One or two parameters, each with its values in equal steps.
+        out : path, optional
+            A folder for the shards, from which a sweep that was interrupted goes on.
+        **flags
+            The flags of the verb by their long names, with ``from_`` for ``from``.
+
+        Raises
+        ------
+        ValueError
+            What the command does not accept, with its reason.
+
+        Examples
+        --------
+        >>> import percuss
+        >>> axes = {"omega": [0.9, 1.0, 1.1]}
+        >>> found = percuss.Oscillator().sweep("lyapunov", axes, transient=20, periods=50)
+        >>> found["drift_per_period"].shape
+        (3,)
+        >>> rig = percuss.systems["rigid-impact-oscillator"]
+        >>> found = rig.sweep("lyapunov", {"A": [0.5, 0.6, 0.7]}, transient=20, returns=50)
+        >>> found["exponents_per_return"].shape
+        (3, 2)
+        """
+        own, system = self._of_sweep()
+        fixed = {**own, **{name.rstrip("_"): value for name, value in flags.items()}}
+        if system is not None and (name := next((it for it in fixed if it in _OF_SYSTEM), None)):
+            raise ValueError(f"{name} is not accepted: {_OF_SYSTEM[name]} is")
+        return _swept(verb, axes, fixed, out, system)
+
+
+def _swept(
     verb: str,
     axes: Mapping[str, Sequence[float] | Floats],
     fixed: Mapping[str, Any],
     out: str | Path | None,
-    system: SweptSystem | None = None,
+    system: SweptSystem | None,
 ) -> Sweep:
-    """Run the plan of a sweep by the command, and read the arrays that it merges.
-
-    Raises
-    ------
-    ValueError
-        A plan that the command does not accept, with its reason.
-    """
-    if system is not None and (name := next((it for it in fixed if it in _OF_SYSTEM), None)):
-        raise ValueError(f"{name} is not accepted: {_OF_SYSTEM[name]} is")
+    """Run the plan of a sweep by the command, and read the arrays that it merges."""
     with tempfile.TemporaryDirectory(prefix="percuss-") as own:
         path, merged = Path(own) / "plan.toml", Path(own) / "merged.npz"
         of_system = ([], []) if system is None else system.lines(Path(own), axes)

@@ -5,22 +5,19 @@ from __future__ import annotations
 import difflib
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from percuss import _percuss
 from percuss._dynamics import Dynamics
 from percuss._run import Run, Stream, real, whole
-from percuss._sweep import Sweep, SweptSystem, sweep
+from percuss._sweep import Swept, SweptSystem
 
 _MOST_EVENTS = 1_000_000
 
 
-class System(Dynamics):
+class System(Dynamics, Swept):
     """A piecewise-affine system: modes with affine equations, and the guards that end them.
 
     Parameters
@@ -135,43 +132,8 @@ class System(Dynamics):
             lines.append(f"{json.dumps(name)} = {text}")
         return System._of(self._native.with_start("\n".join(lines)))
 
-    def sweep(
-        self,
-        verb: str,
-        axes: Mapping[str, Sequence[float] | NDArray[np.float64]],
-        *,
-        out: str | Path | None = None,
-        **flags: Any,
-    ) -> Sweep:
-        """Run a verb at every point of one or two parameters, as ``percuss sweep`` does.
-
-        Parameters
-        ----------
-        verb : {'basins', 'attractors', 'bifurcation', 'lyapunov', 'continue'}
-            The verb that is run.
-        axes : mapping of str to array_like
-            One or two parameters, each with its values in equal steps.
-        out : path, optional
-            A folder for the shards, from which a sweep that was interrupted goes on.
-        **flags
-            The flags of the verb by their long names, with ``from_`` for ``from``.
-
-        Raises
-        ------
-        ValueError
-            What the command does not accept, with its reason.
-
-        Examples
-        --------
-        >>> import percuss
-        >>> rig = percuss.systems["rigid-impact-oscillator"]
-        >>> found = rig.sweep("lyapunov", {"A": [0.5, 0.6, 0.7]}, transient=20, returns=50)
-        >>> found["exponents_per_return"].shape
-        (3, 2)
-        """
-        text, given, start = self._native.origin
-        named = {name.rstrip("_"): value for name, value in flags.items()}
-        return sweep(verb, axes, named, out, SweptSystem(text, given, start))
+    def _of_sweep(self) -> tuple[Mapping[str, Any], SweptSystem | None]:
+        return {}, SweptSystem(*self._native.origin)
 
     @property
     def name(self) -> str:
