@@ -52,7 +52,7 @@ pub struct FlowBlock<T: Number> {
     pub size: usize,
     /// The block's speed ([`modal::Block::speed`]).
     speed: f64,
-    motion: BlockMotion<T>,
+    pub(super) motion: BlockMotion<T>,
     /// How the block's parts in rows may grow.
     pub growth: BlockGrowth,
 }
@@ -221,22 +221,21 @@ impl<T: Number> ModeFlow<T> {
     /// Blocks that move so fast that they are others by then stay as they are: the time is below
     /// the rounding of the time at which they are known.
     #[inline]
-    pub fn state_shortly_after(&self, modal: &ModalState<T>, time: T) -> Vector<T> {
-        let mut later = *modal;
+    pub fn state_shortly_after(&self, mut modal: ModalState<T>, time: T) -> Vector<T> {
         for (n, block) in self.blocks.iter().enumerate() {
             let turn = (block.speed * time.to_f64()).abs();
             let derivatives = match [turn * turn, turn * turn * turn] {
                 [square, _] if T::unit() * 0.25 >= square => 1,
                 [_, cube] if T::unit() * 0.25 >= cube => 2,
                 _ if turn <= 1.0 => {
-                    self.advance(&mut later, time, 1 << n);
+                    self.advance(&mut modal, time, 1 << n);
                     continue;
                 }
                 _ => continue,
             };
-            block.motion.taylor_step(&mut later.y[block.range()], derivatives, time);
+            block.motion.taylor_step(&mut modal.y[block.range()], derivatives, time);
         }
-        self.state(&later.y)
+        self.state(&modal.y)
     }
 
     /// The norms of the co-ordinates of each of `subspaces`.

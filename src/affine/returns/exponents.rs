@@ -76,7 +76,7 @@ impl SectionMap<'_, f64> {
         seen: &mut dyn FnMut(u64),
     ) -> Result<Exponents, NoReturn> {
         let batches = Batches::of(returns);
-        let mut walk = Walk::begin(self, place, false);
+        let mut walk = Walk::begin(self, place, false).for_many();
         let mut frame = Frame::of(self.solver());
         let mut marks: Vec<Mark> = Vec::new();
         let (mut passed, mut drift) = (0, self.drift_of(&place.state));
@@ -88,7 +88,7 @@ impl SectionMap<'_, f64> {
                 if passed == settling + batches.end(k) {
                     drift = self.drift_of(&event.state);
                 }
-                frame.settle(event);
+                frame.settle(&event);
                 frame.time = time;
                 seen(passed);
             }

@@ -148,6 +148,12 @@ impl<'a, T: Number> SectionMap<'a, T> {
         }
     }
 
+    /// The time by which the search for events goes beyond a strobe: about as far as to the next.
+    pub(super) fn search_ahead(&self) -> Option<T> {
+        let is_strobe = matches!(self.section.returns, Returning::Strobe(_));
+        self.forcing_period().filter(|_| is_strobe)
+    }
+
     /// The time up to which a run goes from a return: that of the strobe of this number, or the
     /// longest that is waited for.
     pub(super) fn horizon(&self, returned: &Time<T>, strobe: f64) -> Time<T> {

@@ -92,7 +92,6 @@ impl<T: Number> SectionMap<'_, T> {
             variation.pass(self.solver(), from, to);
             events.extend(Guard::of(&to.what));
         })?;
-        let event = event.clone();
         let image = walk.place()?;
         let (at_return, delays) = (variation.columns.clone(), variation.delays.clone());
         variation.settle(self.solver(), &event);

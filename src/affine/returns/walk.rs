@@ -59,41 +59,51 @@ impl<'a, T: Number> Walk<'a, T> {
         Self { map, run, last, strobe }
     }
 
+    /// The same motion, of which many returns are asked for.
+    pub fn for_many(mut self) -> Self {
+        if let Some(reach) = self.map.search_ahead() {
+            self.run.search_ahead(reach);
+        }
+        self
+    }
+
     /// The next return; `see` is shown each event on the way, with the one before it.
     pub fn next(
         &mut self,
         see: &mut dyn FnMut(&Event<T>, &Event<T>),
-    ) -> Result<&Event<T>, NoReturn> {
-        let mut left = self.map.section().every;
-        let mut returned = self.last.time;
-        while left > 0 {
-            self.run.go_on_to(self.map.horizon(&returned, self.strobe));
+    ) -> Result<Event<T>, NoReturn> {
+        let mut left = self.map.section().every.max(1);
+        self.run.go_on_to(self.map.horizon(&self.last.time, self.strobe));
+        loop {
             let event = self.run.next().ok_or(NoReturn::Ended(Ending::Horizon))?;
             see(&self.last, &event);
-            self.last = event;
-            if self.returns()? {
-                returned = self.last.time;
-                self.strobe += 1.0;
-                left -= 1;
+            self.last.clone_from(&event);
+            if !self.returns()? {
+                continue;
             }
+            self.strobe += 1.0;
+            left -= 1;
+            if left == 0 {
+                return Ok(event);
+            }
+            self.run.go_on_to(self.map.horizon(&event.time, self.strobe));
         }
-        Ok(&self.last)
     }
 
     /// The next return, whose way has a derivative as far as accumulations go.
     pub fn next_with_derivative(
         &mut self,
         see: &mut dyn FnMut(&Event<T>, &Event<T>),
-    ) -> Result<&Event<T>, NoReturn> {
+    ) -> Result<Event<T>, NoReturn> {
         let mut passes_limit = false;
-        self.next(&mut |from, to| {
+        let event = self.next(&mut |from, to| {
             passes_limit |= matches!(to.what, What::Limit(..));
             see(from, to);
         })?;
         if passes_limit || self.run.is_silent() {
             Err(NoReturn::PastAccumulation)
         } else {
-            Ok(&self.last)
+            Ok(event)
         }
     }
 
@@ -136,8 +146,8 @@ pub struct Return<T> {
 
 impl<T: Number> Return<T> {
     /// The mode, time and state of an event.
-    fn of(event: &Event<T>) -> Self {
-        Self { mode: event.mode, time: event.time.value(), state: event.state.clone() }
+    fn of(event: Event<T>) -> Self {
+        Self { mode: event.mode, time: event.time.value(), state: event.state }
     }
 }
 
@@ -149,12 +159,12 @@ pub struct Returns<'a, T: Number> {
 
 impl<'a, T: Number> Returns<'a, T> {
     pub(super) fn begin(map: &'a SectionMap<'a, T>, place: &Place<T>) -> Self {
-        Self { walk: Walk::begin(map, place, true), is_over: false }
+        Self { walk: Walk::begin(map, place, true).for_many(), is_over: false }
     }
 
     /// Without a return at the place itself.
     pub(super) fn after(map: &'a SectionMap<'a, T>, place: &Place<T>) -> Self {
-        Self { walk: Walk::begin(map, place, false), is_over: false }
+        Self { walk: Walk::begin(map, place, false).for_many(), is_over: false }
     }
 
     /// The place of the last return, from which a motion may go on.
@@ -169,7 +179,7 @@ impl<'a, T: Number> Returns<'a, T> {
     /// ends that does not return.
     #[must_use]
     pub fn last_event(&self) -> Return<T> {
-        Return::of(&self.walk.last)
+        Return::of(self.walk.last.clone())
     }
 
     /// The number of ties, touches and entries so far that rounding does not decide.

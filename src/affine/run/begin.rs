@@ -83,6 +83,7 @@ impl<T: Number> Solver<T> {
             graph,
             work: SearchWork::default(),
             horizon,
+            ahead: None,
             node: begin.node,
             entered: begin.time,
             state: begin.state,

@@ -18,7 +18,9 @@ impl<T: Number> Run<'_, T> {
         let goes_on = self.queue.is_empty() && self.ending() == Some(&Ending::Horizon);
         if goes_on {
             (self.horizon, self.ended) = (Time { high: until, low: T::zero() }, false);
-            (self.ends.left.to_crossing, self.ends.passed) = (T::zero(), Passed::none());
+            if !self.has_found() {
+                (self.ends.left.to_crossing, self.ends.passed) = (T::zero(), Passed::none());
+            }
         }
         goes_on
     }

@@ -10,6 +10,7 @@
 //! of the state along. Read this file first, then `crossed` and `transition`.
 
 mod accumulation;
+mod ahead;
 mod begin;
 mod crossed;
 mod enclosure;
@@ -36,6 +37,7 @@ use crate::affine::solver::pool::Loan;
 use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::zeros::graph::{Firing, ZeroGuards};
 use crate::numeric::number::{Bound, Number};
+use ahead::SearchAhead;
 use enclosure::Enclosure;
 use limit::LimitAhead;
 use origins::ExactRun;
@@ -47,6 +49,8 @@ pub struct Run<'a, T: Number> {
     graph: Loan<'a, T>,
     work: SearchWork,
     horizon: Time<T>,
+    /// The search beyond the horizon, where the run has one.
+    ahead: Option<SearchAhead<T>>,
     node: usize,
     /// The time at which the segment was entered, and the state there.
     entered: Time<T>,
@@ -282,33 +286,17 @@ impl<'a, T: Number> Run<'a, T> {
             return;
         }
         let mode = self.graph.node(self.node).mode;
-        let Time { high: limit, low: rest } = self.time_left();
-        let (segment, ends) = (&self.segment, &mut self.ends);
-        let failed_attempts = &mut self.failed_attempts[mode];
-        let (work, from) = (&mut self.work, ends.left.time);
-        let outcome = segment.first(&mut self.tracks, ends, limit, failed_attempts, work);
-        self.remember_doubt(mode);
+        let left = self.time_left();
+        let outcome = self.search(mode, left.high);
         if self.is_open() {
             return;
         }
-        let (segment, ends) = (&self.segment, &mut self.ends);
         match outcome {
             SearchOutcome::GivenUp => self.end(Ending::Undecided),
-            SearchOutcome::NoCrossing => {
-                if limit > from {
-                    self.tracks.iter_mut().for_each(|track| track.zeros = 0);
-                }
-                let is_ahead = limit > T::zero();
-                let [limit, rest] = if is_ahead { [limit, rest] } else { [T::zero(); 2] };
-                segment.evaluate(&mut ends.left, limit, &mut self.work);
-                segment.complete(&mut ends.left);
-                ends.left.to_crossing = rest;
-                self.remember_touch(mode, limit);
-                self.at_horizon(mode, limit);
-            }
+            SearchOutcome::NoCrossing => self.at_horizon(mode, left),
             SearchOutcome::Crossing(guards) => {
-                segment.complete(&mut ends.left);
-                let elapsed = ends.left.time + ends.left.to_crossing;
+                self.segment.complete(&mut self.ends.left);
+                let elapsed = self.ends.left.time + self.ends.left.to_crossing;
                 self.remember_touch(mode, elapsed);
                 let before = self.errors_before(mode, guards);
                 self.crossed(guards);
@@ -320,21 +308,36 @@ impl<'a, T: Number> Run<'a, T> {
     }
 
     /// Ends the run at its horizon, a time after the entry.
-    fn at_horizon(&mut self, mode: usize, limit: T) {
-        let Some((mut time, mut state)) = self.present() else {
+    fn at_horizon(&mut self, mode: usize, left: Time<T>) {
+        let is_ahead = left.high > T::zero();
+        let limit = if is_ahead { left.high } else { T::zero() };
+        // The time since an entry long before is rounded; the horizon is not. Modal co-ordinates
+        // round the entry's state.
+        let time = if is_ahead { self.horizon } else { self.entered };
+        let state = if is_ahead { self.state_after(mode, &left) } else { self.state };
+        if !all_finite(&state[..self.solver.system.states.len()]) {
+            self.segment.complete(&mut self.ends.left);
             return self.end(Ending::Undecided);
-        };
-        if limit > T::zero() {
-            // The time since an entry long before is rounded; the horizon is not.
-            time = self.horizon;
-        } else {
-            // Modal co-ordinates round the entry's state.
-            state = self.state;
         }
+        self.remember_touch(mode, limit);
         let enclosure = self.errors_at_given_time(mode, limit, &time, &state);
         let errors = enclosure.map(|it| self.errors_near(&it, &time));
         let what = What::End(Ending::Horizon);
         self.finish(Event { errors, ..self.event(what, time, &state) });
+    }
+
+    /// The state z at a time after the entry of the present mode.
+    #[inline]
+    fn state_after(&self, mode: usize, elapsed: &Time<T>) -> Vector<T> {
+        let flow = &self.solver.modes[mode].flow;
+        let modal = flow.at(&self.segment.entry, elapsed.high);
+        let mut state = flow.state_shortly_after(modal, elapsed.low);
+        if self.enclosure.is_some() {
+            let time = self.entered.after(self.solver.directed(elapsed.high));
+            let (sin, cos) = self.solver.sin_cos(&time.after(self.solver.directed(elapsed.low)));
+            self.solver.append(&mut state, sin, cos);
+        }
+        state
     }
 
     /// The time until the horizon, in two words.
@@ -360,7 +363,7 @@ impl<'a, T: Number> Run<'a, T> {
             flow.state(&point.modal.y)
         } else {
             time = time.after(self.solver.directed(point.to_crossing));
-            flow.state_shortly_after(&point.modal, point.to_crossing)
+            flow.state_shortly_after(point.modal, point.to_crossing)
         };
         let (sin, cos) = self.solver.sin_cos(&time);
         self.solver.append(&mut state, sin, cos);

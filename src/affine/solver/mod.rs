@@ -127,7 +127,7 @@ impl<T: Number> Solver<T> {
         let [elapsed, rest] = [high, low].map(|it| self.directed(it));
         let flow = &self.modes[event.mode].flow;
         let modal = flow.modal(&self.complete(&event.state, &event.time));
-        let mut state = flow.state_shortly_after(&flow.at(&modal, elapsed), rest).to_vec();
+        let mut state = flow.state_shortly_after(flow.at(&modal, elapsed), rest).to_vec();
         state.truncate(self.system.states.len());
         state
     }
@@ -152,7 +152,7 @@ impl<T: Number> Solver<T> {
     }
 
     /// The states at a time with cos theta, sin theta and 1 appended.
-    pub(super) fn complete(&self, states: &[T], time: &Time<T>) -> Vector<T> {
+    pub(in crate::affine) fn complete(&self, states: &[T], time: &Time<T>) -> Vector<T> {
         let mut state = [T::zero(); LARGEST_DIMENSION];
         state[..states.len()].copy_from_slice(states);
         let (sin, cos) = self.sin_cos(time);
