@@ -251,14 +251,14 @@ fn product<T: Number>(rate: SplitNumber<T>, time: T) -> (T, T) {
 }
 
 #[inline]
-fn exponential<T: Number>(rate: SplitNumber<T>, time: T) -> T {
+pub(super) fn exponential<T: Number>(rate: SplitNumber<T>, time: T) -> T {
     let (high, low) = product(rate, time);
     let value = high.exp();
     value + value * low
 }
 
 #[inline]
-fn circular<T: Number>(frequency: SplitNumber<T>, time: T) -> (T, T) {
+pub(super) fn circular<T: Number>(frequency: SplitNumber<T>, time: T) -> (T, T) {
     let (high, low) = product(frequency, time);
     turned(high.sin_cos(), low)
 }

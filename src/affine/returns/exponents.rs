@@ -173,23 +173,34 @@ impl<'a> Frame<'a> {
 
     /// Carries the frame from one event to the next one.
     fn pass(&mut self, from: &Event<f64>, to: &Event<f64>) {
-        if !is_at_once(from, to) {
-            self.settle(from);
-            let elapsed = to.time.since(&from.time).value();
-            let speed = self.solver.modes[from.mode].flow.speed;
-            let pieces = libm::ceil(speed * elapsed / LONGEST_PIECE).clamp(1.0, MOST_PIECES);
-            for _ in 0..pieces as usize {
-                self.variation.flow(self.solver, from.mode, elapsed / pieces);
-                self.renew(0.0);
-            }
+        if is_at_once(from, to) {
+            return self.variation.reset(self.solver, to);
         }
-        self.variation.jump(self.solver, from, to);
+        let state = self.solver.complete(&from.state, &from.time);
+        self.settle_at(from, &state);
+        let elapsed = to.time.since(&from.time).value();
+        let flow = &self.solver.modes[from.mode].flow;
+        let pieces = libm::ceil(flow.speed * elapsed / LONGEST_PIECE).clamp(1.0, MOST_PIECES);
+        let motion = flow.propagator(elapsed / pieces);
+        for _ in 0..pieces as usize {
+            self.variation.flow(&motion);
+            self.renew(0.0);
+        }
+        let before = || (0..pieces as usize).fold(state, |it, _| motion.after(&it));
+        self.variation.arrive(self.solver, to, before);
     }
 
     /// Takes the frame to the fixed time of an event, without what the event has made vanish.
     fn settle(&mut self, at: &Event<f64>) {
         if self.variation.delays.is_some() {
-            self.variation.settle(self.solver, at);
+            self.settle_at(at, &self.solver.complete(&at.state, &at.time));
+        }
+    }
+
+    /// Takes the frame to the fixed time of an event, whose state z is given.
+    fn settle_at(&mut self, at: &Event<f64>, z: &Vector<f64>) {
+        if self.variation.delays.is_some() {
+            self.variation.settle_at(self.solver, at, z);
             self.renew(GONE);
         }
     }

@@ -12,7 +12,7 @@
 
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{Vector, dot};
-use crate::affine::closed_form::modal_state::ModalState;
+use crate::affine::closed_form::propagator::Propagator;
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Event, What};
@@ -43,17 +43,28 @@ impl<T: Number> Variation<T> {
 
     /// Carries the changes from one event of a run to the next one, or to the horizon.
     pub fn pass(&mut self, solver: &Solver<T>, from: &Event<T>, to: &Event<T>) {
-        if !is_at_once(from, to) {
-            self.settle(solver, from);
-            self.flow(solver, from.mode, to.time.since(&from.time).value());
+        if is_at_once(from, to) {
+            return self.reset(solver, to);
         }
-        self.jump(solver, from, to);
+        let state = solver.complete(&from.state, &from.time);
+        self.settle_at(solver, from, &state);
+        let elapsed = to.time.since(&from.time).value();
+        let motion = solver.modes[from.mode].flow.propagator(elapsed);
+        self.flow(&motion);
+        self.arrive(solver, to, || motion.after(&state));
     }
 
     /// Takes the changes to the fixed time of the event at which they are.
     pub fn settle(&mut self, solver: &Solver<T>, at: &Event<T>) {
+        if self.delays.is_some() {
+            self.settle_at(solver, at, &solver.complete(&at.state, &at.time));
+        }
+    }
+
+    /// Takes the changes to the fixed time of the event at which they are, whose state z is given.
+    pub fn settle_at(&mut self, solver: &Solver<T>, at: &Event<T>, z: &Vector<T>) {
         let Some(delays) = self.delays.take() else { return };
-        let rates = solver.rates(at.mode, &at.time, &at.state);
+        let rates = solver.rates_of(at.mode, z);
         let states = at.state.len();
         for (column, delay) in self.columns.iter_mut().zip(delays) {
             column.iter_mut().zip(&rates).for_each(|(it, rate)| *it = *it - *rate * delay);
@@ -63,48 +74,34 @@ impl<T: Number> Variation<T> {
     }
 
     /// Carries changes at a fixed time along a mode.
-    pub fn flow(&mut self, solver: &Solver<T>, mode: usize, elapsed: T) {
-        let flow = &solver.modes[mode].flow;
-        for column in &mut self.columns {
-            let y = flow.co_ordinates(column);
-            let modal = ModalState { y, ..ModalState::default() };
-            *column = flow.state(&flow.at(&modal, elapsed).y);
-        }
+    pub fn flow(&mut self, motion: &Propagator<'_, T>) {
+        self.columns.iter_mut().for_each(|column| *column = motion.after(column));
     }
 
-    /// Carries changes across an event; at a horizon, whose time is fixed, nothing happens.
-    pub fn jump(&mut self, solver: &Solver<T>, from: &Event<T>, to: &Event<T>) {
-        let (mode, guard, until) = match to.what {
-            What::Until(mode, index) => (mode, index, Some(index)),
-            What::Watch(mode, index) => (mode, solver.system.modes[mode].until.len() + index, None),
+    /// Carries changes that have come to the time of an event across it; `before` gives the state z
+    /// just before. At a horizon, whose time is fixed, nothing happens.
+    pub fn arrive(
+        &mut self,
+        solver: &Solver<T>,
+        to: &Event<T>,
+        before: impl FnOnce() -> Vector<T>,
+    ) {
+        let (mode, guard) = match to.what {
+            What::Until(mode, index) => (mode, index),
+            What::Watch(mode, index) => (mode, solver.system.modes[mode].until.len() + index),
             // Whoever carries changes refuses a limit, or leaves it to others to refuse.
             What::Start | What::Limit(..) | What::End(_) => return,
         };
-        if !is_at_once(from, to) {
-            self.delay(solver, mode, guard, to, &solver.state_at(from, &to.time));
-        }
-        for column in &mut self.columns {
-            let before = *column;
-            for (n, factors) in until.iter().flat_map(|it| &solver.modes[mode].changes[*it]) {
-                let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
-                column[*n] = terms.fold(T::zero(), |sum, term| sum + term);
-            }
-        }
+        self.delay(solver, mode, guard, &before());
+        self.reset(solver, to);
     }
 
-    /// Delays changes to the crossing of a guard, at which the state is given.
-    fn delay(
-        &mut self,
-        solver: &Solver<T>,
-        mode: usize,
-        guard: usize,
-        event: &Event<T>,
-        state: &[T],
-    ) {
+    /// Delays changes to the crossing of a guard, at which the state z is given.
+    fn delay(&mut self, solver: &Solver<T>, mode: usize, guard: usize, z: &Vector<T>) {
         let own = &solver.modes[mode];
         let row = &own.rows[guard];
         let dimension = own.flow.dimension;
-        let rates = solver.rates(mode, &event.time, state);
+        let rates = solver.rates_of(mode, z);
         let slope = dot(row, &rates, dimension);
         let delayed = |column: &mut Vector<T>| {
             let delay = -dot(row, column, dimension) / slope;
@@ -112,6 +109,18 @@ impl<T: Number> Variation<T> {
             delay
         };
         self.delays = Some(self.columns.iter_mut().map(delayed).collect());
+    }
+
+    /// Resets changes as an `until` resets the state.
+    pub fn reset(&mut self, solver: &Solver<T>, event: &Event<T>) {
+        let What::Until(mode, until) = event.what else { return };
+        for column in &mut self.columns {
+            let before = *column;
+            for (n, factors) in &solver.modes[mode].changes[until] {
+                let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
+                column[*n] = terms.fold(T::zero(), |sum, term| sum + term);
+            }
+        }
     }
 }
 
@@ -124,11 +133,15 @@ pub fn is_at_once<T: Number>(from: &Event<T>, to: &Event<T>) -> bool {
 impl<T: Number> Solver<T> {
     /// The rates M z of a state in a mode.
     pub(in crate::affine) fn rates(&self, mode: usize, time: &Time<T>, state: &[T]) -> Vector<T> {
-        let z = self.complete(state, time);
+        self.rates_of(mode, &self.complete(state, time))
+    }
+
+    /// The rates M z.
+    fn rates_of(&self, mode: usize, z: &Vector<T>) -> Vector<T> {
         let own = &self.modes[mode];
         let mut rates = [T::zero(); LARGEST_DIMENSION];
         for (rate, row) in rates.iter_mut().zip(&own.matrix) {
-            *rate = dot(row, &z, own.flow.dimension);
+            *rate = dot(row, z, own.flow.dimension);
         }
         rates
     }
