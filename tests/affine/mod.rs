@@ -29,6 +29,7 @@ mod random;
 mod return_attractors;
 mod return_orbits;
 mod returns;
+mod search_ahead;
 mod sizes;
 mod spectra;
 mod start_modes;

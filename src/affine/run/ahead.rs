@@ -12,7 +12,7 @@ pub(super) struct SearchAhead<T> {
     reach: T,
     /// The guards, as bits, of the crossing beyond the horizon at which the search has arrived.
     found: Option<u64>,
-    /// The number of choices that rounding left open in the search for that crossing.
+    /// The number of choices that rounding left open in the search from the horizon on.
     undecidable: u64,
 }
 
@@ -20,7 +20,8 @@ impl<T: Number> Run<'_, T> {
     /// Lets each search go beyond the horizon by a time. A run that follows its errors does not,
     /// because what it cannot decide there would end it before its horizon.
     ///
-    /// A choice that rounding leaves open in such a search is counted with the event that it finds.
+    /// A choice that rounding leaves open in such a search is counted when the horizon has come to
+    /// where the search arrived.
     pub fn search_ahead(&mut self, by: T) {
         let ahead = SearchAhead { reach: by, found: None, undecidable: 0 };
         self.ahead = self.enclosure.is_none().then_some(ahead);
@@ -30,10 +31,18 @@ impl<T: Number> Run<'_, T> {
     /// the entry.
     #[inline]
     pub(super) fn search(&mut self, mode: usize, limit: T) -> SearchOutcome {
-        match self.ahead {
-            None => self.search_to(mode, limit),
-            Some(SearchAhead { found: Some(guards), .. }) => self.until_found(limit, guards),
-            Some(SearchAhead { reach, .. }) => self.search_beyond(mode, limit, reach),
+        let Some(ahead) = self.ahead else { return self.search_to(mode, limit) };
+        let is_passed = self.is_by(limit);
+        if is_passed {
+            self.count_undecidable();
+        }
+        match ahead.found {
+            _ if !is_passed => SearchOutcome::NoCrossing,
+            Some(guards) => {
+                self.ahead = Some(SearchAhead { found: None, undecidable: 0, ..ahead });
+                SearchOutcome::Crossing(guards)
+            }
+            None => self.search_beyond(mode, limit, SearchAhead { undecidable: 0, ..ahead }),
         }
     }
 
@@ -57,37 +66,34 @@ impl<T: Number> Run<'_, T> {
     }
 
     #[inline]
-    fn search_beyond(&mut self, mode: usize, limit: T, reach: T) -> SearchOutcome {
+    fn search_beyond(&mut self, mode: usize, limit: T, ahead: SearchAhead<T>) -> SearchOutcome {
         let before = self.work.undecidable;
-        match self.search_to(mode, limit + reach) {
-            SearchOutcome::Crossing(guards) if !self.is_by(limit) => {
-                let undecidable = self.work.undecidable - before;
-                self.work.undecidable = before;
-                self.ahead = Some(SearchAhead { reach, found: Some(guards), undecidable });
-                SearchOutcome::NoCrossing
+        let outcome = self.search_to(mode, limit + ahead.reach);
+        let found = match outcome {
+            SearchOutcome::Crossing(guards) if !self.is_by(limit) => Some(guards),
+            SearchOutcome::Crossing(_) => return outcome,
+            // The search goes on from where it has arrived.
+            SearchOutcome::GivenUp if self.ends.left.time < limit => {
+                return self.search_to(mode, limit);
             }
-            // The horizon is reached, and the search goes on from where it has arrived.
-            SearchOutcome::GivenUp if self.ends.left.time >= limit => SearchOutcome::NoCrossing,
-            SearchOutcome::GivenUp => self.search_to(mode, limit),
-            outcome => outcome,
-        }
+            SearchOutcome::GivenUp | SearchOutcome::NoCrossing => None,
+        };
+        let undecidable = self.work.undecidable - before;
+        self.work.undecidable = before;
+        self.ahead = Some(SearchAhead { found, undecidable, ..ahead });
+        SearchOutcome::NoCrossing
     }
 
-    /// The outcome of a search up to a limit where the next crossing is known.
+    /// Counts what an earlier search left open, once the run has come to where that arrived.
     #[inline]
-    fn until_found(&mut self, limit: T, guards: u64) -> SearchOutcome {
-        if !self.is_by(limit) {
-            return SearchOutcome::NoCrossing;
-        }
+    fn count_undecidable(&mut self) {
         if let Some(ahead) = &mut self.ahead {
-            self.work.undecidable += ahead.undecidable;
-            (ahead.found, ahead.undecidable) = (None, 0);
+            self.work.undecidable += std::mem::take(&mut ahead.undecidable);
         }
-        SearchOutcome::Crossing(guards)
     }
 
-    /// Whether the crossing at the left end is not later than a time after the entry; one exactly
-    /// there counts.
+    /// Whether the left end is not later than a time after the entry; a crossing exactly there
+    /// counts.
     #[inline]
     fn is_by(&self, limit: T) -> bool {
         let room = T::of_bound(T::unit() * 4.0 * limit.bound());
