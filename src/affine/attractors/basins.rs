@@ -12,6 +12,7 @@ use crate::affine::run::place::Place;
 use crate::affine::solver::Solver;
 use crate::dynamics::attractor::thresholds::LATTICE;
 use crate::dynamics::attractor::{Label, SearchLimits, grid};
+use crate::dynamics::parallel;
 use std::collections::BTreeSet;
 
 /// A rectangle of two states, in cells at whose centres starts lie.
@@ -57,10 +58,10 @@ impl Plane {
     /// All starts, row by row from the lowest on, at a start but for the two states.
     pub(super) fn starts(&self, at: &PlaneStart<'_>) -> Result<Vec<Place<f64>>, SystemError> {
         let [across, up] = [0, 1].map(|axis| self.centres(axis));
-        up.iter()
-            .flat_map(|y| across.iter().map(move |x| [*x, *y]))
-            .map(|values| at.with(self.axes, values))
-            .collect()
+        let row = |y: &f64| across.iter().map(|x| at.with(self.axes, [*x, *y])).collect();
+        let rows: Vec<Result<Vec<_>, _>> = parallel::map(&up, row);
+        let rows: Vec<_> = rows.into_iter().collect::<Result<_, _>>()?;
+        Ok(rows.concat())
     }
 }
 

@@ -26,17 +26,14 @@ impl AttractorCatalog<'_> {
         let mut labels = vec![Label::Unresolved; starts.len()];
         let mut open = Vec::new();
         for (block, from) in starts.chunks(BLOCK).zip((0..).step_by(BLOCK)) {
-            let admitted = parallel::map(block, |it| self.space.map.solver().admits(it));
-            let mut motions = Vec::with_capacity(block.len());
-            for ((start, is_admitted), n) in block.iter().zip(admitted).zip(from..) {
-                if is_admitted {
-                    motions.push((n, start.clone()));
-                } else {
-                    labels[n] = Label::Inadmissible;
+            let outcomes = parallel::map(block, |it| match self.space.map.solver().admits(it) {
+                true => self.outcome(it, seen),
+                false => {
                     seen(1);
+                    Err(Label::Inadmissible)
                 }
-            }
-            open.extend(self.still_open(motions, &mut labels, seen));
+            });
+            open.extend(still_open(from.., outcomes, &mut labels));
         }
         self.settle_all(open, &mut labels, seen);
         labels
@@ -62,7 +59,8 @@ impl AttractorCatalog<'_> {
             open = rest;
             if self.known.len() > before {
                 batch = 1;
-                open = self.still_open(open, labels, seen);
+                let outcomes = parallel::map(&open, |(_, from)| self.outcome(from, seen));
+                open = still_open(open.iter().map(|(n, _)| *n), outcomes, labels);
             }
         }
     }
@@ -101,42 +99,21 @@ impl AttractorCatalog<'_> {
         }))
     }
 
-    /// Labels the motions that are recognised, if anything is known; the others, where they are
-    /// then.
-    fn still_open(
-        &self,
-        motions: Vec<Open>,
-        labels: &mut [Label],
-        seen: &(dyn Fn(u64) + Sync),
-    ) -> Vec<Open> {
-        if self.known.is_empty() {
-            return motions;
-        }
-        let outcomes = parallel::map(&motions, |(_, from)| {
-            let outcome = self.outcome(from);
-            seen(u64::from(outcome.is_err()));
-            outcome
-        });
-        let mut open = Vec::new();
-        for ((n, _), outcome) in motions.into_iter().zip(outcomes) {
-            match outcome {
-                Ok(place) => open.push((n, place)),
-                Err(label) => labels[n] = label,
-            }
-        }
-        open
-    }
-
     /// The label of a motion that is recognised within its transient, or where it is then. What
-    /// rests at a new place is still open.
-    fn outcome(&self, from: &Place<f64>) -> Result<Place<f64>, Label> {
-        match self.recognised(from, self.limits.transient) {
+    /// rests at a new place is still open, and so is everything where nothing is known.
+    fn outcome(&self, from: &Place<f64>, seen: &(dyn Fn(u64) + Sync)) -> Result<Place<f64>, Label> {
+        if self.known.is_empty() {
+            return Ok(from.clone());
+        }
+        let outcome = match self.recognised(from, self.limits.transient) {
             Ok(last) => Ok(last),
             Err(stop) => match self.search().stopped(stop) {
                 Settled::Label(label) => Err(label),
                 Settled::New(_) => Ok(from.clone()),
             },
-        }
+        };
+        seen(u64::from(outcome.is_err()));
+        outcome
     }
 
     /// Follows a motion until it is recognised, for at most so many returns; where it is then if it
@@ -146,4 +123,20 @@ impl AttractorCatalog<'_> {
         self.space
             .follow(from, returns, &mut |n, _, spot| recognizer.see(n, spot).map(Label::Attractor))
     }
+}
+
+/// Puts down the labels of the motions with these numbers; gives the others.
+fn still_open(
+    numbers: impl Iterator<Item = usize>,
+    outcomes: Vec<Result<Place<f64>, Label>>,
+    labels: &mut [Label],
+) -> Vec<Open> {
+    let mut open = Vec::new();
+    for (n, outcome) in numbers.zip(outcomes) {
+        match outcome {
+            Ok(place) => open.push((n, place)),
+            Err(label) => labels[n] = label,
+        }
+    }
+    open
 }

@@ -82,8 +82,8 @@ impl std::error::Error for ValueError {
     }
 }
 
-/// Values whose systems are prepared in one go: they are held in memory meanwhile.
-const BLOCK: usize = 64;
+/// Values whose systems are prepared in one go: those of two such blocks are held in memory.
+const BLOCK: usize = 32;
 
 impl ReturnDiagram {
     /// Makes the diagram at these values, of which each has a system; `seen` is called as values
@@ -101,28 +101,50 @@ impl ReturnDiagram {
             let solver = system(*value).and_then(|it| Solver::<f64>::new(&it));
             solver.map_err(|error| ValueError { value: *value, error })
         };
-        let mut steps = Vec::with_capacity(values.len());
-        let mut last = None;
-        for block in values.chunks(BLOCK) {
-            match self.follow {
-                Follow::Reset => {
-                    let alone = |value: &f64| {
-                        let step = self.followed(*value, &solver(value)?, &mut None)?;
-                        seen();
-                        Ok(step)
-                    };
+        match self.follow {
+            Follow::Reset => {
+                let alone = |value: &f64| {
+                    let step = self.followed(*value, &solver(value)?, &mut None)?;
+                    seen();
+                    Ok(step)
+                };
+                let mut steps = Vec::with_capacity(values.len());
+                for block in values.chunks(BLOCK) {
                     let done: Result<Vec<_>, _> = parallel::map(block, alone).into_iter().collect();
                     steps.extend(done?);
                 }
-                Follow::Carry => {
-                    let prepared = parallel::map(block, solver);
-                    for (value, solver) in block.iter().zip(prepared) {
-                        steps.push(self.followed(*value, &solver?, &mut last)?);
-                        seen();
-                    }
-                }
+                Ok(steps)
             }
+            Follow::Carry => self.carried(values, solver, seen),
         }
+    }
+
+    /// The steps of values that each begin where the last one ended: the systems of a block are
+    /// prepared while the block before it is followed.
+    fn carried(
+        &self,
+        values: &[f64],
+        solver: impl Fn(&f64) -> Result<Solver<f64>, ValueError> + Sync + Send,
+        seen: impl Fn() + Sync + Send,
+    ) -> Result<Vec<ReturnDiagramStep>, ValueError> {
+        let mut steps = Vec::with_capacity(values.len());
+        let (mut now, mut prepared): (&[f64], _) = (&[], Vec::new());
+        let mut last = None;
+        let mut follow = |values: &[f64], solvers: Vec<Result<Solver<f64>, ValueError>>| {
+            for (value, solver) in values.iter().zip(solvers) {
+                steps.push(self.followed(*value, &solver?, &mut last)?);
+                seen();
+            }
+            Ok(())
+        };
+        for block in values.chunks(BLOCK) {
+            let prepare = || parallel::map(block, &solver);
+            let solvers = std::mem::take(&mut prepared);
+            let (next, done) = parallel::join(prepare, || follow(now, solvers));
+            done?;
+            (now, prepared) = (block, next);
+        }
+        follow(now, prepared)?;
         Ok(steps)
     }
 
