@@ -9,7 +9,7 @@ use super::shared::long_work;
 use super::shared::model::ModelFlags;
 use super::shared::outputs::{Outputs, OutputsFlags};
 use super::shared::parse::{self, MAX_PERIODS, Typed};
-use super::shared::picture::{PictureFlags, PictureFormat};
+use super::shared::picture::PictureFlags;
 use super::shared::section::{SectionFlags, without_system};
 use super::shared::system_choice::SystemChoice;
 use super::shared::terminal::endless_words;
@@ -96,10 +96,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     bar.finish_and_clear();
     let steps =
         steps.map_err(|error| anyhow!("--parameter {}: {error}", diagram.parameter.as_str()))?;
-    outputs.each(|format, out| match PictureFormat::of(format) {
-        None => write_csv(&steps, out),
-        Some(format) => arguments.picture.write(drawing(&diagram, &steps), format, out),
-    })?;
+    let figure = || Ok(drawing(&diagram, &steps));
+    outputs.data_and_figure(&arguments.picture, |_, out| write_csv(&steps, out), figure)?;
     tell_escapes(&diagram, &steps);
     tell_endless(&steps);
     Ok(tell_undecidable(diagram.parameter, &steps))

@@ -4,7 +4,7 @@ use super::{Arguments, Format, check_size, most_rows, told_start};
 use crate::cli::note;
 use crate::cli::shared::long_work;
 use crate::cli::shared::outputs::Outputs;
-use crate::cli::shared::picture::{PictureFormat, Shown, place};
+use crate::cli::shared::picture::{Shown, place};
 use crate::cli::shared::section::{is_told_by_model, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::number::shortest;
@@ -39,14 +39,12 @@ pub(super) fn run(
         .install(|| steps(&diagram, chosen, &arguments.parameter, &values, seen));
     bar.finish_and_clear();
     let steps = steps?;
-    outputs.each(|format, out| match PictureFormat::of(format) {
-        None => write_csv(&system, &steps, out),
-        Some(format) => {
-            let points = points(chosen, &arguments.parameter, &shown, &steps)?;
-            let figure = drawing(arguments, &system.name, &shown, &diagram, &steps, points);
-            arguments.picture.write(figure, format, out)
-        }
-    })?;
+    let figure = || {
+        let points = points(chosen, &arguments.parameter, &shown, &steps)?;
+        Ok(drawing(arguments, &system.name, &shown, &diagram, &steps, points))
+    };
+    let data = |_, out: &mut dyn Write| write_csv(&system, &steps, out);
+    outputs.data_and_figure(&arguments.picture, data, figure)?;
     tell_undecidable(steps.iter().map(|it| it.undecidable).sum());
     Ok(tell_left_out(&arguments.parameter, diagram.follow, &steps))
 }

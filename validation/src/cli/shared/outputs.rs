@@ -3,7 +3,8 @@
 
 use super::format::chosen;
 use super::output::{Destination, Opened};
-use super::picture::PictureFormat;
+use super::picture::{PictureFlags, PictureFormat};
+use crate::picture::Figure;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use std::io::Write;
@@ -85,6 +86,21 @@ impl<F: ValueEnum + PartialEq + Copy> Outputs<F> {
         mut write: impl FnMut(F, &mut dyn Write) -> Result<()>,
     ) -> Result<()> {
         self.together(|opened| opened.iter_mut().try_for_each(|(format, out)| write(*format, out)))
+    }
+
+    /// Writes data by `data`, and pictures as the figure that `figure` makes once for all of them.
+    pub(in crate::cli) fn data_and_figure(
+        &self,
+        picture: &PictureFlags,
+        mut data: impl FnMut(F, &mut dyn Write) -> Result<()>,
+        figure: impl FnOnce() -> Result<Figure>,
+    ) -> Result<()> {
+        let is_drawn = self.any(|it| PictureFormat::of(it).is_some());
+        let figure = is_drawn.then(figure).transpose()?.map(|it| picture.in_range(it));
+        self.each(|format, out| match (PictureFormat::of(format), &figure) {
+            (Some(format), Some(figure)) => picture.write_drawing(figure, format, out),
+            _ => data(format, out),
+        })
     }
 
     /// Writes to all outputs at once what becomes known bit by bit.

@@ -172,8 +172,8 @@ impl PictureFlags {
         self.print.write(&self.in_range(figure), format, out)
     }
 
-    /// Writes a picture of several panels.
-    pub(in crate::cli) fn write_panels(
+    /// Writes a picture that is in its range, or has several.
+    pub(in crate::cli) fn write_drawing(
         &self,
         drawing: &impl Drawing,
         format: PictureFormat,

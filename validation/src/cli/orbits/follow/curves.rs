@@ -8,7 +8,6 @@ use crate::cli::shared::long_work;
 use crate::cli::shared::output;
 use crate::cli::shared::outputs::Outputs;
 use crate::cli::shared::parse::Typed;
-use crate::cli::shared::picture::PictureFormat;
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
 use crate::number::shortest;
@@ -96,14 +95,12 @@ pub(super) fn run(
         Err(_) => Vec::new(),
     };
     bar.finish_and_clear();
-    outputs.each(|format, out| match (PictureFormat::of(format), format) {
-        (Some(format), _) => {
-            let figure = draw_curves::figure(&first, arguments, names, window, &curves);
-            arguments.picture.write(figure, format, out)
-        }
-        (None, Format::Csv) => csv(&first, &curves, out),
-        (None, _) => output::json(out, &json(&first, names, branch.as_ref().ok(), &curves)),
-    })?;
+    let data = |format, out: &mut dyn Write| match format {
+        Format::Csv => csv(&first, &curves, out),
+        _ => output::json(out, &json(&first, names, branch.as_ref().ok(), &curves)),
+    };
+    let figure = || Ok(draw_curves::figure(&first, arguments, names, window, &curves));
+    outputs.data_and_figure(&arguments.picture, data, figure)?;
     let notes = notes(&first, names, &branch, &curves);
     notes.iter().for_each(|it| say(it));
     Ok(if notes.is_empty() { DONE } else { OUT_OF_BOUNDS })

@@ -14,7 +14,7 @@ use crate::cli::shared::model::ModelFlags;
 use crate::cli::shared::output::json;
 use crate::cli::shared::outputs::OutputsFlags;
 use crate::cli::shared::parse::{self, MAX_PERIODS, Typed};
-use crate::cli::shared::picture::{PictureFlags, PictureFormat};
+use crate::cli::shared::picture::PictureFlags;
 use crate::cli::shared::section::{SectionFlags, without_system};
 use crate::cli::shared::system_choice::SystemChoice;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
@@ -110,10 +110,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     let (followed, why) =
         followed(arguments, &arguments.model, Reporting::Told(&|share| bar.show_share(share)))?;
     bar.finish_and_clear();
-    outputs.each(|format, out| match PictureFormat::of(format) {
-        None => json(out, &followed),
-        Some(format) => arguments.picture.write(drawing(arguments, &followed)?, format, out),
-    })?;
+    let figure = || drawing(arguments, &followed);
+    outputs.data_and_figure(&arguments.picture, |_, out| json(out, &followed), figure)?;
     if let Some(why) = &why {
         say(why);
     }

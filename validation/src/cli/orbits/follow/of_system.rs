@@ -6,7 +6,7 @@ use super::{Arguments, Format};
 use crate::cli::shared::long_work;
 use crate::cli::shared::output;
 use crate::cli::shared::outputs::Outputs;
-use crate::cli::shared::picture::{PictureFormat, Shown, place};
+use crate::cli::shared::picture::{Shown, place};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::{DONE, OUT_OF_BOUNDS, say};
 use crate::picture::Figure;
@@ -76,13 +76,8 @@ pub(super) fn run(
     bar.finish_and_clear();
     let branch = branch?;
     let told = json(&first, parameter, branch.as_ref().ok());
-    outputs.each(|format, out| match PictureFormat::of(format) {
-        None => output::json(out, &told),
-        Some(format) => {
-            let figure = drawing(arguments, chosen, &first, &shown, branch.as_ref().ok())?;
-            arguments.picture.write(figure, format, out)
-        }
-    })?;
+    let figure = || drawing(arguments, chosen, &first, &shown, branch.as_ref().ok());
+    outputs.data_and_figure(&arguments.picture, |_, out| output::json(out, &told), figure)?;
     let why = match branch {
         Ok(branch) if branch.is_complete() => return Ok(DONE),
         Ok(branch) => format!("--parameter {parameter}: {}", branch.ending),
