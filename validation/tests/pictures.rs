@@ -17,6 +17,8 @@ fn png(path: &Path) -> (u32, u32, Option<u32>) {
 
 const RIG: [&str; 2] = ["rigid-impact-oscillator", "--transient"];
 
+const GRID: [&str; 6] = ["--grid", "2x2", "--window", "-0.1,0.1,-0.1,0.1", "--transient", "100"];
+
 /// Each verb with so little work that it is quick, and the extensions that it has.
 fn verbs() -> Vec<(Vec<&'static str>, Vec<&'static str>)> {
     let rig = |verb, more: &[&'static str]| [&[verb][..], &RIG, more].concat();
@@ -41,6 +43,11 @@ fn verbs() -> Vec<(Vec<&'static str>, Vec<&'static str>)> {
             ),
             vec!["json", "png", "svg"],
         ),
+        (vec!["events", "bouncing-ball", "--until", "2.5"], vec!["csv", "json", "png", "svg"]),
+        (vec!["orbit", "--period", "1", "--all"], vec!["json", "table"]),
+        (rig("orbit", &["300", "--period", "1", "--set", "A=0.5"]), vec!["json", "table"]),
+        ([&["attractors"], &GRID[..]].concat(), vec!["json", "table"]),
+        ([&["attractors", "rigid-impact-oscillator"], &GRID[..]].concat(), vec!["json", "txt"]),
     ]
 }
 
@@ -75,6 +82,21 @@ fn stdout_may_be_one_of_several() {
     let table = stdout(&[&words[..], &["--output", "-", "--output", &file]].concat());
     assert_eq!(table, stdout(&words));
     assert!(fs::metadata(file).expect("drawn").len() > 0);
+}
+
+/// Samples are rows of the table alone: the picture beside it is that of the events.
+#[test]
+fn a_picture_beside_samples_is_that_of_the_events() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [both, alone] = ["both.svg", "alone.svg"].map(|it| folder.path().join(it));
+    let words = ["events", "relay-feedback", "--until", "9"];
+    let flags = |it: &Path| ["--output".to_owned(), it.display().to_string()];
+    let [beside, own] = [&both, &alone].map(|it| flags(it));
+    let sampled = [&words[..], &["--samples", "4"]].concat();
+    let more = ["--output", "-", &beside[0], &beside[1]];
+    assert_eq!(stdout(&[&sampled[..], &more].concat()), stdout(&sampled));
+    stdout(&[&words[..], &[&own[0], &own[1]]].concat());
+    assert_eq!(fs::read(both).expect("drawn"), fs::read(alone).expect("drawn"));
 }
 
 /// An output that fails leaves no other behind.

@@ -7,11 +7,10 @@ pub(super) mod system;
 mod table;
 
 use super::help;
-use super::shared::format::OutputFlags;
 use super::shared::long_work;
 use super::shared::model::ModelFlags;
-use super::shared::output::Destination;
-use super::shared::outputs::Outputs;
+use super::shared::output::{Destination, json as write_json};
+use super::shared::outputs::{Outputs, OutputsFlags};
 use super::shared::parse::{self, MAX_TRANSIENT};
 use super::shared::picture::{PictureFormat, PrintFlags};
 use super::shared::plane::plane;
@@ -26,6 +25,7 @@ use percuss::dynamics::attractor::{
     Basins, Grid, MAX_PERIOD, SearchLimits, UnresolvedStart, Window,
 };
 use percuss::dynamics::strobe::StrobeMap;
+use std::io::Write;
 use std::path::PathBuf;
 
 /// List the attractors that a grid of starts reaches
@@ -42,7 +42,7 @@ pub(super) struct AttractorArguments {
     #[command(flatten)]
     pub(super) section: SectionFlags,
     #[command(flatten)]
-    output: OutputFlags<AttractorFormat>,
+    output: OutputsFlags<AttractorFormat>,
     #[command(flatten)]
     pub(super) model: ModelFlags,
 }
@@ -152,16 +152,15 @@ pub(super) struct Survey {
 }
 
 pub(super) fn attractors(arguments: &AttractorArguments, threads: Option<u16>) -> Result<()> {
-    let destination = arguments.output.destination();
-    let shown = arguments.output.format(usual(&destination))?;
+    let outputs = arguments.output.outputs(usual)?;
     let AttractorArguments { system, grid, section, model, .. } = arguments;
     if let Some(chosen) = system.chosen(model)? {
         let survey = system::Survey::of(&chosen, grid, section, threads)?;
-        return survey.show(shown, &destination);
+        return outputs.each(|format, out| survey.show(format, out));
     }
     arguments.refuse_flags_of_system()?;
     let survey = arguments.grid.survey(&arguments.model, threads)?;
-    show(&survey, shown, &destination)
+    outputs.each(|format, out| show(&survey, format, out))
 }
 
 pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result<()> {
@@ -175,7 +174,7 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
             None => Ok(out.write_all(&survey.npz()?)?),
             Some(format) => print.write(&survey.map(), format, out),
         })?;
-        return survey.show(shown, &Destination::Stdout);
+        return Destination::Stdout.write(|out| survey.show(shown, out));
     }
     arguments.refuse_flags_of_system()?;
     let survey = arguments.grid.survey(&arguments.model, threads)?;
@@ -183,7 +182,7 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
         None => Ok(out.write_all(&npz::bytes(&survey, &json::Json::of(&survey))?)?),
         Some(format) => print.write(&draw::map(&survey), format, out),
     })?;
-    show(&survey, shown, &Destination::Stdout)
+    Destination::Stdout.write(|out| show(&survey, shown, out))
 }
 
 /// Where the labels go, at least one file.
@@ -223,13 +222,10 @@ fn only<F>(given: &[BasinFormat], kind: impl Fn(BasinFormat) -> Option<F>) -> Re
     Ok(first)
 }
 
-fn show(survey: &Survey, shown: AttractorFormat, destination: &Destination) -> Result<()> {
+fn show(survey: &Survey, shown: AttractorFormat, out: &mut dyn Write) -> Result<()> {
     match shown {
-        AttractorFormat::Json => destination.json(&json::Json::of(survey)),
-        AttractorFormat::Table => {
-            let text = table::text(survey);
-            destination.write(|out| Ok(out.write_all(text.as_bytes())?))
-        }
+        AttractorFormat::Json => write_json(out, &json::Json::of(survey)),
+        AttractorFormat::Table => Ok(out.write_all(table::text(survey).as_bytes())?),
     }
 }
 

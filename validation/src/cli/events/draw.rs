@@ -1,14 +1,19 @@
 //! The picture of a run of a system.
 
-use super::super::note;
-use super::Format;
-use crate::cli::shared::format::OutputFlags;
+use super::progress::RunEnd;
+use super::rows::Rows;
+use super::sink::Sink;
 use crate::cli::shared::names;
+use crate::cli::shared::picture::PictureFormat;
 use crate::picture::{self, MOST_STATES, SystemMotion};
 use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};
 use percuss::affine::{self, Solver, System, Time, What};
 use percuss::{Event, Kind, Proved};
+use std::io::Write;
+
+/// A picture of more events than this shows nothing.
+const MOST_DRAWN: usize = 20_000;
 
 /// The indices of the states that `--states` names, or of the first ones.
 pub(super) fn shown(system: &System, states: Option<&str>) -> Result<Vec<usize>> {
@@ -39,7 +44,7 @@ pub(super) fn shown(system: &System, states: Option<&str>) -> Result<Vec<usize>>
 }
 
 /// An event in 106 bits, without the bounds of its errors; of an ending it has time and state.
-pub(super) fn in_106_bits(event: &Event<'_, Proved>) -> affine::Event<DoubleDouble> {
+fn in_106_bits(event: &Event<'_, Proved>) -> affine::Event<DoubleDouble> {
     let number = |it: &Proved| DoubleDouble::from(it.to_two_words());
     let what = match event.kind() {
         Kind::Until(mode, index) => What::Until(mode, index),
@@ -53,26 +58,38 @@ pub(super) fn in_106_bits(event: &Event<'_, Proved>) -> affine::Event<DoubleDoub
     affine::Event { what, time, state, mode: event.mode_index(), errors: None }
 }
 
-/// Draws a run, given by its start and its events.
-pub(super) fn write(
-    system: &System,
-    backward: bool,
-    run: &[affine::Event<DoubleDouble>],
-    shown: &[usize],
-    output: &OutputFlags<Format>,
-    format: Format,
-) -> Result<()> {
-    let solver = Solver::<DoubleDouble>::prepare(system, backward)?;
-    let motion = SystemMotion::of(&solver, run, shown);
-    let all = system.states.len();
-    if shown.len() == MOST_STATES && all > MOST_STATES {
-        note(&format!("{MOST_STATES} of {all} states are shown: --states chooses"));
+/// The picture of a run, in all formats that are asked for.
+pub(super) struct Drawn<'a> {
+    pub(super) outputs: Vec<(PictureFormat, &'a mut dyn Write)>,
+    pub(super) backward: bool,
+    /// The indices of the states that are shown.
+    pub(super) shown: &'a [usize],
+    /// The start and all events, in 106 bits.
+    pub(super) run: Vec<affine::Event<DoubleDouble>>,
+}
+
+impl Sink for Drawn<'_> {
+    fn passed(&mut self, event: &Event<'_, Proved>) -> Result<()> {
+        if self.run.len() > MOST_DRAWN {
+            bail!(
+                "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format \
+                 of csv or json is, or a shorter run"
+            );
+        }
+        self.run.push(in_106_bits(event));
+        Ok(())
     }
-    output.destination().write(|out| {
-        let bytes = match format {
-            Format::Svg => picture::svg(&motion).into_bytes(),
-            _ => picture::png(&motion)?,
-        };
-        Ok(out.write_all(&bytes)?)
-    })
+
+    fn finish(&mut self, rows: &Rows<'_>, _: &RunEnd) -> Result<()> {
+        let solver = Solver::<DoubleDouble>::prepare(rows.system, self.backward)?;
+        let motion = SystemMotion::of(&solver, &self.run, self.shown);
+        for (format, out) in &mut self.outputs {
+            let bytes = match format {
+                PictureFormat::Svg => picture::svg(&motion).into_bytes(),
+                PictureFormat::Png => picture::png(&motion)?,
+            };
+            out.write_all(&bytes)?;
+        }
+        Ok(())
+    }
 }

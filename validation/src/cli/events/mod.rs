@@ -6,21 +6,22 @@ mod ending;
 mod progress;
 mod rows;
 mod samples;
+mod sink;
 mod write;
 
 use super::help;
-use super::shared::format::OutputFlags;
 use super::shared::horizon::horizon;
 use super::shared::long_work::{self, Bar};
+use super::shared::outputs::{Outputs, OutputsFlags};
 use super::shared::parse::{self, Typed};
+use super::shared::picture::PictureFormat;
 use super::shared::system_choice::SystemFlags;
 use super::{DONE, OUT_OF_BOUNDS, note};
-use crate::truth::DoubleDouble;
+use crate::picture::MOST_STATES;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::{self, BITS};
+use percuss::affine::BITS;
 use percuss::{Proved, Solver, System};
-use progress::RunEnd;
 use rows::{Limits, Rows};
 use std::path::PathBuf;
 
@@ -30,9 +31,6 @@ const MOST_BITS: u32 = BITS[BITS.len() - 1];
 /// The number of events after which a run is stopped, where neither --events nor --max-events is
 /// given.
 const USUAL_MAX_EVENTS: usize = 1_000_000;
-
-/// A picture of more events than this shows nothing.
-const MOST_DRAWN: usize = 20_000;
 
 /// Print the events of a piecewise-affine system, every digit of them proved
 ///
@@ -74,7 +72,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
     states: Option<String>,
     #[command(flatten)]
-    output: OutputFlags<Format>,
+    output: OutputsFlags<Format>,
     #[command(flatten)]
     flags: SystemFlags,
 }
@@ -88,21 +86,15 @@ enum Format {
     Svg,
 }
 
-impl Format {
-    const fn is_picture(self) -> bool {
-        matches!(self, Self::Png | Self::Svg)
-    }
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
-    let format = arguments.output.format(Format::Csv)?;
-    check_effect(arguments, format)?;
+    let outputs = arguments.output.outputs(|_| Format::Csv)?;
+    let pictures = outputs.pictures();
+    check_effect(arguments, &outputs)?;
     let system = arguments.flags.system(&arguments.system)?.system()?;
     let start = system.start()?.time.to_f64();
     let limits = limits(arguments, &system, start)?;
     let shown = draw::shown(&system, arguments.states.as_deref())?;
-    let destination = arguments.output.destination();
-    let bar = long_work::run_bar(!format.is_picture() && destination.is_terminal());
+    let bar = long_work::run_bar(outputs.is_terminal());
     let solver: Solver<Proved> =
         if arguments.backward { system.backward_solver()? } else { system.solver()? };
     let rows = Rows {
@@ -111,23 +103,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         digits: if arguments.digits.as_deref() == Some("25") { 25 } else { 17 },
         limits,
         most_bits: arguments.max_bits.unwrap_or(MOST_BITS),
+        samples: arguments.samples,
         bar: bar.as_ref(),
     };
-    let mut end = RunEnd::default();
-    if format.is_picture() {
-        let run;
-        (run, end) = drawn(&rows)?;
-        draw::write(&system, arguments.backward, &run, &shown, &arguments.output, format)?;
-    } else {
-        destination.write(|out| {
-            end = match format {
-                Format::Json => write::json(&rows, arguments.samples, out)?,
-                _ => write::csv(&rows, arguments.samples, out)?,
-            };
-            Ok(())
-        })?;
-    }
+    let end = outputs.together(|opened| {
+        let mut all = sink::All::of(opened, arguments.backward, &shown);
+        rows.write(&mut all)
+    })?;
     bar.iter().for_each(Bar::finish_and_clear);
+    let all = system.states.len();
+    if !pictures.is_empty() && shown.len() == MOST_STATES && all > MOST_STATES {
+        note(&format!("{MOST_STATES} of {all} states are shown: --states chooses"));
+    }
     end.notes.iter().for_each(|it| note(it));
     Ok(if end.undecided { OUT_OF_BOUNDS } else { DONE })
 }
@@ -139,31 +126,19 @@ fn limits(arguments: &Arguments, system: &System, time: f64) -> Result<Limits> {
     Ok(Limits { until, events: arguments.events, most: arguments.max_events.or(usual) })
 }
 
-/// The start and all events, for a picture, in 106 bits.
-fn drawn(rows: &Rows<'_>) -> Result<(Vec<affine::Event<DoubleDouble>>, RunEnd)> {
-    let mut run = Vec::new();
-    let end = rows.each(&mut |_, event| {
-        if run.len() > MOST_DRAWN {
-            bail!(
-                "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format of csv or json is, or a shorter run"
-            );
-        }
-        run.push(draw::in_106_bits(event));
-        Ok(())
-    })?;
-    Ok((run, end))
-}
-
 /// Refuses flags that the run takes no notice of.
-fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
-    if let Some(samples) = arguments.samples.filter(|_| format.is_picture()) {
+fn check_effect(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<()> {
+    let is_picture = |it: Format| PictureFormat::of(it).is_some();
+    let has_pictures = outputs.any(is_picture);
+    let has_data = outputs.any(|it| !is_picture(it));
+    if let Some(samples) = arguments.samples.filter(|_| !has_data) {
         bail!("--samples {samples} has no effect on a picture: accepted is it with csv and json");
     }
     match (&arguments.digits, &arguments.states) {
-        (Some(digits), _) if format.is_picture() => {
+        (Some(digits), _) if !has_data => {
             bail!("--digits {digits} has no effect on a picture: accepted is it with csv and json")
         }
-        (_, Some(states)) if !format.is_picture() => {
+        (_, Some(states)) if !has_pictures => {
             bail!("--states {states} has no effect here: accepted is it with png and svg")
         }
         _ => Ok(()),

@@ -1,6 +1,7 @@
 //! The rows of `events`, made one by one: a long run costs no memory.
 
 use super::progress::{Passed, RunEnd};
+use super::sink::Sink;
 use crate::cli::shared::long_work::Bar;
 use crate::cli::shared::states::in_order;
 use anyhow::Result;
@@ -21,6 +22,8 @@ pub(super) struct Rows<'a> {
     pub(super) limits: Limits,
     /// The most bits that are used.
     pub(super) most_bits: u32,
+    /// The number of rows in a unit of time, where they are no events.
+    pub(super) samples: Option<u32>,
     /// The progress of the run, where it is shown.
     pub(super) bar: Option<&'a Bar>,
 }
@@ -47,12 +50,24 @@ pub(super) struct EventRow {
     pub(super) state: Vec<(String, String)>,
 }
 
-/// Takes a row, and the event that it is of.
-pub(super) type Taker<'a> = &'a mut dyn FnMut(EventRow, &Event<'_, Proved>) -> Result<()>;
-
 impl<'a> Rows<'a> {
+    /// Makes the run and hands its rows to a sink.
+    pub(super) fn write(&self, sink: &mut dyn Sink) -> Result<RunEnd> {
+        sink.begin(self)?;
+        let end = match self.samples {
+            Some(samples) => self.each_sample(samples, sink)?,
+            None => self.each(sink)?,
+        };
+        sink.finish(self, &end)?;
+        Ok(end)
+    }
+
     /// Runs the system from its start, which is row 0.
-    pub(super) fn each(&self, take: Taker<'_>) -> Result<RunEnd> {
+    fn each(&self, sink: &mut dyn Sink) -> Result<RunEnd> {
+        let mut take = |row: EventRow, event: &Event<'_, Proved>| {
+            sink.passed(event)?;
+            sink.event(&row)
+        };
         let mut events = self.run().until(self.limits.until)?;
         let (mut end, mut passed) = (RunEnd::default(), Passed::default());
         let mut last = events.start();

@@ -2,6 +2,7 @@
 
 use super::progress::{Passed, RunEnd};
 use super::rows::Rows;
+use super::sink::Sink;
 use crate::cli::shared::states::in_order;
 use anyhow::Result;
 use percuss::{Event, Kind, Proved};
@@ -19,26 +20,25 @@ pub(super) struct SampleRow {
 impl Rows<'_> {
     /// Runs the system from its start, with a row `samples` times in each unit of its time; where
     /// it is forced, in each period.
-    pub(super) fn each_sample(
-        &self,
-        samples: u32,
-        take: &mut dyn FnMut(SampleRow) -> Result<()>,
-    ) -> Result<RunEnd> {
+    pub(super) fn each_sample(&self, samples: u32, sink: &mut dyn Sink) -> Result<RunEnd> {
         let mut events = self.run().until_with_samples(self.limits.until, samples)?;
         let (mut end, mut passed) = (RunEnd::default(), Passed::default());
         let mut last = events.start();
+        sink.passed(&last)?;
         while let Some(event) = events.next() {
             if event.kind() == Kind::Sample {
-                take(self.sample(&event))?;
+                sink.sample(&self.sample(&event))?;
                 continue;
             }
             if self.is_stopped(&event, passed.count) {
                 self.stopped(&last, &mut end);
+                sink.passed(&last)?;
                 break;
             }
             if !self.passes(&event, &mut passed, &mut end) {
                 break;
             }
+            sink.passed(&event)?;
             if event.ending().is_some() {
                 self.name(&event, &events, &passed, &mut end);
                 break;

@@ -1,72 +1,92 @@
-//! The rows of `events` as CSV and as JSON.
+//! The rows of `events` as CSV and as JSON, each written as soon as it is known.
 
 use super::progress::RunEnd;
 use super::rows::{EventRow, Rows};
 use super::samples::SampleRow;
+use super::sink::Sink;
 use crate::cli::shared::output::json_value;
 use anyhow::Result;
-use percuss::System;
 use percuss_programs::files::{PRINTED, PRINTED_SAMPLE, printed_column};
+use serde::Serialize;
 use std::borrow::Cow;
 use std::io::Write;
 
-/// Writes CSV, a row as soon as it is known.
-pub(super) fn csv(run: &Rows<'_>, samples: Option<u32>, out: &mut dyn Write) -> Result<RunEnd> {
-    let states = || run.system.states.iter().map(|name| printed_column(name));
-    let header = |names: &[&'static str], out: &mut dyn Write| {
-        let names: Vec<_> = names.iter().map(|name| Cow::from(*name)).chain(states()).collect();
-        line(out, names.iter().map(AsRef::as_ref))
-    };
-    if let Some(samples) = samples {
-        header(&PRINTED_SAMPLE, out)?;
-        return run.each_sample(samples, &mut |row: SampleRow| {
-            let first = [row.time.as_str(), &row.mode];
-            line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
-        });
+/// Rows as CSV.
+pub(super) struct Csv<'a>(pub(super) &'a mut dyn Write);
+
+impl Csv<'_> {
+    /// Writes a line; an error is the output's own, as a reader who has left.
+    fn line<'a>(&mut self, cells: impl Iterator<Item = &'a str>) -> Result<()> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(cells)?;
+        Ok(self.0.write_all(&writer.into_inner()?)?)
     }
-    header(&PRINTED, out)?;
-    run.each(&mut |row: EventRow, _| {
-        let n = row.n.to_string();
-        let first = [n.as_str(), &row.time, &row.event, &row.mode];
-        line(out, first.into_iter().chain(row.state.iter().map(|(_, cell)| cell.as_str())))
-    })
+
+    fn row(&mut self, first: &[&str], state: &[(String, String)]) -> Result<()> {
+        self.line(first.iter().copied().chain(state.iter().map(|(_, cell)| cell.as_str())))
+    }
 }
 
-/// Writes a line of CSV; an error is the output's own, as a reader who has left.
-fn line<'a>(out: &mut dyn Write, cells: impl Iterator<Item = &'a str>) -> Result<()> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(cells)?;
-    Ok(out.write_all(&writer.into_inner()?)?)
+impl Sink for Csv<'_> {
+    fn begin(&mut self, rows: &Rows<'_>) -> Result<()> {
+        let own = if rows.samples.is_some() { &PRINTED_SAMPLE[..] } else { &PRINTED[..] };
+        let states = rows.system.states.iter().map(|name| printed_column(name));
+        let names: Vec<_> = own.iter().map(|name| Cow::from(*name)).chain(states).collect();
+        self.line(names.iter().map(AsRef::as_ref))
+    }
+
+    fn event(&mut self, row: &EventRow) -> Result<()> {
+        self.row(&[&row.n.to_string(), &row.time, &row.event, &row.mode], &row.state)
+    }
+
+    fn sample(&mut self, row: &SampleRow) -> Result<()> {
+        self.row(&[&row.time, &row.mode], &row.state)
+    }
+
+    fn finish(&mut self, _: &Rows<'_>, _: &RunEnd) -> Result<()> {
+        Ok(())
+    }
 }
 
-/// Writes JSON. What is known at the end only stands after the rows.
-pub(super) fn json(run: &Rows<'_>, samples: Option<u32>, out: &mut dyn Write) -> Result<RunEnd> {
-    begin_json(run.system, out)?;
-    let mut is_first = true;
-    let mut separate = |out: &mut dyn Write| {
-        let separator = if std::mem::take(&mut is_first) { "" } else { "," };
-        writeln!(out, "{separator}")
-    };
-    let end = match samples {
-        Some(samples) => run.each_sample(samples, &mut |row: SampleRow| {
-            separate(out)?;
-            json_value(out, &row)
-        })?,
-        None => run.each(&mut |row: EventRow, _| {
-            separate(out)?;
-            json_value(out, &row)
-        })?,
-    };
-    write!(out, "],\"accumulation\":")?;
-    json_value(out, &end.accumulation)?;
-    writeln!(out, "}}")?;
-    Ok(end)
+/// Rows as JSON. What is known at the end only stands after them.
+pub(super) struct Json<'a> {
+    out: &'a mut dyn Write,
+    is_first: bool,
 }
 
-fn begin_json(system: &System, out: &mut dyn Write) -> Result<()> {
-    write!(out, "{{\"schema\":1,\"percuss\":\"{}\",\"system\":", env!("CARGO_PKG_VERSION"))?;
-    json_value(out, &system.name)?;
-    write!(out, ",\"parameters\":")?;
-    json_value(out, &system.parameters)?;
-    Ok(write!(out, ",\"rows\":[")?)
+impl<'a> Json<'a> {
+    pub(super) fn new(out: &'a mut dyn Write) -> Self {
+        Self { out, is_first: true }
+    }
+
+    fn row(&mut self, row: &impl Serialize) -> Result<()> {
+        let separator = if std::mem::take(&mut self.is_first) { "" } else { "," };
+        writeln!(self.out, "{separator}")?;
+        json_value(self.out, row)
+    }
+}
+
+impl Sink for Json<'_> {
+    fn begin(&mut self, rows: &Rows<'_>) -> Result<()> {
+        let version = env!("CARGO_PKG_VERSION");
+        write!(self.out, "{{\"schema\":1,\"percuss\":\"{version}\",\"system\":")?;
+        json_value(self.out, &rows.system.name)?;
+        write!(self.out, ",\"parameters\":")?;
+        json_value(self.out, &rows.system.parameters)?;
+        Ok(write!(self.out, ",\"rows\":[")?)
+    }
+
+    fn event(&mut self, row: &EventRow) -> Result<()> {
+        self.row(row)
+    }
+
+    fn sample(&mut self, row: &SampleRow) -> Result<()> {
+        self.row(row)
+    }
+
+    fn finish(&mut self, _: &Rows<'_>, end: &RunEnd) -> Result<()> {
+        write!(self.out, "],\"accumulation\":")?;
+        json_value(self.out, &end.accumulation)?;
+        Ok(writeln!(self.out, "}}")?)
+    }
 }

@@ -7,7 +7,7 @@ use super::draw::colours;
 use super::{AttractorFormat, GridFlags};
 use crate::arrays::Npz;
 use crate::cli::shared::long_work;
-use crate::cli::shared::output::Destination;
+use crate::cli::shared::output;
 use crate::cli::shared::section::SectionFlags;
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::picture::{BasinMap, ShownAttractor};
@@ -15,6 +15,7 @@ use anyhow::Result;
 use percuss::System;
 use percuss::affine::{ReturnAttractor, ReturnBasins, Solver};
 use percuss::dynamics::attractor::{Label, SearchLimits};
+use std::io::Write;
 
 /// A surveyed grid of a system's starts.
 pub(in crate::cli) struct Survey {
@@ -55,13 +56,10 @@ impl Survey {
         Ok(Self { limits, basins, section: section.text().to_owned(), system })
     }
 
-    pub(super) fn show(&self, shown: AttractorFormat, destination: &Destination) -> Result<()> {
+    pub(super) fn show(&self, shown: AttractorFormat, out: &mut dyn Write) -> Result<()> {
         match shown {
-            AttractorFormat::Json => destination.json(&json::Json::of(self)),
-            AttractorFormat::Table => {
-                let text = table::text(self);
-                destination.write(|out| Ok(out.write_all(text.as_bytes())?))
-            }
+            AttractorFormat::Json => output::json(out, &json::Json::of(self)),
+            AttractorFormat::Table => Ok(out.write_all(table::text(self).as_bytes())?),
         }
     }
 

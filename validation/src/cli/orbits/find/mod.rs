@@ -5,9 +5,10 @@ mod of_system;
 use super::super::help;
 use super::json::{OrbitJson, OrbitsJson};
 use super::table;
-use crate::cli::shared::format::OutputFlags;
 use crate::cli::shared::long_work;
 use crate::cli::shared::model::ModelFlags;
+use crate::cli::shared::output::{Destination, json};
+use crate::cli::shared::outputs::OutputsFlags;
 use crate::cli::shared::parse::{self, MAX_PERIODS};
 use crate::cli::shared::section::{SectionFlags, without_system};
 use crate::cli::shared::system_choice::SystemChoice;
@@ -43,7 +44,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     starts: StartGridFlags,
     #[command(flatten)]
-    output: OutputFlags<OrbitFormat>,
+    output: OutputsFlags<OrbitFormat>,
     #[command(flatten)]
     model: ModelFlags,
 }
@@ -93,12 +94,15 @@ enum OrbitFormat {
     Table,
 }
 
+/// The default format: a table on a terminal, JSON elsewhere.
+fn usual(destination: &Destination) -> OrbitFormat {
+    if destination.is_terminal() { OrbitFormat::Table } else { OrbitFormat::Json }
+}
+
 pub(crate) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
-    let destination = arguments.output.destination();
-    let usual = if destination.is_terminal() { OrbitFormat::Table } else { OrbitFormat::Json };
-    let format = arguments.output.format(usual)?;
+    let outputs = arguments.output.outputs(usual)?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
-        return of_system::run(arguments, &chosen, format, threads);
+        return of_system::run(arguments, &chosen, &outputs, threads);
     }
     arguments.starts.refuse_without_system()?;
     arguments.section.refuse()?;
@@ -119,20 +123,15 @@ pub(crate) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         scanned(&map, arguments.period)
     };
     let orbits = found.as_ref().map_or(&[][..], Vec::as_slice);
-    match format {
-        OrbitFormat::Table => {
-            let text = table::text(orbits);
-            destination.write(|out| Ok(out.write_all(text.as_bytes())?))?;
-        }
-        OrbitFormat::Json if arguments.all => {
-            destination.json(&OrbitsJson::new(&problem.model, orbits))?;
-        }
-        OrbitFormat::Json => {
-            say_which(orbits, arguments.period);
-            let first = found.as_ref().map(|it| &it[0]).map_err(|(residual, _)| *residual);
-            destination.json(&OrbitJson::new(&problem.model, first))?;
-        }
+    if outputs.any(|it| it == OrbitFormat::Json) && !arguments.all {
+        say_which(orbits, arguments.period);
     }
+    let first = || found.as_ref().map(|it| &it[0]).map_err(|(residual, _)| *residual);
+    outputs.each(|format, out| match format {
+        OrbitFormat::Table => Ok(out.write_all(table::text(orbits).as_bytes())?),
+        OrbitFormat::Json if arguments.all => json(out, &OrbitsJson::new(&problem.model, orbits)),
+        OrbitFormat::Json => json(out, &OrbitJson::new(&problem.model, first())),
+    })?;
     Ok(match found {
         Ok(_) => DONE,
         Err((_, why)) => {

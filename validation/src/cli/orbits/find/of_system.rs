@@ -5,6 +5,8 @@ use super::super::of_system::{PointJson, guess, points};
 use super::{Arguments, OrbitFormat, StartGridFlags};
 use crate::cli::shared::drift;
 use crate::cli::shared::long_work;
+use crate::cli::shared::output;
+use crate::cli::shared::outputs::Outputs;
 use crate::cli::shared::plane::plane;
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::{DONE, OUT_OF_BOUNDS, note, say};
@@ -65,25 +67,22 @@ struct ListedOrbit<'a> {
 pub(super) fn run(
     arguments: &Arguments,
     chosen: &ChosenSystem,
-    format: OrbitFormat,
+    outputs: &Outputs<OrbitFormat>,
     threads: Option<u16>,
 ) -> Result<u8> {
     let system = chosen.system()?;
     let solver = Solver::<f64>::new(&system)?;
     let map = arguments.section.map(&solver)?;
     if arguments.all {
-        return all(arguments, &map, format, threads);
+        return all(arguments, &map, outputs, threads);
     }
     arguments.starts.refuse_without_all()?;
     let found = found(&map, arguments)?;
-    let destination = arguments.output.destination();
-    match format {
-        OrbitFormat::Json => destination.json(&json(&system, &found))?,
-        OrbitFormat::Table => {
-            let text = found.as_ref().map(|it| table(&system, it)).unwrap_or_default();
-            destination.write(|out| Ok(out.write_all(text.as_bytes())?))?;
-        }
-    }
+    let text = || found.as_ref().map(|it| table(&system, it)).unwrap_or_default();
+    outputs.each(|format, out| match format {
+        OrbitFormat::Json => output::json(out, &json(&system, &found)),
+        OrbitFormat::Table => Ok(out.write_all(text().as_bytes())?),
+    })?;
     Ok(match found {
         Ok(orbit) => {
             if !orbit.is_decided {
@@ -102,7 +101,7 @@ pub(super) fn run(
 fn all(
     arguments: &Arguments,
     map: &SectionMap<'_, f64>,
-    format: OrbitFormat,
+    outputs: &Outputs<OrbitFormat>,
     threads: Option<u16>,
 ) -> Result<u8> {
     if let Some(transient) = arguments.transient {
@@ -125,14 +124,11 @@ fn all(
     let (start, period) = (system.start()?, arguments.period);
     let found = long_work::pool(threads)?.install(|| map.orbits(start, &plane, period, &seen))?;
     bar.finish_and_clear();
-    let destination = arguments.output.destination();
-    match format {
-        OrbitFormat::Json => destination.json(&list(system, &found))?,
-        OrbitFormat::Table => {
-            let tables: Vec<_> = found.iter().map(|it| table(system, it)).collect();
-            destination.write(|out| Ok(out.write_all(tables.join("\n").as_bytes())?))?;
-        }
-    }
+    let tables = || found.iter().map(|it| table(system, it)).collect::<Vec<_>>().join("\n");
+    outputs.each(|format, out| match format {
+        OrbitFormat::Json => output::json(out, &list(system, &found)),
+        OrbitFormat::Table => Ok(out.write_all(tables().as_bytes())?),
+    })?;
     if found.iter().any(|it| !it.is_decided) {
         note(OPEN_ORDER);
     }
