@@ -48,7 +48,7 @@ pub use model::system::{
 pub use model::tangent::{Name, Tangent};
 pub use returns::diagram::{LeftOut, ReturnDiagram, ReturnDiagramStep, ValueError};
 pub use returns::exponents::Exponents;
-pub use returns::map::SectionMap;
+pub use returns::map::{SectionMap, USUAL_LONGEST};
 pub use returns::orbit::{NoOrbit, Orbit};
 pub use returns::passage::Passage;
 pub use returns::section::{Guard, Section};

@@ -139,6 +139,12 @@ const ROWS: &[Row] = &[
     (&["new"], "NAME", &["", "Mine", "a b", "a--b", "../a"], "joined by hyphens"),
     (OF_SYSTEMS, "--start", &["/no/such.toml"], "without SYSTEM"),
     (OF_SYSTEMS, "--mode", &["flight"], "without SYSTEM"),
+    (&["simulate"], "--every", INTEGERS, "1 to 1000000000"),
+    (&["simulate"], "--every", &["2"], "without SYSTEM"),
+    (&["simulate"], "--max-time", NUMBERS, "accepted is a positive number"),
+    (&["simulate"], "--max-time", &["5"], "without SYSTEM"),
+    (&["simulate"], "--section", &["", "1,5", "-inf", "a@", "strobe:x"], "-1e15 to 1e15"),
+    (&["simulate"], "--section", &["0.5", "impact"], "without SYSTEM"),
     (OF_SYSTEMS, "--every", INTEGERS, "1 to 1000000000"),
     (OF_SYSTEMS, "--every", &["2"], "without SYSTEM"),
     (OF_SYSTEMS, "--max-time", NUMBERS, "accepted is a positive number"),
@@ -458,6 +464,22 @@ fn flags_without_effect() {
         (
             [&RIG[..], &["--returns", "2", "--output", "a.png", "--output", "a.xls"]].concat(),
             &["--output a.xls", "csv, png, svg"],
+        ),
+        (
+            vec!["simulate", "relay-feedback", "--until", "9", "--section", "switch-up"],
+            &["--section switch-up", "--returns"],
+        ),
+        (
+            vec!["simulate", "relay-feedback", "--until", "9", "--every", "2"],
+            &["--every 2", "--returns"],
+        ),
+        (
+            vec!["simulate", "relay-feedback", "--returns", "9", "--section", "switch"],
+            &["switch is no event", "switch-up"],
+        ),
+        (
+            vec!["simulate", "relay-feedback", "--returns", "9", "--section", "0.5"],
+            &["--section 0.5", "strobe:0.5"],
         ),
         (SECTION.to_vec(), &["--periods 3", "--returns"]),
         ([&RELAY[..], &["--section", "0.5"]].concat(), &["--section 0.5", "strobe:0.5"]),

@@ -102,6 +102,129 @@ fn a_transient_leaves_out_the_first_rows() {
     assert_eq!(counted[..], late[..4]);
 }
 
+const RELAY: &str = "relay-feedback";
+
+/// Whether rows are others, but for what roundings of f64 have grown to.
+fn assert_alike(rows: &[Vec<String>], others: &[Vec<String>], [time, state]: [usize; 2]) {
+    assert_eq!(rows.len(), others.len());
+    for (row, other) in rows.iter().zip(others) {
+        assert_eq!(row[time + 1..state], other[time + 1..state]);
+        for (a, b) in numbers(row, time, state).iter().zip(numbers(other, time, state)) {
+            approx::assert_abs_diff_eq!(*a, b, epsilon = GROWN_ROUNDING);
+        }
+    }
+}
+
+#[test]
+fn returns_to_an_event_measure_a_run() {
+    let to =
+        |section: &str, more: &[&str]| simulated(RELAY, &[&["--section", section], more].concat());
+    let all = simulated(RELAY, &["--events", "13"]);
+    let ups = || all.iter().enumerate().filter(|(_, row)| row[2] == "switch-up");
+    let fifth = ups().nth(4).expect("five").0;
+    assert_alike(&to("switch-up", &["--returns", "5"]), &all[..=fifth], [1, 4]);
+    assert_alike(&to("switch-up@down", &["--returns", "5"]), &all[..=fifth], [1, 4]);
+    // The return that ends the transient is row 0, and so has no event.
+    let second = ups().nth(1).expect("two").0;
+    let late = to("switch-up", &["--transient", "2", "--returns", "3"]);
+    assert_eq!((late[0][0].as_str(), late[0][2].as_str(), late[0][3].as_str()), ("0", "", "up"));
+    assert_alike(&late[1..], &all[second + 1..=fifth], [1, 4]);
+    let every = to("switch-up", &["--every", "2", "--transient", "1", "--returns", "1"]);
+    let fourth = ups().nth(3).expect("four").0;
+    assert_eq!(every, late[..=fourth - second]);
+    let counted = to("switch-up", &["--transient", "2", "--events", "3"]);
+    assert_eq!(counted, late[..4]);
+    // The points of the section are those of its own verb.
+    let words = ["poincare", RELAY, "--section", "switch-up", "--transient", "2", "--returns", "3"];
+    let points = rows(&stdout(&words));
+    let own: Vec<_> = late[1..].iter().filter(|row| row[2] == "switch-up").collect();
+    assert_eq!(points.len(), own.len());
+    for (point, row) in points.iter().zip(own) {
+        assert_eq!((numbers(point, 1, 3), &point[2]), (numbers(row, 1, 4), &row[3]));
+    }
+}
+
+#[test]
+fn a_time_ends_a_run_after_a_transient_of_events() {
+    let late = ["--section", "switch-up", "--transient", "2", "--until"];
+    let found = simulated(RELAY, &[&late[..], &["10"]].concat());
+    let all = simulated(RELAY, &["--until", "10"]);
+    let second = all.iter().enumerate().filter(|(_, row)| row[2] == "switch-up").nth(1);
+    assert_alike(&found[1..], &all[second.expect("two").0 + 1..], [1, 4]);
+    assert_eq!(found.last().expect("rows")[2], "end");
+    // A run that ends in its transient has its ending as its only row.
+    let early = run(&[&["simulate", RELAY], &late[..], &["3"]].concat());
+    let found = rows(&text(&early.stdout));
+    assert_eq!((found.len(), &found[0][1], &found[0][2]), (1, &"3".into(), &"end".into()));
+    assert!(text(&early.stderr).contains("after 1 returns: the run ends"));
+}
+
+#[test]
+fn samples_between_returns_are_those_of_the_whole_run() {
+    let flags = ["--section", "switch-up", "--transient", "2", "--returns", "1"];
+    let ends: Vec<f64> = simulated(RELAY, &flags).iter().map(|row| number(&row[1])).collect();
+    let (from, to) = (ends[0], ends[ends.len() - 1]);
+    let all = simulated(RELAY, &["--until", "20", "--samples", "8"]);
+    let within = |row: &&Vec<String>| (from..=to).contains(&number(&row[0]));
+    let wanted: Vec<_> = all.iter().filter(within).cloned().collect();
+    assert!(wanted.len() > 10);
+    let found = simulated(RELAY, &[&flags[..], &["--samples", "8"]].concat());
+    assert_alike(&found, &wanted, [0, 2]);
+    let whole = ["--section", "switch-up", "--returns", "1", "--samples", "8"];
+    assert_eq!(simulated(RELAY, &whole)[0][..], all[0][..]);
+}
+
+/// Strobes at an angle that is not that of the start, which is no return: the first is at
+/// 0.5/omega.
+#[test]
+fn returns_to_an_angle_are_those_of_the_section() {
+    let strobe = ["--section", "strobe:0.5"];
+    let found =
+        simulated(IMPACTS, &[&strobe[..], &["--transient", "20", "--returns", "10"]].concat());
+    let point = |n: &str| {
+        let words = ["poincare", IMPACTS, "--transient", n, "--returns", "1"];
+        rows(&stdout(&[&words[..], &strobe].concat()))
+    };
+    let ends = [found.first(), found.last()].map(|it| vec![it.expect("rows").clone()]);
+    for (row, n) in ends.iter().zip(["19", "29"]) {
+        let point = point(n);
+        assert_eq!(row[0][3], point[0][2]);
+        for (a, b) in numbers(&row[0], 1, 4).iter().zip(numbers(&point[0], 1, 3)) {
+            approx::assert_abs_diff_eq!(*a, b, epsilon = GROWN_ROUNDING);
+        }
+    }
+    let every = ["--every", "5", "--transient", "4", "--returns", "2"];
+    assert_eq!(simulated(IMPACTS, &[&strobe[..], &every].concat()), found);
+    // The start is at the angle 0, and is no return either.
+    let usual = simulated(IMPACTS, &["--returns", "3"]);
+    assert_eq!(simulated(IMPACTS, &["--section", "strobe", "--returns", "3"]), usual);
+    // From a start that is on no strobe samples go to the last return.
+    let samples =
+        simulated(IMPACTS, &[&strobe[..], &["--returns", "2", "--samples", "4"]].concat());
+    let period = std::f64::consts::TAU / 2.75;
+    let last = number(&samples.last().expect("rows")[0]);
+    assert_eq!((samples.len(), last), (5, period));
+}
+
+#[test]
+fn a_run_that_does_not_return_says_so() {
+    for transient in ["0", "2"] {
+        let flags = ["--section", "switch-up", "--max-time", "0.4", "--returns", "2"];
+        let words = [&["simulate", RELAY, "--transient", transient], &flags[..]].concat();
+        let output = run(&words);
+        let rows = rows(&text(&output.stdout));
+        let last = rows.last().expect("a row");
+        assert_eq!((last[1].as_str(), last[2].as_str()), ("0.4", "end"), "{rows:?}");
+        assert_eq!(output.status.code(), Some(0));
+        let said = text(&output.stderr);
+        assert!(said.contains("after 0 returns: the motion does not return"), "{said}");
+    }
+    let ball = ["simulate", "bouncing-ball", "--section", "impact", "--returns", "1000"];
+    let output = run(&ball);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(text(&output.stdout).contains(",accumulation,"), "{}", text(&output.stdout));
+}
+
 /// Proved events, whose digits are those of the exact solution; a rounding of f64 grows by what
 /// impacts do to it.
 #[test]

@@ -34,6 +34,7 @@ pub use steps::LONGEST;
 
 use crate::affine::model::error::SystemError;
 use crate::affine::model::system::{StartPoint, System};
+use crate::affine::solver;
 use std::borrow::Cow;
 
 /// A system prepared for runs that answer in numbers of one kind.
@@ -80,6 +81,27 @@ impl System {
     /// A system that [`System::check`] refuses, or whose structural zeros cannot be decided.
     pub fn backward_solver<A: Answer>(&self) -> Result<Solver<A>, SystemError> {
         Ok(Solver { prepared: A::prepare(self, true)? })
+    }
+}
+
+impl Solver<f64> {
+    /// The same preparation for the dynamics of the system, its sections and orbits.
+    ///
+    /// ```
+    /// use percuss::system::{Section, SectionMap};
+    /// use percuss::{System, gallery};
+    ///
+    /// let room = System::from_toml(gallery::THERMOSTAT)?;
+    /// let solver = room.solver::<f64>()?;
+    /// let map = SectionMap::new(solver.for_sections(), &Section::event("switch-off"))?;
+    /// let first = map.returns(room.start()?)?.next();
+    /// let event = solver.run().events(1)?.next();
+    /// assert_eq!(first.and_then(Result::ok).map(|it| it.time), event.map(|it| *it.time()));
+    /// # Ok::<(), percuss::SystemError>(())
+    /// ```
+    #[must_use]
+    pub fn for_sections(&self) -> &solver::Solver<f64> {
+        &self.prepared
     }
 }
 

@@ -209,6 +209,9 @@ Examples:
       a picture of forty forcing periods
   percuss simulate rigid-impact-oscillator --transient 500 --events 4
       any system, after 500 forcing periods
+  percuss simulate relay-feedback --section switch-up \\
+      --transient 50 --returns 1
+      one turn of an oscillation without forcing, event to event
   percuss simulate rigid-impact-oscillator --transient 500 \\
       --returns 30 --show x-d,v --size 80x60 --output plane.png \\
       --output plane.npz
@@ -220,8 +223,9 @@ Words:
                   slider), progression (the slider slips)
   event           the instant at which a phase ends and the next begins,
                   and a crossing that a SYSTEM watches
-  return          of a forced SYSTEM: one forcing period on, where the
-                  forcing has the angle that it has at the start
+  return          of a SYSTEM: the motion's next instant at --section;
+                  without one a forcing period on, where the forcing has
+                  the angle that it has at the start
   forcing period  2 pi/omega, the unit of all periods in flags and
                   results
   drift           v, by which the slider has gone forward; per period,

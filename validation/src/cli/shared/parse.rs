@@ -2,8 +2,7 @@
 
 use crate::case::accepted;
 use crate::picture::PlotWindow;
-use crate::typed::{self, number};
-use percuss::affine::Section;
+use crate::typed::{self, WrittenSection, number};
 use percuss::dynamics::attractor::Window;
 use percuss::{Parameter, Phase, UnknownName};
 use regex::Regex;
@@ -120,12 +119,12 @@ pub(in crate::cli) enum SectionChoice {
     /// A number alone: an angle of the impact oscillator.
     Angle(f64),
     /// A section of a SYSTEM.
-    OfSystem(Section),
+    OfSystem(WrittenSection),
 }
 
 /// A section.
 pub(in crate::cli) fn section(text: &str) -> Result<Typed<SectionChoice>, String> {
-    let of_system = || typed::section(text).map(SectionChoice::OfSystem);
+    let of_system = || WrittenSection::read(text).map(SectionChoice::OfSystem);
     let value = typed::angle(text).map(SectionChoice::Angle).or_else(of_system);
     let accepted = "accepted is a number, -1e15 to 1e15, or with SYSTEM strobe, strobe:ANGLE, \
                     EVENT or EVENT@MODE";

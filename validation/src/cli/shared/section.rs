@@ -80,15 +80,26 @@ impl ReturnFlags {
             Some((SectionChoice::Angle(_), it)) => bail!(
                 "--section {it} is not accepted with SYSTEM: strobe:{it}, EVENT and EVENT@MODE are"
             ),
-            Some((SectionChoice::OfSystem(section), _)) => section.clone(),
+            Some((SectionChoice::OfSystem(section), _)) => section.section(),
             None => Section::strobe(0.0),
         };
-        Ok(section.every(self.every.unwrap_or(1)))
+        Ok(section.every(self.every()))
+    }
+
+    /// The number of instants of the section that make one return.
+    pub(in crate::cli) fn every(&self) -> u32 {
+        self.every.unwrap_or(1)
     }
 
     /// The longest time to wait for a return, if it is given.
-    fn longest(&self) -> Option<f64> {
+    pub(in crate::cli) fn longest(&self) -> Option<f64> {
         self.max_time.as_ref().map(|it| it.value)
+    }
+
+    /// The flags that are given, as they are written.
+    pub(in crate::cli) fn given(&self) -> Option<String> {
+        let every = self.every.map(|it| format!("--every {it}"));
+        every.or_else(|| self.max_time.as_ref().map(|it| format!("--max-time {it}")))
     }
 
     /// Refuses the flags where no system is chosen.
@@ -110,8 +121,13 @@ pub(in crate::cli) fn without_system(flag: &str, value: &dyn std::fmt::Display) 
 /// Says that a motion has not returned as often as was asked; whether the model says so, and not
 /// the arithmetic.
 pub(in crate::cli) fn tell_no_return(why: NoReturn, returns: u64) -> bool {
-    note(&format!("equilibrium or end after {returns} returns: {why}"));
+    note(&no_return(why, returns));
     is_told_by_model(why)
+}
+
+/// The line that says that a motion has not returned as often as was asked.
+pub(in crate::cli) fn no_return(why: NoReturn, returns: u64) -> String {
+    format!("equilibrium or end after {returns} returns: {why}")
 }
 
 /// Whether the model says that a motion does not return, and not the arithmetic.

@@ -14,8 +14,9 @@ use super::shared::long_work;
 use super::shared::model::ModelFlags;
 use super::shared::output::Opened;
 use super::shared::outputs::{Outputs, OutputsFlags};
-use super::shared::parse::{self, MAX_PERIODS, Typed};
+use super::shared::parse::{self, MAX_PERIODS, SectionChoice, Typed};
 use super::shared::picture::{PictureFlags, PictureFormat};
+use super::shared::section::{ReturnFlags, without_system};
 use super::shared::system_choice::SystemChoice;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
@@ -40,13 +41,16 @@ pub(super) struct Arguments {
     /// Ends at this time, at or after the start
     #[arg(long, value_name = "TAU", value_parser = parse::time, allow_hyphen_values = true)]
     until: Option<Typed<f64>>,
-    /// With a forced SYSTEM: ends after this many returns to the forcing's angle at the start, one
-    /// a forcing period
+    /// With SYSTEM: ends after this many returns to --section, the start not counted
     #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
     returns: Option<u64>,
-    /// With a forced SYSTEM: leaves out this many returns before the first row
+    /// With SYSTEM: leaves out this many returns to --section before the first row
     #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
     transient: Option<u64>,
+    /// With SYSTEM: strobe[:ANGLE] at a forcing angle omega t mod 2 pi, or EVENT or EVENT@MODE,
+    /// just after it [default: the forcing's angle at the start]
+    #[arg(long, value_name = "SECTION", value_parser = parse::section, allow_hyphen_values = true)]
+    section: Option<Typed<SectionChoice>>,
     /// Rows K times a forcing period instead of at each event; of a SYSTEM without forcing K times
     /// in its unit of time
     #[arg(long, value_name = "K", value_parser = parse::whole::<u32>(1, 4_294_967_295), allow_hyphen_values = true)]
@@ -58,6 +62,8 @@ pub(super) struct Arguments {
     output: OutputsFlags<Format>,
     #[command(flatten)]
     picture: PictureFlags,
+    #[command(flatten)]
+    section_of_system: ReturnFlags,
     #[command(flatten)]
     system: SystemChoice,
     #[command(flatten)]
@@ -120,6 +126,10 @@ fn check_effect(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<()> 
     if let Some((flag, count)) = counts.iter().find_map(|(flag, count)| Some((flag, (*count)?))) {
         bail!("{flag} {count} is not accepted without SYSTEM: --periods is, and --cycle");
     }
+    if let Some(section) = &arguments.section {
+        bail!("{}", without_system("--section", section));
+    }
+    arguments.section_of_system.refuse()?;
     if outputs.any(|it| matches!(it, Format::Npy | Format::Npz)) {
         bail!("arrays are not accepted without SYSTEM: csv, json, png and svg are");
     }

@@ -52,8 +52,7 @@ impl Sink for Drawn<'_> {
     }
 
     fn finish(&mut self, plan: &PlannedRun<'_>, _: &RunEnd) -> Result<()> {
-        let solver = affine::Solver::<f64>::new(plan.system())?;
-        let pieces = picture::sampled(&solver, &self.stops);
+        let pieces = picture::sampled(plan.solver.for_sections(), &self.stops);
         let place = |at: &Vec<f64>| place(self.observables, at[0], at[0], &at[1..]);
         let line = |it: &picture::SampledSegment| Layer::Line {
             points: it.points.iter().map(place).collect(),

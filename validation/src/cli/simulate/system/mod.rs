@@ -4,7 +4,9 @@ mod csv;
 mod drawn;
 mod json;
 mod plan;
+mod returning;
 mod rows;
+mod section;
 mod sink;
 
 use super::{Arguments, Format};
@@ -77,8 +79,8 @@ fn write(plan: &PlannedRun<'_>, sink: &mut dyn Sink) -> Result<RunEnd> {
 fn check_flags(arguments: &Arguments) -> Result<()> {
     if let Some(periods) = arguments.periods {
         bail!(
-            "--periods {periods} is not accepted with SYSTEM: --returns is, of a forced system, \
-             and --until and --events"
+            "--periods {periods} is not accepted with SYSTEM: --returns is, and --until and \
+             --events"
         );
     }
     if let Some(most) = arguments.max_periods {
@@ -86,6 +88,12 @@ fn check_flags(arguments: &Arguments) -> Result<()> {
             "--max-periods {most} is not accepted with SYSTEM: --events ends a run without it, \
              and --until is accepted"
         );
+    }
+    let counts_returns = arguments.returns.is_some() || arguments.transient.is_some();
+    let section = arguments.section.as_ref().map(|it| format!("--section {it}"));
+    let section = section.or_else(|| arguments.section_of_system.given());
+    if let Some(flag) = section.filter(|_| !counts_returns) {
+        bail!("{flag} has no effect here: accepted is it with --returns and with --transient");
     }
     Ok(())
 }

@@ -1,9 +1,10 @@
 //! The beginning of a run's rows, its horizon and its samples.
 
 use super::super::Arguments;
+use super::section::{CountedReturns, Strobes, counted};
 use crate::cli::shared::long_work::Bar;
-use crate::cli::shared::parse::{MAX_PERIODS, Typed};
-use anyhow::{Result, anyhow, bail};
+use crate::cli::shared::parse::Typed;
+use anyhow::{Result, anyhow};
 use percuss::affine::{LONGEST, StartPoint};
 use percuss::{Solver, System};
 use std::f64::consts::TAU;
@@ -12,10 +13,14 @@ use std::f64::consts::TAU;
 pub(super) struct PlannedRun<'a> {
     pub(super) solver: &'a Solver<f64>,
     start: &'a StartPoint,
-    /// The time at which rows begin, where a transient is left out before.
+    /// The returns in which the run is measured, if it is in any.
+    pub(super) returns: Option<CountedReturns>,
+    /// The time at which rows begin, where a transient is left out before whose end is known.
     pub(super) transient: Option<f64>,
     /// The time at which the run ends at the latest.
     pub(super) horizon: f64,
+    /// Whether `--until` states that time.
+    pub(super) is_timed: bool,
     /// The run ends after so many events, if that is sooner.
     pub(super) events: Option<u64>,
     pub(super) samples: Option<Samples>,
@@ -29,13 +34,28 @@ pub(super) struct Samples {
     unit: f64,
     parts: f64,
     first: u64,
-    /// The number of samples, where returns are counted.
+    /// The number of samples, where they begin and end at returns.
     count: Option<u64>,
 }
 
 impl Samples {
+    /// Samples from the start, or from the end of the transient.
+    fn new(begins: f64, unit: f64, parts: u32, strobes: Option<&Strobes>) -> Self {
+        let per_unit = u64::from(parts);
+        let from =
+            |start, first, count| Self { start, unit, parts: f64::from(parts), first, count };
+        match strobes.filter(|it| it.left_out > 0 || it.zeroth == begins) {
+            None => from(begins, 0, None),
+            Some(strobes) => {
+                let per_return = per_unit * strobes.every;
+                let count = strobes.wanted.map(|wanted| wanted * per_return + 1);
+                from(strobes.zeroth, strobes.left_out * per_return, count)
+            }
+        }
+    }
+
     /// The time of a sample.
-    fn at(&self, n: u64) -> f64 {
+    pub(super) fn at(&self, n: u64) -> f64 {
         self.start + (self.first + n) as f64 * self.unit / self.parts
     }
 
@@ -55,25 +75,24 @@ impl<'a> PlannedRun<'a> {
     ) -> Result<Self> {
         let system = solver.system();
         let start = system.start()?;
+        let returns = counted(arguments, solver)?;
         let (begins, unit) = (start.time.to_f64(), unit(system));
-        let (left_out, returns) = returns(arguments, system)?;
-        let samples = arguments.samples.map(|parts| Samples {
-            start: begins,
-            unit,
-            parts: f64::from(parts),
-            first: left_out * u64::from(parts),
-            count: returns.map(|count| count * u64::from(parts) + 1),
-        });
-        let first_sample = samples.as_ref().map(|it| it.at(0));
-        let first_return = || begins + left_out as f64 * unit;
-        let transient = (left_out > 0).then(|| first_sample.unwrap_or_else(first_return));
+        let strobes = match &returns {
+            Some(CountedReturns::Strobes(strobes)) => Some(strobes),
+            _ => None,
+        };
+        let transient = strobes.filter(|it| it.left_out > 0).map(Strobes::first);
         let first_row = transient.unwrap_or(begins);
-        let horizon = match (&arguments.until, returns) {
+        let last = strobes.and_then(Strobes::last);
+        let samples = arguments.samples.map(|parts| Samples::new(begins, unit, parts, strobes));
+        let left_out = arguments.transient.unwrap_or(0);
+        let horizon = match (&arguments.until, last) {
             (Some(until), _) => checked(until, first_row, left_out)?,
-            (None, Some(count)) => begins + (left_out + count) as f64 * unit,
+            (None, Some(last)) => last,
             (None, None) => first_row + LONGEST * system.time_scale,
         };
-        Ok(Self { solver, start, transient, horizon, events: arguments.events, samples, bar })
+        let (events, is_timed) = (arguments.events, arguments.until.is_some());
+        Ok(Self { solver, start, returns, transient, horizon, is_timed, events, samples, bar })
     }
 
     pub(super) fn system(&self) -> &'a System {
@@ -83,17 +102,24 @@ impl<'a> PlannedRun<'a> {
     /// The time up to which the run goes first.
     pub(super) fn first_stop(&self) -> f64 {
         let start = self.start.time.to_f64();
-        let usual = if self.samples.is_some() { start } else { self.horizon };
-        self.transient.unwrap_or(usual)
+        match &self.returns {
+            _ if self.samples.is_some() && self.transient.is_none() => start,
+            Some(CountedReturns::Events(returning)) if !self.is_timed => start + returning.longest,
+            _ => self.transient.unwrap_or(self.horizon),
+        }
     }
 
-    /// Shows the share of the run that is done: of its time, or of its events where that is more.
-    pub(super) fn show_progress(&self, time: f64, events: u64) {
+    /// Shows the share of the run that is done: of its time, or this one where that is more.
+    pub(super) fn show_progress(&self, time: f64, share: f64) {
         let Some(bar) = self.bar else { return };
         let start = self.start.time.to_f64();
         let of_time = (time - start) / (self.horizon - start);
-        let of_events = self.events.map_or(0.0, |wanted| events as f64 / wanted as f64);
-        bar.show_share(of_time.max(of_events).clamp(0.0, 1.0));
+        bar.show_share(of_time.max(share).clamp(0.0, 1.0));
+    }
+
+    /// The share of the events that are wanted, if a number of them is.
+    pub(super) fn share_of_events(&self, events: u64) -> f64 {
+        self.events.map_or(0.0, |wanted| events as f64 / wanted as f64)
     }
 }
 
@@ -101,31 +127,6 @@ impl<'a> PlannedRun<'a> {
 fn unit(system: &System) -> f64 {
     let of = |omega: f64| TAU / omega;
     system.forcing.as_ref().map_or(system.time_scale, |it| of(it.omega.to_f64()))
-}
-
-/// The returns that are left out, and those that are wanted where the run's length is so many.
-fn returns(arguments: &Arguments, system: &System) -> Result<(u64, Option<u64>)> {
-    let given = match (arguments.returns, arguments.transient) {
-        (Some(count), _) => format!("--returns {count}"),
-        (None, Some(count)) => format!("--transient {count}"),
-        (None, None) => return Ok((0, None)),
-    };
-    if system.forcing.is_none() {
-        bail!(
-            "{given} is not accepted: {} is not forced, so that no forcing period makes a return; \
-             --events and --until are accepted",
-            system.name
-        );
-    }
-    let left_out = arguments.transient.unwrap_or(0);
-    let whole = left_out.saturating_add(arguments.returns.unwrap_or(0));
-    if whole > MAX_PERIODS {
-        bail!(
-            "--transient and --returns make {whole} forcing periods: accepted are at most \
-             {MAX_PERIODS}"
-        );
-    }
-    Ok((left_out, arguments.returns))
 }
 
 /// The end of a run that `--until` states.

@@ -1,30 +1,41 @@
 //! The rows of a run, made one by one: a long run costs no memory.
 
 use super::plan::PlannedRun;
+use super::returning::BetweenReturns;
+use super::section::CountedReturns;
 use super::sink::{Row, RunEnd, Sink};
 use crate::cli::shared::no_progress::LastTurns;
 use crate::cli::shared::run_ending::RunEnding;
+use crate::cli::shared::section::no_return;
 use crate::number::shortest;
 use anyhow::Result;
+use percuss::affine::NoReturn;
 use percuss::{Ending, Event, Events};
 
 /// The number of events or samples between two updates of the progress bar.
 const RARELY: u64 = 256;
 
 /// A run under way.
-struct Underway<'a, 'p> {
-    plan: &'p PlannedRun<'a>,
-    run: Events<'a, f64>,
+pub(super) struct Underway<'a, 'p> {
+    pub(super) plan: &'p PlannedRun<'a>,
+    pub(super) run: Events<'a, f64>,
     /// The last `until` events.
     last: LastTurns,
     steps: u64,
+    /// The reason for which the run has not returned as often as was asked, and how often it has.
+    pub(super) no_return: Option<(NoReturn, u64)>,
 }
 
 impl<'a> PlannedRun<'a> {
     /// Makes the run and hands its rows to a sink.
     pub(super) fn rows(&self, sink: &mut dyn Sink) -> Result<RunEnd> {
         let run = self.solver.run().until(self.first_stop())?;
-        let mut underway = Underway { plan: self, run, last: LastTurns::default(), steps: 0 };
+        let last = LastTurns::default();
+        let mut underway = Underway { plan: self, run, last, steps: 0, no_return: None };
+        if let Some(CountedReturns::Events(returning)) = &self.returns {
+            let ending = BetweenReturns::new(&mut underway, returning).rows(sink)?;
+            return Ok(underway.end(ending.as_ref()));
+        }
         let ending = match underway.transient() {
             Err(early) => {
                 sink.stop(&row(0, &early, false))?;
@@ -40,10 +51,12 @@ impl<'a> PlannedRun<'a> {
 
 impl<'a> Underway<'a, '_> {
     /// The next event of the run, or its ending.
-    fn next(&mut self, events: u64) -> Option<Event<'a, f64>> {
+    ///
+    /// `share` of the run is done, if not more.
+    pub(super) fn next(&mut self, share: f64) -> Option<Event<'a, f64>> {
         let event = self.run.next()?;
         if self.steps.is_multiple_of(RARELY) {
-            self.plan.show_progress(*event.time(), events);
+            self.plan.show_progress(*event.time(), share);
         }
         self.steps += 1;
         self.last.add(event.kind(), event.mode_index());
@@ -56,7 +69,7 @@ impl<'a> Underway<'a, '_> {
         if self.plan.transient.is_none() {
             return Ok(start);
         }
-        while let Some(event) = self.next(0) {
+        while let Some(event) = self.next(0.0) {
             match event.ending() {
                 Some(Ending::Horizon) => return Ok(event),
                 Some(_) => return Err(event),
@@ -80,7 +93,7 @@ impl<'a> Underway<'a, '_> {
         }
         let mut n = 0;
         while plan.events.is_none_or(|wanted| n < wanted) {
-            let Some(event) = self.next(n) else { break };
+            let Some(event) = self.next(plan.share_of_events(n)) else { break };
             n += 1;
             sink.stop(&row(n, &event, false))?;
             sink.row(plan, &row(n, &event, true))?;
@@ -102,7 +115,8 @@ impl<'a> Underway<'a, '_> {
         let (mut n, mut passed) = (0, 0);
         let mut next = plan.transient.map(|_| first);
         while plan.events.is_none_or(|wanted| passed < wanted) {
-            let Some(event) = next.take().or_else(|| self.next(passed)) else { break };
+            let share = plan.share_of_events(passed);
+            let Some(event) = next.take().or_else(|| self.next(share)) else { break };
             sink.stop(&row(n, &event, false))?;
             match event.ending() {
                 Some(Ending::Horizon) => {
@@ -135,6 +149,7 @@ impl<'a> Underway<'a, '_> {
         };
         let decided = "percuss events takes the bits that decide";
         end.notes.extend(choices.map(|it| format!("{it}; {decided}")));
+        end.notes.extend(self.no_return.map(|(why, returns)| no_return(why, returns)));
         if let Some((event, ending)) = last.and_then(|it| Some((it, it.ending()?))) {
             self.tell(event, ending, &mut end);
         }
@@ -158,7 +173,7 @@ impl<'a> Underway<'a, '_> {
 }
 
 /// The row of an event, named or not.
-fn row<'e>(n: u64, event: &'e Event<'_, f64>, named: bool) -> Row<'e> {
+pub(super) fn row<'e>(n: u64, event: &'e Event<'_, f64>, named: bool) -> Row<'e> {
     Row {
         n,
         time: *event.time(),

@@ -1,0 +1,164 @@
+//! A run between two returns to an event, whose times are known only when it is there.
+
+use super::rows::{Underway, row};
+use super::section::EventReturns;
+use super::sink::Sink;
+use anyhow::Result;
+use percuss::affine::NoReturn;
+use percuss::{Ending, Event};
+
+/// How far a run has come.
+#[derive(Default)]
+struct Passed {
+    /// Events of the section.
+    returns: u64,
+    /// The time of the last return, or of the start.
+    since: f64,
+    /// Events that are shown, and samples, shown or not.
+    events: u64,
+    samples: u64,
+}
+
+/// A run that is measured in returns to an event.
+pub(super) struct BetweenReturns<'r, 'a, 'p> {
+    run: &'r mut Underway<'a, 'p>,
+    returning: &'p EventReturns,
+    passed: Passed,
+}
+
+impl<'r, 'a, 'p> BetweenReturns<'r, 'a, 'p> {
+    pub(super) fn new(run: &'r mut Underway<'a, 'p>, returning: &'p EventReturns) -> Self {
+        let passed = Passed { since: *run.run.start().time(), ..Passed::default() };
+        Self { run, returning, passed }
+    }
+
+    /// Hands on the rows from the return that ends the transient on; how the run ended, where that
+    /// is not as it was asked for.
+    pub(super) fn rows(&mut self, sink: &mut dyn Sink) -> Result<Option<Event<'a, f64>>> {
+        // The first sample is the start.
+        if self.is_shown() && self.run.plan.samples.is_none() {
+            let start = self.run.run.start();
+            self.begin_rows(&start, sink)?;
+        }
+        while self.is_wanted() {
+            let Some(event) = self.run.next(self.share()) else { break };
+            match event.ending() {
+                Some(Ending::Horizon) => {
+                    self.sample(&event, sink)?;
+                    if self.goes_on(*event.time()) {
+                        continue;
+                    }
+                    self.end(&event, sink)?;
+                    return Ok(Some(event));
+                }
+                Some(_) => {
+                    self.end(&event, sink)?;
+                    return Ok(Some(event));
+                }
+                None => self.pass(&event, sink)?,
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether the transient is over.
+    fn is_shown(&self) -> bool {
+        self.passed.returns >= self.returning.left_out
+    }
+
+    /// Whether the run has not come to the return or the event that ends it.
+    fn is_wanted(&self) -> bool {
+        let returns = self.returning.last.is_none_or(|last| self.passed.returns < last);
+        returns && self.run.plan.events.is_none_or(|wanted| self.passed.events < wanted)
+    }
+
+    /// The share of the run that is done.
+    fn share(&self) -> f64 {
+        let of_returns = self.returning.last.map(|last| self.passed.returns as f64 / last as f64);
+        of_returns.unwrap_or_else(|| self.run.plan.share_of_events(self.passed.events))
+    }
+
+    /// Hands on the place at which rows begin, which has a row where rows are those of events.
+    fn begin_rows(&self, first: &Event<'_, f64>, sink: &mut dyn Sink) -> Result<()> {
+        let plan = self.run.plan;
+        sink.stop(&row(0, first, false))?;
+        if plan.samples.is_some() { Ok(()) } else { sink.row(plan, &row(0, first, false)) }
+    }
+
+    /// Takes an event of the system.
+    fn pass(&mut self, event: &Event<'_, f64>, sink: &mut dyn Sink) -> Result<()> {
+        let was_shown = self.is_shown();
+        if self.returning.counts(event.kind()) {
+            self.passed.returns += 1;
+            self.passed.since = *event.time();
+        }
+        match (was_shown, self.is_shown()) {
+            (true, _) => {
+                self.passed.events += 1;
+                self.show(event, sink)
+            }
+            (false, true) => self.begin_rows(event, sink),
+            (false, false) => Ok(()),
+        }
+    }
+
+    /// Hands on an event, or the ending, by its name.
+    fn show(&self, event: &Event<'_, f64>, sink: &mut dyn Sink) -> Result<()> {
+        let (plan, n) = (self.run.plan, self.passed.events);
+        sink.stop(&row(n, event, false))?;
+        if plan.samples.is_some() { Ok(()) } else { sink.row(plan, &row(n, event, true)) }
+    }
+
+    /// Takes the state at a horizon, if that is the time of a sample.
+    fn sample(&mut self, at: &Event<'_, f64>, sink: &mut dyn Sink) -> Result<()> {
+        let plan = self.run.plan;
+        let Some(samples) = &plan.samples else { return Ok(()) };
+        if samples.at(self.passed.samples) > *at.time() {
+            return Ok(());
+        }
+        // The start itself has no rounding of modal co-ordinates.
+        let start = (self.passed.samples == 0).then(|| self.run.run.start());
+        let at = start.as_ref().unwrap_or(at);
+        self.passed.samples += 1;
+        if !self.is_shown() {
+            return Ok(());
+        }
+        sink.stop(&row(0, at, false))?;
+        sink.row(plan, &row(0, at, false))
+    }
+
+    /// Lets the run go on from a horizon, unless it ends there.
+    fn goes_on(&mut self, time: f64) -> bool {
+        let plan = self.run.plan;
+        let sample = plan.samples.as_ref().map(|it| it.at(self.passed.samples));
+        let stop = sample.unwrap_or(f64::INFINITY).min(self.horizon());
+        stop > time && self.run.run.go_on(stop)
+    }
+
+    /// The time at which the run ends at the latest.
+    fn horizon(&self) -> f64 {
+        let waits = !self.is_shown() || self.returning.last.is_some();
+        if waits && !self.run.plan.is_timed {
+            return self.passed.since + self.returning.longest;
+        }
+        self.run.plan.horizon
+    }
+
+    /// Hands on the ending of a run, and keeps why it has not returned as often as was asked.
+    fn end(&mut self, event: &Event<'_, f64>, sink: &mut dyn Sink) -> Result<()> {
+        let plan = self.run.plan;
+        if event.ending() == Some(Ending::Horizon) && (!plan.is_timed || !self.is_shown()) {
+            let why = match plan.is_timed {
+                true => NoReturn::Ended(Ending::Horizon),
+                false => NoReturn::Equilibrium,
+            };
+            self.run.no_return = Some((why, self.passed.returns / self.returning.every));
+        }
+        if self.is_shown() {
+            self.passed.events += 1;
+            return self.show(event, sink);
+        }
+        sink.stop(&row(0, event, false))?;
+        sink.row(plan, &row(0, event, true))
+    }
+}
