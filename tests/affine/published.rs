@@ -150,3 +150,84 @@ fn an_impact_oscillators_map_has_a_square_root_at_the_touch() {
     // The next term is smaller by a root.
     assert!(far < 0.02 && near < 0.15 * far && near > 0.05 * far, "{far} {near}");
 }
+
+/// A mass on a belt whose friction falls with the relative speed up to that of the belt and rises
+/// beyond: y is its place beyond that of rest.
+const TWO_SLOPES: &str = r#"
+schema = 1
+name = "two-slope-friction"
+states = ["y", "v"]
+[parameters]
+belt = 1
+fall = 0.4
+rise = 0.2
+[[mode]]
+name = "stick"
+equations = ["y' = belt", "v' = 0"]
+until = [{ name = "slip", guard = "y > fall*belt", next = [{ mode = "slow" }] }]
+[[mode]]
+name = "slow"
+equations = ["y' = v", "v' = fall*v - y"]
+[[mode.until]]
+name = "turn"
+guard = "v < 0"
+next = [{ mode = "fast" }]
+[[mode.until]]
+name = "stop"
+guard = "v > belt"
+reset = ["v = belt"]
+next = [{ mode = "stick" }]
+[[mode]]
+name = "fast"
+equations = ["y' = v", "v' = -rise*v - y"]
+until = [{ name = "return", guard = "v > 0", next = [{ mode = "slow" }] }]
+[start]
+mode = "stick"
+y = 0
+v = "belt"
+"#;
+
+/// How far the mass goes with the belt and back against it while it sticks and slips. It leaves the
+/// belt at y = fall belt, where its speed begins to change with no acceleration: with
+/// cos a = fall/2 its speed is belt exp(t cos a) sin(a - t sin a) / sin a, and is 0 at
+/// t = a / sin a, where y = belt exp(a cot a). Half a turn of the other slope, with
+/// cos b = rise/2, brings it to -y exp(-pi cot b).
+fn ends(fall: f64, rise: f64, belt: f64) -> [f64; 2] {
+    let [a, b] = [fall, rise].map(|it| (it / 2.0).acos());
+    let with = belt * (a / a.tan()).exp();
+    [with, -with * (-PI / b.tan()).exp()]
+}
+
+/// The values at 0.4, 0.2 and 1 were computed in 25 digits, too, by a Taylor series integrator that
+/// knows the equations alone.
+#[test]
+fn a_mass_on_a_belt_goes_as_far_as_friction_with_two_slopes_says() {
+    let known = ends(0.4, 0.2, 1.0);
+    for (it, digits) in known.iter().zip([1.322_515_287_293_212_4, -0.964_441_118_117_548_8]) {
+        assert!((it - digits).abs() < 1e-15, "{it}");
+    }
+    for (fall, rise, belt) in [(0.4, 0.2, 1.0), (0.9, 0.3, 0.7), (1.5, 0.5, 2.0)] {
+        let set = [("rise", rise), ("belt", belt)];
+        for (section, known) in ["turn", "return"].into_iter().zip(ends(fall, rise, belt)) {
+            let varied = Varied::new(TWO_SLOPES, Section::event(section), "fall", &set);
+            let orbit = varied.map(fall, |map| map.orbit(&varied.settled(fall, 5), 1).unwrap());
+            let found = orbit.points[0].state[0];
+            assert!((found - known).abs() < 1e-13 * known.abs(), "{fall} {rise}: {found} {known}");
+            assert!(orbit.multipliers.iter().all(|it| it[0].abs() < 1e-9), "{orbit:?}");
+        }
+    }
+}
+
+/// The mass reaches the belt's speed again if a turn grows: the largest speed after y = -ends[1] is
+/// belt exp(pi (cot a - cot b)), which is that of the belt where both slopes are the same. There
+/// all smaller turns are closed, and the branch does not go on.
+#[test]
+fn a_mass_on_a_belt_sticks_while_friction_falls_faster_than_it_rises() {
+    for (rise, first) in [(0.2, 0.4), (0.5, 0.8)] {
+        let set = [("rise", rise)];
+        let varied = Varied::new(TWO_SLOPES, Section::event("turn"), "fall", &set);
+        let branch = varied.follow(&varied.settled(first, 20), 1, [first, 0.75 * rise]);
+        let grazing = only(&branch, BifurcationKind::Grazing);
+        assert!((grazing.value - rise).abs() <= grazing.error.max(1e-12), "{grazing:?}");
+    }
+}
