@@ -1,8 +1,7 @@
 //! The picture of a run of a system.
 
 use super::progress::RunEnd;
-use super::rows::Rows;
-use super::sink::Sink;
+use super::rows::{Rows, Sink};
 use crate::cli::shared::names;
 use crate::cli::shared::picture::PictureFormat;
 use crate::picture::{self, MOST_STATES, SystemMotion};

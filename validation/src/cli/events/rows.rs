@@ -1,7 +1,6 @@
 //! The rows of `events`, made one by one: a long run costs no memory.
 
 use super::progress::{Passed, RunEnd};
-use super::sink::Sink;
 use crate::cli::shared::long_work::Bar;
 use crate::cli::shared::states::in_order;
 use anyhow::Result;
@@ -48,6 +47,38 @@ pub(super) struct EventRow {
     pub(super) mode: String,
     #[serde(serialize_with = "in_order")]
     pub(super) state: Vec<(String, String)>,
+}
+
+/// The state at a time. Numbers are texts, because a reader's f64 would not hold their digits.
+#[derive(Serialize)]
+pub(super) struct SampleRow {
+    pub(super) time: String,
+    pub(super) mode: String,
+    #[serde(serialize_with = "in_order")]
+    pub(super) state: Vec<(String, String)>,
+}
+
+/// An output of a run.
+pub(super) trait Sink {
+    /// Begins with what is known before the run.
+    fn begin(&mut self, _: &Rows<'_>) -> Result<()> {
+        Ok(())
+    }
+
+    /// Takes the start, an event or the ending, with a row of its own or not.
+    fn passed(&mut self, _: &Event<'_, Proved>) -> Result<()> {
+        Ok(())
+    }
+
+    fn event(&mut self, _: &EventRow) -> Result<()> {
+        Ok(())
+    }
+
+    fn sample(&mut self, _: &SampleRow) -> Result<()> {
+        Ok(())
+    }
+
+    fn finish(&mut self, rows: &Rows<'_>, end: &RunEnd) -> Result<()>;
 }
 
 impl<'a> Rows<'a> {

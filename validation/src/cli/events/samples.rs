@@ -1,21 +1,9 @@
 //! The rows of `events --samples K`: the state at equal steps of the time, not at events.
 
 use super::progress::{Passed, RunEnd};
-use super::rows::Rows;
-use super::sink::Sink;
-use crate::cli::shared::states::in_order;
+use super::rows::{Rows, SampleRow, Sink};
 use anyhow::Result;
 use percuss::{Event, Kind, Proved};
-use serde::Serialize;
-
-/// The state at a time. Numbers are texts, because a reader's f64 would not hold their digits.
-#[derive(Serialize)]
-pub(super) struct SampleRow {
-    pub(super) time: String,
-    pub(super) mode: String,
-    #[serde(serialize_with = "in_order")]
-    pub(super) state: Vec<(String, String)>,
-}
 
 impl Rows<'_> {
     /// Runs the system from its start, with a row `samples` times in each unit of its time; where

@@ -3,36 +3,12 @@
 use super::Format;
 use super::draw::Drawn;
 use super::progress::RunEnd;
-use super::rows::{EventRow, Rows};
-use super::samples::SampleRow;
+use super::rows::{EventRow, Rows, SampleRow, Sink};
 use super::write::{Csv, Json};
 use crate::cli::shared::output::Opened;
 use crate::cli::shared::picture::PictureFormat;
 use anyhow::Result;
 use percuss::{Event, Proved};
-
-/// An output of a run.
-pub(super) trait Sink {
-    /// Begins with what is known before the run.
-    fn begin(&mut self, _: &Rows<'_>) -> Result<()> {
-        Ok(())
-    }
-
-    /// Takes the start, an event or the ending, with a row of its own or not.
-    fn passed(&mut self, _: &Event<'_, Proved>) -> Result<()> {
-        Ok(())
-    }
-
-    fn event(&mut self, _: &EventRow) -> Result<()> {
-        Ok(())
-    }
-
-    fn sample(&mut self, _: &SampleRow) -> Result<()> {
-        Ok(())
-    }
-
-    fn finish(&mut self, rows: &Rows<'_>, end: &RunEnd) -> Result<()>;
-}
 
 /// Several outputs of one run.
 pub(super) struct All<'a>(Vec<Box<dyn Sink + 'a>>);

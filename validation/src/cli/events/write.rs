@@ -1,9 +1,7 @@
 //! The rows of `events` as CSV and as JSON, each written as soon as it is known.
 
 use super::progress::RunEnd;
-use super::rows::{EventRow, Rows};
-use super::samples::SampleRow;
-use super::sink::Sink;
+use super::rows::{EventRow, Rows, SampleRow, Sink};
 use crate::cli::shared::output::json_value;
 use anyhow::Result;
 use percuss_programs::files::{PRINTED, PRINTED_SAMPLE, printed_column};

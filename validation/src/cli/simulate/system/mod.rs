@@ -20,6 +20,7 @@ use crate::cli::shared::system_choice::ChosenSystem;
 use anyhow::{Result, bail};
 use percuss::System;
 use plan::PlannedRun;
+use section::CountedReturns;
 use sink::{All, RunEnd, Sink};
 
 /// Makes the run; whether it was decided to its end.
@@ -70,7 +71,10 @@ fn sink_of_rows<'a>(
 
 fn write(plan: &PlannedRun<'_>, sink: &mut dyn Sink) -> Result<RunEnd> {
     sink.begin(plan)?;
-    let end = plan.rows(sink)?;
+    let end = match &plan.returns {
+        Some(CountedReturns::Events(returning)) => returning::rows(plan, returning, sink)?,
+        _ => plan.rows(sink)?,
+    };
     sink.finish(plan, &end)?;
     Ok(end)
 }

@@ -1,11 +1,23 @@
 //! A run between two returns to an event, whose times are known only when it is there.
 
+use super::plan::PlannedRun;
 use super::rows::{Underway, row};
 use super::section::EventReturns;
-use super::sink::Sink;
+use super::sink::{RunEnd, Sink};
 use anyhow::Result;
 use percuss::affine::NoReturn;
 use percuss::{Ending, Event};
+
+/// Makes the run and hands its rows to a sink.
+pub(super) fn rows(
+    plan: &PlannedRun<'_>,
+    returning: &EventReturns,
+    sink: &mut dyn Sink,
+) -> Result<RunEnd> {
+    let mut run = Underway::begin(plan)?;
+    let ending = BetweenReturns::new(&mut run, returning).rows(sink)?;
+    Ok(run.end(ending.as_ref()))
+}
 
 /// How far a run has come.
 #[derive(Default)]
@@ -20,21 +32,21 @@ struct Passed {
 }
 
 /// A run that is measured in returns to an event.
-pub(super) struct BetweenReturns<'r, 'a, 'p> {
+struct BetweenReturns<'r, 'a, 'p> {
     run: &'r mut Underway<'a, 'p>,
     returning: &'p EventReturns,
     passed: Passed,
 }
 
 impl<'r, 'a, 'p> BetweenReturns<'r, 'a, 'p> {
-    pub(super) fn new(run: &'r mut Underway<'a, 'p>, returning: &'p EventReturns) -> Self {
+    fn new(run: &'r mut Underway<'a, 'p>, returning: &'p EventReturns) -> Self {
         let passed = Passed { since: *run.run.start().time(), ..Passed::default() };
         Self { run, returning, passed }
     }
 
     /// Hands on the rows from the return that ends the transient on; how the run ended, where that
     /// is not as it was asked for.
-    pub(super) fn rows(&mut self, sink: &mut dyn Sink) -> Result<Option<Event<'a, f64>>> {
+    fn rows(&mut self, sink: &mut dyn Sink) -> Result<Option<Event<'a, f64>>> {
         // The first sample is the start.
         if self.is_shown() && self.run.plan.samples.is_none() {
             let start = self.run.run.start();

@@ -1,8 +1,6 @@
 //! The rows of a run, made one by one: a long run costs no memory.
 
 use super::plan::PlannedRun;
-use super::returning::BetweenReturns;
-use super::section::CountedReturns;
 use super::sink::{Row, RunEnd, Sink};
 use crate::cli::shared::no_progress::LastTurns;
 use crate::cli::shared::run_ending::RunEnding;
@@ -29,13 +27,7 @@ pub(super) struct Underway<'a, 'p> {
 impl<'a> PlannedRun<'a> {
     /// Makes the run and hands its rows to a sink.
     pub(super) fn rows(&self, sink: &mut dyn Sink) -> Result<RunEnd> {
-        let run = self.solver.run().until(self.first_stop())?;
-        let last = LastTurns::default();
-        let mut underway = Underway { plan: self, run, last, steps: 0, no_return: None };
-        if let Some(CountedReturns::Events(returning)) = &self.returns {
-            let ending = BetweenReturns::new(&mut underway, returning).rows(sink)?;
-            return Ok(underway.end(ending.as_ref()));
-        }
+        let mut underway = Underway::begin(self)?;
         let ending = match underway.transient() {
             Err(early) => {
                 sink.stop(&row(0, &early, false))?;
@@ -49,7 +41,13 @@ impl<'a> PlannedRun<'a> {
     }
 }
 
-impl<'a> Underway<'a, '_> {
+impl<'a, 'p> Underway<'a, 'p> {
+    /// A run at its start.
+    pub(super) fn begin(plan: &'p PlannedRun<'a>) -> Result<Self> {
+        let run = plan.solver.run().until(plan.first_stop())?;
+        Ok(Self { plan, run, last: LastTurns::default(), steps: 0, no_return: None })
+    }
+
     /// The next event of the run, or its ending.
     ///
     /// `share` of the run is done, if not more.
@@ -139,7 +137,7 @@ impl<'a> Underway<'a, '_> {
     }
 
     /// The ending of a run that ended so, or as it was asked to.
-    fn end(&self, last: Option<&Event<'a, f64>>) -> RunEnd {
+    pub(super) fn end(&self, last: Option<&Event<'a, f64>>) -> RunEnd {
         let undecidable = self.run.undecidable();
         let mut end = RunEnd { undecidable, ..RunEnd::default() };
         let choices = match undecidable {
