@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 Told = Callable[[int, int], object]
 Progress = bool | Told | None
 
 
-@contextmanager
-def telling(progress: Progress, unit: str) -> Iterator[Told | None]:
+def telling(progress: Progress, unit: str) -> AbstractContextManager[Told | None]:
     """Make the function that is told how many of all parts are done.
 
     Parameters
@@ -29,14 +28,12 @@ def telling(progress: Progress, unit: str) -> Iterator[Told | None]:
         True where tqdm is not installed.
     """
     if progress is None or progress is False:
-        yield None
-    elif progress is True:
-        with _bar(unit) as bar:
-            yield bar
-    elif callable(progress):
-        yield progress
-    else:
-        raise TypeError(f"progress = {progress!r} is not accepted: True or a function is")
+        return nullcontext()
+    if progress is True:
+        return _bar(unit)
+    if callable(progress):
+        return nullcontext(progress)
+    raise TypeError(f"progress = {progress!r} is not accepted: True or a function is")
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -23,8 +24,14 @@ class _Points:
     def __init__(self, found: _percuss.Points, modes: list[str], states: list[str]) -> None:
         self.time: Floats = found["time"]
         self.state: Floats = found["state"]
-        self.mode: Texts = np.array(modes)[found["mode"]]
         self.states = states
+        self._modes = modes
+        self._places = found["mode"]
+
+    @cached_property
+    def mode(self) -> Texts:
+        """The names of the modes."""
+        return np.array(self._modes)[self._places]
 
 
 class Returns(_Points):

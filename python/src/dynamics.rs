@@ -2,7 +2,7 @@
 
 use crate::arrays::table;
 use crate::failure::value;
-use crate::long_work::{Progress, SHARES, interruptible};
+use crate::long_work::{Progress, SHARES, attended, interruptible};
 use crate::oscillator::{MAX_PERIODS, Oscillator};
 use numpy::PyArray2;
 use percuss::dynamics::batches::Stationarity;
@@ -46,7 +46,7 @@ pub(crate) fn poincare<'py>(
         return Err(value(format!("section = {section} is not accepted: -1e15 to 1e15 is")));
     }
     let Oscillator { model, entry, .. } = oscillator;
-    let points = interruptible(py, &Progress { told, all: periods }, |stop| {
+    let points = attended(py, &Progress { told, all: periods }, |stop| {
         let first = entry.instant.after_periods(transient, 1).first_at_angle(section);
         let segments = model.trajectory(*entry).until(first.after_periods(periods, 1));
         let strobes = Section::along(segments.inspect(|_| stop.look()), first);
@@ -95,7 +95,7 @@ pub(crate) fn lyapunov(
     let Oscillator { model, entry, .. } = oscillator;
     let all = transient + periods;
     let (omega, period) = (model.parameters().omega, model.period());
-    let found = interruptible(py, &Progress { told, all }, |stop| {
+    let found = attended(py, &Progress { told, all }, |stop| {
         Spectrum::told(model, *entry, transient, periods, &mut |segment| {
             let passed = segment.entry().instant.since(&entry.instant, omega).value() / period;
             stop.reached(passed as u64);

@@ -1,9 +1,12 @@
 //! Long work: done without Python's lock, ended by Ctrl-C, and told as it goes on.
 
+use pyo3::PyErr;
 use pyo3::prelude::{Py, PyAny, PyResult, Python};
+use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The time between two looks at Python's signals.
@@ -45,11 +48,44 @@ struct Interrupted;
 pub(crate) struct Stop<'a> {
     is_asked: &'a AtomicBool,
     done: &'a AtomicU64,
+    /// What looks at Python's signals, where the work is done by the thread that may.
+    here: Option<&'a Here<'a>>,
+}
+
+/// Looks at Python's signals from within the work, and keeps what they raise.
+struct Here<'a> {
+    progress: &'a Progress,
+    last: Mutex<Instant>,
+    raised: Mutex<Option<PyErr>>,
+}
+
+impl Here<'_> {
+    /// Whether the work is to go on, of which so many parts are done.
+    fn goes_on(&self, done: u64) -> bool {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.elapsed() < BETWEEN_LOOKS {
+            return true;
+        }
+        let told = Python::attach(|py| {
+            py.check_signals()?;
+            self.progress.tell(py, done)
+        });
+        *last = Instant::now();
+        let raised = told.err();
+        let goes_on = raised.is_none();
+        *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = raised;
+        goes_on
+    }
 }
 
 impl Stop<'_> {
     /// A part of the work is done that is none of those that are counted.
     pub(crate) fn look(&self) {
+        if let Some(here) = self.here
+            && !here.goes_on(self.done.load(Ordering::Relaxed))
+        {
+            self.is_asked.store(true, Ordering::Relaxed);
+        }
         if self.is_asked.load(Ordering::Relaxed) {
             // Without the message of a panic: this is no fault of the program.
             resume_unwind(Box::new(Interrupted));
@@ -105,7 +141,7 @@ pub(crate) fn interruptible<T: Send>(
         std::thread::scope(|scope| {
             scope.spawn(|| {
                 let result = catch_unwind(AssertUnwindSafe(|| {
-                    work(&Stop { is_asked: &stop, done: &parts })
+                    work(&Stop { is_asked: &stop, done: &parts, here: None })
                 }));
                 // The receiver is there until the scope ends.
                 drop(sender.send(result));
@@ -129,6 +165,35 @@ pub(crate) fn interruptible<T: Send>(
             }
         })
     })?;
+    finished(py, progress, done)
+}
+
+/// Does work that has no threads of its own on this one, which looks at the signals after each part
+/// of it: a thread that waited would take longer to start than a short call takes.
+pub(crate) fn attended<T: Send>(
+    py: Python<'_>,
+    progress: &Progress,
+    work: impl FnOnce(&Stop<'_>) -> T + Send,
+) -> PyResult<T> {
+    let (stop, parts) = (AtomicBool::new(false), AtomicU64::new(0));
+    let (last, raised) = (Mutex::new(Instant::now()), Mutex::new(None));
+    let here = Here { progress, last, raised };
+    let done = py.detach(|| {
+        let told = Stop { is_asked: &stop, done: &parts, here: Some(&here) };
+        catch_unwind(AssertUnwindSafe(|| work(&told)))
+    });
+    match here.raised.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        Some(raised) => Err(raised),
+        None => finished(py, progress, done),
+    }
+}
+
+/// The result of work, or the exception for what has unwound it.
+fn finished<T>(
+    py: Python<'_>,
+    progress: &Progress,
+    done: Result<T, Box<dyn Any + Send>>,
+) -> PyResult<T> {
     if done.is_ok() {
         progress.tell(py, progress.all)?;
     }

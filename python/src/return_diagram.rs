@@ -43,7 +43,8 @@ pub(crate) fn system_bifurcation<'py>(
     check_points(steps, returns)?;
     // What does not fit the system is told as such, before any value is.
     system.file.clone().set(parameter, ends[0], "parameter").map_err(value)?;
-    section.map(&solver(system)?)?;
+    let solver = solver(system)?;
+    section.map(&solver)?;
     let follow = if reset { Follow::Reset } else { Follow::Carry };
     let Section { section, longest } = section;
     let diagram =

@@ -3,7 +3,7 @@
 use crate::arrays::table;
 use crate::dynamics::{check_period, stationary};
 use crate::failure::value;
-use crate::long_work::{Progress, interruptible};
+use crate::long_work::{Progress, attended};
 use crate::oscillator::MAX_PERIODS;
 use crate::system::System;
 use numpy::{PyArray1, PyArray2};
@@ -12,6 +12,7 @@ use percuss_validation::{returns, typed};
 use pyo3::IntoPyObject;
 use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyclass, pyfunction, pymethods};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A section of a system's motions, and the longest time to wait for a return to it.
 #[pyclass(frozen, module = "percuss._percuss")]
@@ -52,9 +53,10 @@ impl Section {
 }
 
 /// The solver of a system that has a start.
-pub(crate) fn solver(system: &System) -> PyResult<Solver<f64>> {
-    system.shared.system.start().map_err(value)?;
-    Solver::new(&system.shared.system).map_err(value)
+pub(crate) fn solver(system: &System) -> PyResult<Arc<Solver<f64>>> {
+    let shared = &system.shared;
+    shared.system.start().map_err(value)?;
+    shared.solvers(false).returning(&shared.system, false).map_err(value)
 }
 
 /// Refuses a motion that is too long, or that has nothing to tell.
@@ -121,7 +123,7 @@ pub(crate) fn system_poincare<'py>(
     let solver = solver(system)?;
     let (map, start) = (section.map(&solver)?, system.shared.system.start().map_err(value)?);
     let all = transient + returns;
-    let found = interruptible(py, &Progress { told, all }, |stop| {
+    let found = attended(py, &Progress { told, all }, |stop| {
         let mut motion = map.returns(start)?;
         let (mut points, mut cause) = (Vec::new(), None);
         for (n, point) in (0..all).zip(&mut motion) {
@@ -166,7 +168,7 @@ pub(crate) fn system_lyapunov(
     let solver = solver(system)?;
     let map = section.map(&solver)?;
     let all = transient + returns;
-    let found = interruptible(py, &Progress { told, all }, |stop| {
+    let found = attended(py, &Progress { told, all }, |stop| {
         returns::exponents(&map, transient, returns, &mut |passed| stop.reached(passed))
     })?;
     let found = found.map_err(value)?.map_err(|(why, passed)| {
@@ -227,7 +229,7 @@ pub(crate) fn system_orbit<'py>(
     check_returns(transient, 1)?;
     let solver = solver(system)?;
     let map = section.map(&solver)?;
-    let found = interruptible(py, &Progress::default(), |_| {
+    let found = attended(py, &Progress::default(), |_| {
         let (guess, _) = returns::guess(&map, transient)?;
         Ok(guess.and_then(|it| map.orbit(&it, period)))
     })?;

@@ -226,6 +226,24 @@ def test_a_system_without_forcing_needs_an_event():
         percuss.systems["bouncing-ball"].poincare(returns=1)
 
 
+def test_calls_in_a_row_have_the_numbers_of_a_first_call():
+    """What the solver keeps between calls changes no bit of what it finds."""
+
+    def found(rigid, relay):
+        section = rigid.poincare(transient=5, returns=40)
+        exponents = rigid.lyapunov(transient=50, returns=100)
+        orbit = relay.orbit(1, section="switch-up")
+        arrays = section.state, section.time, exponents.exponents, orbit.points, orbit.multipliers
+        return [it.tobytes() for it in arrays]
+
+    both = percuss.systems[RIGID], percuss.systems["relay-feedback"]
+    first = found(*both)
+    assert found(*both) == first
+    others = percuss.systems[RIGID], percuss.systems["relay-feedback"]
+    others[0].basins((-1, 0.5), (-1, 1), grid=4, transient=50)
+    assert found(*others) == first
+
+
 def test_progress_comes_to_its_end(rigid):
     seen = []
     rigid.basins((-1, 0.5), (-1, 1), grid=30, transient=500, progress=lambda *it: seen.append(it))

@@ -14,6 +14,8 @@ WORK = {
     "oscillator": "percuss.Oscillator().simulate(periods=10**9)",
     "section": "percuss.Oscillator().poincare(periods=10**8)",
     "exponents": "percuss.Oscillator().lyapunov(periods=10**9)",
+    "returns": "percuss.systems['rigid-impact-oscillator'].poincare(returns=10**8)",
+    "exponents of returns": "percuss.systems['rigid-impact-oscillator'].lyapunov(returns=10**9)",
     "basins": "percuss.Oscillator().basins((-1, 1), (-1, 1), grid=4000, transient=10**4)",
     "diagram": "percuss.Oscillator().bifurcation("
     "'b', np.linspace(0, .3, 1000), transient=10**7, periods=1)",
