@@ -3,10 +3,10 @@
     python python/benches/call_overhead.py
 
 Printed are microseconds a call: least means of batches, which other work on the machine raises
-least, over passes in which library and package take turns. The library's own times are those of `cargo run --release -p percuss-python --example
-library_times`, which this runs; NATIVE is the call of the native part alone, and OVERHEAD what the
-call of the package takes beyond the library. Needs the package and a Rust toolchain. For
-exploration, no test.
+least, over passes in which library and package take turns. The library's own times are those of
+`cargo run --release -p percuss-python --example library_times`, which this runs; NATIVE is the
+call of the native part alone, and OVERHEAD what the call of the package takes beyond the library.
+Needs the package and a Rust toolchain. For exploration, no test.
 """
 
 from __future__ import annotations
