@@ -10,6 +10,10 @@ use crate::affine::solver::SolverMode;
 use crate::affine::solver::event::{Ending, Errors};
 use crate::numeric::number::{Bound, Number};
 
+/// The number of steps from one horizon to the next by which a run that goes on searches ahead: a
+/// caller that stops once stops many times.
+const STEPS_AHEAD: f64 = 16.0;
+
 impl<T: Number> Run<'_, T> {
     /// Lets a run that has ended at its horizon go on to a later one, and says whether it does. Its
     /// state at any time is so known between its events: [`Ending::Horizon`] has it, with bounds
@@ -17,6 +21,10 @@ impl<T: Number> Run<'_, T> {
     pub fn go_on(&mut self, until: T) -> bool {
         let goes_on = self.queue.is_empty() && self.ending() == Some(&Ending::Horizon);
         if goes_on {
+            if self.ahead.is_none() {
+                let step = self.solver.directed(until - self.horizon.value());
+                self.search_ahead(step * T::exact(STEPS_AHEAD));
+            }
             (self.horizon, self.ended) = (Time { high: until, low: T::zero() }, false);
             if !self.has_found() {
                 (self.ends.left.to_crossing, self.ends.passed) = (T::zero(), Passed::none());
