@@ -69,6 +69,8 @@ impl<T: Number> Run<'_, T> {
     fn search_beyond(&mut self, mode: usize, limit: T, ahead: SearchAhead<T>) -> SearchOutcome {
         let before = self.work.undecidable;
         let outcome = self.search_to(mode, limit + ahead.reach);
+        // A search that the run needs tells by itself whether it takes too much work.
+        self.work.exhausted = false;
         let found = match outcome {
             SearchOutcome::Crossing(guards) if !self.is_by(limit) => Some(guards),
             SearchOutcome::Crossing(_) => return outcome,

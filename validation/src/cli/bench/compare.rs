@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let [old, new] = [&arguments.old, &arguments.new].map(|side| binary(side));
     let (lines, verdicts) = match (old, new) {
         (Some(_), Some(_)) if arguments.history.is_some() => {
-            bail!("--history has no effect on two binaries: accepted is it with recorded versions")
+            bail!("--history has no effect on two binaries: it is accepted with recorded versions")
         }
         (Some(old), Some(new)) => against(arguments, &old, &new)?,
         (None, None) if arguments.slowdown > 0.0 => {

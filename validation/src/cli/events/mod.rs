@@ -132,14 +132,14 @@ fn check_effect(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<()> 
     let has_pictures = outputs.any(is_picture);
     let has_data = outputs.any(|it| !is_picture(it));
     if let Some(samples) = arguments.samples.filter(|_| !has_data) {
-        bail!("--samples {samples} has no effect on a picture: accepted is it with csv and json");
+        bail!("--samples {samples} has no effect on a picture: it is accepted with csv and json");
     }
     match (&arguments.digits, &arguments.states) {
         (Some(digits), _) if !has_data => {
-            bail!("--digits {digits} has no effect on a picture: accepted is it with csv and json")
+            bail!("--digits {digits} has no effect on a picture: it is accepted with csv and json")
         }
         (_, Some(states)) if !has_pictures => {
-            bail!("--states {states} has no effect here: accepted is it with png and svg")
+            bail!("--states {states} has no effect here: it is accepted with png and svg")
         }
         _ => Ok(()),
     }

@@ -43,7 +43,7 @@ const SIZED: &str = "figure-7";
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let chosen = chosen(&arguments.only)?;
     if arguments.size.is_some() && !chosen.iter().any(|item| item.id == SIZED) {
-        bail!("--size has no effect on what --only names: accepted is it with {SIZED}");
+        bail!("--size has no effect on what --only names: it is accepted with {SIZED}");
     }
     let size = arguments.size.unwrap_or(Size::Default);
     make_folder(&arguments.out)?;

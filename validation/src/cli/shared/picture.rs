@@ -96,7 +96,7 @@ impl PrintFlags {
 /// Refuses a flag that has no effect.
 fn refuse(flag: Option<String>, accepted: &str) -> Result<()> {
     match flag {
-        Some(flag) => bail!("{flag} has no effect here: accepted is it with {accepted}"),
+        Some(flag) => bail!("{flag} has no effect here: it is accepted with {accepted}"),
         None => Ok(()),
     }
 }

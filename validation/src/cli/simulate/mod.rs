@@ -134,12 +134,12 @@ fn check_effect(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<()> 
         bail!("arrays are not accepted without SYSTEM: csv, json, png and svg are");
     }
     if let (Some(most), None) = (arguments.max_periods, arguments.events) {
-        bail!("--max-periods {most} has no effect here: accepted is it with --events");
+        bail!("--max-periods {most} has no effect here: it is accepted with --events");
     }
     if let Some(rows) =
         arguments.samples.filter(|_| outputs.formats().all(|it| PictureFormat::of(it).is_some()))
     {
-        bail!("--samples {rows} has no effect on a picture: accepted is it with csv and json");
+        bail!("--samples {rows} has no effect on a picture: it is accepted with csv and json");
     }
     arguments.picture.refuse_show()?;
     arguments.picture.refuse_range()

@@ -112,7 +112,7 @@ pub(crate) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let (problem, guessed) = arguments.model.guess(None)?;
     if guessed && arguments.all {
         bail!(
-            "--all has no effect with a guess, which leads to one orbit; accepted is it without --p, --y, --q, --phase and [start]"
+            "--all has no effect with a guess, which leads to one orbit; it is accepted without --p, --y, --q, --phase and [start]"
         );
     }
     let map = StrobeMap::new(problem.model, problem.entry.instant);

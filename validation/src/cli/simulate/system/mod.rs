@@ -97,7 +97,7 @@ fn check_flags(arguments: &Arguments) -> Result<()> {
     let section = arguments.section.as_ref().map(|it| format!("--section {it}"));
     let section = section.or_else(|| arguments.section_of_system.given());
     if let Some(flag) = section.filter(|_| !counts_returns) {
-        bail!("{flag} has no effect here: accepted is it with --returns and with --transient");
+        bail!("{flag} has no effect here: it is accepted with --returns and with --transient");
     }
     Ok(())
 }
