@@ -8,7 +8,7 @@ use crate::oscillator::Oscillator;
 use crate::returns::{Section, check_returns};
 use crate::system::System;
 use numpy::{PyArray1, PyArray2};
-use percuss::affine::{Orbit, ReturnBranch, ReturnFamily, Solver, SystemError};
+use percuss::affine::{Orbit, ReturnBranch, ReturnFamily, SystemError};
 use percuss::dynamics::continuation::{Branch, Family};
 use percuss::dynamics::orbit::scan;
 use percuss::{Parameter, System as Model};
@@ -147,7 +147,7 @@ pub(crate) fn system_follow<'py>(
     };
     let first = at(ends[0]).map_err(value)?;
     at(ends[1]).map_err(value)?;
-    let solver = Solver::<f64>::new(&first).map_err(value)?;
+    let solver = first.solver::<f64>().map_err(value)?;
     let map = section.map(&solver)?;
     let branch = interruptible(py, &Progress { told, all: SHARES }, |stop| {
         let (guess, _) = returns::guess(&map, transient)?;

@@ -48,7 +48,7 @@ struct Interrupted;
 pub(crate) struct Stop<'a> {
     is_asked: &'a AtomicBool,
     done: &'a AtomicU64,
-    /// What looks at Python's signals, where the work is done by the thread that may.
+    /// A watch on Python's signals, where the work is done by the thread that may look at them.
     here: Option<&'a Here<'a>>,
 }
 

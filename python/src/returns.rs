@@ -7,7 +7,8 @@ use crate::long_work::{Progress, attended};
 use crate::oscillator::MAX_PERIODS;
 use crate::system::System;
 use numpy::{PyArray1, PyArray2};
-use percuss::affine::{self, Orbit, Return, SectionMap, Solver};
+use percuss::Solver;
+use percuss::affine::{self, Orbit, Return, SectionMap};
 use percuss_validation::{returns, typed};
 use pyo3::IntoPyObject;
 use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyclass, pyfunction, pymethods};
@@ -44,7 +45,7 @@ impl Section {
 impl Section {
     /// The return map of the section.
     pub(crate) fn map<'a>(&self, solver: &'a Solver<f64>) -> PyResult<SectionMap<'a, f64>> {
-        let map = SectionMap::new(solver, &self.section).map_err(value)?;
+        let map = SectionMap::new(solver.for_sections(), &self.section).map_err(value)?;
         Ok(match self.longest {
             Some(longest) => map.within(longest),
             None => map,
@@ -56,7 +57,7 @@ impl Section {
 pub(crate) fn solver(system: &System) -> PyResult<Arc<Solver<f64>>> {
     let shared = &system.shared;
     shared.system.start().map_err(value)?;
-    shared.solvers(false).returning(&shared.system, false).map_err(value)
+    shared.solvers(false).plain(&shared.system, false).map_err(value)
 }
 
 /// Refuses a motion that is too long, or that has nothing to tell.

@@ -10,15 +10,11 @@ type Once<T> = OnceLock<Arc<T>>;
 /// The closed forms of a system's modes, in 106 bits.
 pub(crate) type ClosedForms = affine::Solver<DoubleDouble>;
 
-/// The solver whose motions return to sections.
-pub(crate) type Returning = affine::Solver<f64>;
-
 /// The solvers of one direction of time.
 #[derive(Default)]
 pub(crate) struct Solvers {
     proved: Once<Solver<Proved>>,
     plain: Once<Solver<f64>>,
-    returning: Once<Returning>,
     closed_forms: Once<ClosedForms>,
 }
 
@@ -37,14 +33,6 @@ impl Solvers {
         backward: bool,
     ) -> Result<Arc<Solver<f64>>, SystemError> {
         once(&self.plain, || if backward { system.backward_solver() } else { system.solver() })
-    }
-
-    pub(crate) fn returning(
-        &self,
-        system: &System,
-        backward: bool,
-    ) -> Result<Arc<Returning>, SystemError> {
-        once(&self.returning, || Returning::prepare(system, backward))
     }
 
     pub(crate) fn closed_forms(

@@ -187,7 +187,7 @@ y = 0
 v = "belt"
 "#;
 
-/// How far the mass goes with the belt and back against it while it sticks and slips. It leaves the
+/// The ends of the mass's way with the belt and against it while it sticks and slips. It leaves the
 /// belt at y = fall belt, where its speed begins to change with no acceleration: with
 /// cos a = fall/2 its speed is belt exp(t cos a) sin(a - t sin a) / sin a, and is 0 at
 /// t = a / sin a, where y = belt exp(a cot a). Half a turn of the other slope, with

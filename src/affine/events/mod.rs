@@ -85,7 +85,7 @@ impl System {
 }
 
 impl Solver<f64> {
-    /// The same preparation for the dynamics of the system, its sections and orbits.
+    /// The prepared system, as the return maps of its sections and their orbits take it.
     ///
     /// ```
     /// use percuss::system::{Section, SectionMap};

@@ -59,7 +59,7 @@ impl<'a, T: Number> Walk<'a, T> {
         Self { map, run, last, strobe }
     }
 
-    /// The same motion, of which many returns are asked for.
+    /// Lets a motion of which many returns are asked for search its events beyond strobes.
     pub fn for_many(mut self) -> Self {
         if let Some(reach) = self.map.search_ahead() {
             self.run.search_ahead(reach);

@@ -32,17 +32,15 @@ impl<T: Number> Run<'_, T> {
     #[inline]
     pub(super) fn search(&mut self, mode: usize, limit: T) -> SearchOutcome {
         let Some(ahead) = self.ahead else { return self.search_to(mode, limit) };
-        let is_passed = self.is_by(limit);
-        if is_passed {
-            self.count_undecidable();
+        if !self.is_by(limit) {
+            return SearchOutcome::NoCrossing;
         }
+        self.work.undecidable += ahead.undecidable;
+        let anew = SearchAhead { found: None, undecidable: 0, ..ahead };
+        self.ahead = Some(anew);
         match ahead.found {
-            _ if !is_passed => SearchOutcome::NoCrossing,
-            Some(guards) => {
-                self.ahead = Some(SearchAhead { found: None, undecidable: 0, ..ahead });
-                SearchOutcome::Crossing(guards)
-            }
-            None => self.search_beyond(mode, limit, SearchAhead { undecidable: 0, ..ahead }),
+            Some(guards) => SearchOutcome::Crossing(guards),
+            None => self.search_beyond(mode, limit, anew),
         }
     }
 
@@ -84,14 +82,6 @@ impl<T: Number> Run<'_, T> {
         self.work.undecidable = before;
         self.ahead = Some(SearchAhead { found, undecidable, ..ahead });
         SearchOutcome::NoCrossing
-    }
-
-    /// Counts what an earlier search left open, once the run has come to where that arrived.
-    #[inline]
-    fn count_undecidable(&mut self) {
-        if let Some(ahead) = &mut self.ahead {
-            self.work.undecidable += std::mem::take(&mut ahead.undecidable);
-        }
     }
 
     /// Whether the left end is not later than a time after the entry; a crossing exactly there

@@ -19,7 +19,7 @@ pub(super) fn rows(
     Ok(run.end(ending.as_ref()))
 }
 
-/// How far a run has come.
+/// The events and samples that a run has passed.
 #[derive(Default)]
 struct Passed {
     /// Events of the section.
