@@ -1,56 +1,44 @@
 //! The distribution of tiles over shards.
 //!
-//! The costliest tile goes first, each to the shard that has least so far (Graham 1969: the longest
-//! shard then takes at most 4/3 of the shortest possible, if costs are known). Ties go by number,
-//! so that every program deals alike.
-
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+//! Every round of as many tiles as there are shards gives one tile to each, so that shards differ by
+//! one tile at most. Neighbours cost about the same, which makes rounds even; and each round begins
+//! at another shard, so that no period in the costs of tiles, as of the blocks of a point, falls on
+//! the same shards again and again. Shards that are dealt by a count of events are no more even, as
+//! the measurements in docs/SWEEPS.md tell.
 
 /// The shard of each tile.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Deal {
-    /// The tiles of all shards, one shard after the other, each in order.
-    tiles: Vec<u64>,
-    /// The end of each shard's tiles.
-    ends: Vec<usize>,
-    cost_of: Vec<u64>,
+    tiles: u64,
+    shards: u32,
 }
 
+/// The fractional part of the golden ratio, in units of 2^-64.
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
 impl Deal {
-    /// Deals tiles of the given costs to a number of shards.
-    pub fn new(costs: &[u64], shards: u32) -> Self {
-        let mut order: Vec<usize> = (0..costs.len()).collect();
-        order.sort_by_key(|tile| (Reverse(costs[*tile]), *tile));
-        let mut loads: BinaryHeap<_> = (0..shards).map(|shard| Reverse((0_u64, shard))).collect();
-        let mut shard_of = vec![0; costs.len()];
-        let mut cost_of = vec![0; shards as usize];
-        for tile in order {
-            let Some(Reverse((load, shard))) = loads.pop() else { break };
-            // A tile without events is work as well.
-            let load = load.saturating_add(costs[tile].max(1));
-            shard_of[tile] = shard;
-            cost_of[shard as usize] = load;
-            loads.push(Reverse((load, shard)));
-        }
-        let mut tiles: Vec<u64> = (0..costs.len() as u64).collect();
-        tiles.sort_by_key(|tile| shard_of[*tile as usize]);
-        let end = |shard| tiles.partition_point(|tile| shard_of[*tile as usize] <= shard);
-        let ends = (0..shards).map(end).collect();
-        Self { tiles, ends, cost_of }
+    /// Deals a number of tiles to at most as many shards.
+    pub const fn new(tiles: u64, shards: u32) -> Self {
+        Self { tiles, shards }
     }
 
     /// The tiles of a shard, in order.
-    pub fn tiles_of(&self, shard: u32) -> &[u64] {
-        let shard = shard as usize;
-        let from = shard.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.tiles[from..self.ends[shard]]
+    pub fn tiles_of(self, shard: u32) -> Vec<u64> {
+        let shards = u64::from(self.shards);
+        let tile_of = |round: u64| {
+            let first = u64::from(spread(round, self.shards));
+            round * shards + (u64::from(shard) + shards - first) % shards
+        };
+        let rounds = 0..self.tiles.div_ceil(shards);
+        rounds.map(tile_of).filter(|tile| *tile < self.tiles).collect()
     }
+}
 
-    /// The cost of a shard.
-    pub fn cost_of(&self, shard: u32) -> u64 {
-        self.cost_of[shard as usize]
-    }
+/// The place of a number among some places, over which any numbers in a row are spread evenly: by
+/// the multiples of the golden ratio, without their integer parts.
+pub fn spread(number: u64, places: u32) -> u32 {
+    let share = number.wrapping_mul(GOLDEN);
+    ((u128::from(share) * u128::from(places)) >> 64) as u32
 }
 
 #[cfg(test)]
@@ -58,22 +46,38 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_tile_belongs_to_one_shard_and_loads_are_even() {
-        let costs: Vec<u64> = (0..1000).map(|k| 1 + (k * 7919) % 97).collect();
-        let deal = Deal::new(&costs, 16);
-        let mut tiles: Vec<u64> = (0..16).flat_map(|shard| deal.tiles_of(shard).to_vec()).collect();
-        tiles.sort_unstable();
-        assert_eq!(tiles, (0..1000).collect::<Vec<_>>());
-        let loads: Vec<u64> = (0..16).map(|shard| deal.cost_of(shard)).collect();
-        let mean = costs.iter().sum::<u64>() / 16;
-        let longest = *loads.iter().max().unwrap_or(&0);
-        // No tile was added to a shard that had more than the mean, and the last ones cost 1.
-        assert!(longest <= mean + 2, "{longest} of {mean}");
+    fn every_tile_belongs_to_one_shard_and_shards_have_as_many() {
+        for (tiles, shards) in [(1, 1), (7, 7), (8, 7), (1000, 16), (1001, 64), (100, 99)] {
+            let deal = Deal::new(tiles, shards);
+            let of_shards: Vec<_> = (0..shards).map(|shard| deal.tiles_of(shard)).collect();
+            let (least, rest) = (tiles / u64::from(shards), tiles % u64::from(shards));
+            let larger = of_shards.iter().filter(|it| it.len() as u64 == least + 1).count();
+            assert_eq!(larger as u64, rest);
+            assert!(of_shards.iter().all(|it| it.is_sorted() && it.len() as u64 >= least));
+            let mut all = of_shards.concat();
+            all.sort_unstable();
+            assert_eq!(all, (0..tiles).collect::<Vec<_>>());
+        }
+    }
+
+    /// Every fourth tile costs all, as a block that holds the long motions of each point.
+    #[test]
+    fn no_period_in_the_costs_falls_on_one_shard() {
+        let deal = Deal::new(64 * 100, 64);
+        let cost_of = |shard| deal.tiles_of(shard).iter().filter(|tile| **tile % 4 == 0).count();
+        let costs: Vec<usize> = (0..64).map(cost_of).collect();
+        // Each shard has 100 tiles, 25 of them costly on average.
+        assert!(costs.iter().all(|cost| (20..=30).contains(cost)), "{costs:?}");
     }
 
     #[test]
-    fn no_shard_is_empty_where_there_are_as_many_tiles() {
-        let deal = Deal::new(&[0, 0, 0, 1_000_000], 4);
-        assert!((0..4).all(|shard| deal.tiles_of(shard).len() == 1));
+    fn any_numbers_in_a_row_are_spread() {
+        for from in [0, 1000, u64::MAX / 3] {
+            let mut places: Vec<u32> = (from..from + 100).map(|it| spread(it, 100_000)).collect();
+            places.sort_unstable();
+            // The gaps of such a sequence are at most 1 + 1.618 times the mean one.
+            let widest = places.windows(2).map(|it| it[1] - it[0]).max();
+            assert!(widest < Some(2618), "{widest:?}");
+        }
     }
 }

@@ -12,8 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// The file that says which plan and program the folder is of.
 const SWEEP: &str = "sweep.json";
-const PILOT: &str = "pilot.json";
-/// The beginning of the temporary names of these two.
+/// The beginning of its temporary name.
 const OTHERS: &str = ".percuss-";
 
 /// The program that computes. Programs that differ may differ in the last bits, which chaos
@@ -133,17 +132,6 @@ impl Folder {
             }
             written => written.map_err(unwritable),
         }
-    }
-
-    /// The pilot's file, if there is one.
-    pub(super) fn read_pilot(&self) -> Option<Vec<u8>> {
-        fs::read(self.path.join(PILOT)).ok()
-    }
-
-    /// Writes the costs that the pilot has counted.
-    pub(super) fn write_pilot(&self, bytes: &[u8]) -> Result<()> {
-        let written = self.put(PILOT, OTHERS, &[bytes], Unfinished::finish);
-        written.map_err(|error| self.unwritable(PILOT, &error))
     }
 
     /// The file of a shard.

@@ -3,10 +3,10 @@
 //!
 //! A [`Plan`] spans *points*, one for each combination of its axes' values. They are cut into
 //! *tiles*, some points each or blocks of a large one (`tiling.rs`), and what a [`SweepVerb`] gives
-//! depends on the point and block alone. A pilot counts events on a coarse grid (`pilot.rs`), by
-//! which the tiles are dealt to shards (`deal.rs`). A shard is computed by [`Sweep`] and is one
-//! file (`shard.rs`) in the sweep's folder ([`Folder`]). When all are there, [`Merge`] joins them
-//! into one archive of arrays, which tells nothing of shards, threads or machines.
+//! depends on the point and block alone. Tiles are dealt evenly to shards (`deal.rs`). A shard is
+//! computed by [`Sweep`] and is one file (`shard.rs`) in the sweep's folder ([`Folder`]). When all
+//! are there, [`Merge`] joins them into one archive of arrays, which tells nothing of shards, threads
+//! or machines.
 
 mod array;
 mod axis;
@@ -15,7 +15,6 @@ mod folder;
 mod merge;
 #[cfg(feature = "mpi")]
 mod mpi;
-mod pilot;
 mod plan;
 mod run;
 mod shard;

@@ -129,9 +129,9 @@ struct Queue {
 impl Queue {
     fn new(sweep: &Sweep<'_>, observer: &dyn SweepObserver) -> Self {
         let shards = sweep.open_shards(observer).into_iter().rev();
-        let of = |shard: u32| sweep.dealt.deal.tiles_of(shard).iter().rev();
+        let of = |shard: u32| sweep.deal.tiles_of(shard).into_iter().rev();
         let tiles: Vec<_> =
-            shards.flat_map(|shard| of(shard).map(move |tile| (shard, *tile))).collect();
+            shards.flat_map(|shard| of(shard).map(move |tile| (shard, tile))).collect();
         observer.begun(tiles.len() as u64);
         Self { tiles, under_way: BTreeMap::new(), open: BTreeMap::new() }
     }
@@ -163,7 +163,7 @@ impl Queue {
         let open = self.open.get_mut(&shard).context("a shard that is not open")?;
         open.tiles.insert(tile, outcome.map_err(|why| anyhow!(why))?);
         observer.tile();
-        if open.tiles.len() == sweep.dealt.deal.tiles_of(shard).len() {
+        if open.tiles.len() == sweep.deal.tiles_of(shard).len() {
             let Some(done) = self.open.remove(&shard) else { return Ok(()) };
             let tiles: Vec<Vec<u8>> = done.tiles.into_values().collect();
             sweep.keep(shard, done.begun.elapsed(), &tiles)?;

@@ -1,7 +1,7 @@
 //! Computes the shards of a sweep.
 
+use super::deal::Deal;
 use super::folder::{ComputedBy, Folder};
-use super::pilot::{self, Dealt};
 use super::plan::Plan;
 use super::shard::{self, Damage, Identity, Shard, ShardHead};
 use super::tiling::{self, Tiling};
@@ -19,7 +19,7 @@ pub struct Sweep<'a> {
     pub(super) work: &'a dyn SweepVerb,
     pub(super) folder: &'a Folder,
     pub(super) tiling: Tiling,
-    pub(super) dealt: Dealt,
+    pub(super) deal: Deal,
     pub(super) identity: Identity,
 }
 
@@ -62,19 +62,12 @@ impl<'a> Sweep<'a> {
     }
 
     /// Deals the tiles of a plan that was checked, in a folder that was begun.
-    ///
-    /// # Errors
-    /// What the verb objects to, and a folder that cannot be written.
-    pub fn new(plan: &'a Plan, work: &'a dyn SweepVerb, folder: &'a Folder) -> Result<Self> {
+    #[must_use]
+    pub fn new(plan: &'a Plan, work: &'a dyn SweepVerb, folder: &'a Folder) -> Self {
         let tiling = Tiling::new(plan, work);
-        let dealt = pilot::dealt(plan, work, tiling, folder)?;
-        let identity = Identity {
-            schema: 1,
-            plan: plan.hash.clone(),
-            deal: dealt.digest.clone(),
-            program: ComputedBy::this(),
-        };
-        Ok(Self { plan, work, folder, tiling, dealt, identity })
+        let deal = Deal::new(tiling.count(), plan.shards);
+        let identity = Identity { schema: 2, plan: plan.hash.clone(), program: ComputedBy::this() };
+        Self { plan, work, folder, tiling, deal, identity }
     }
 
     /// A shard whose file is there and whole.
@@ -82,7 +75,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// Says why there is none.
     pub fn shard(&self, shard: u32) -> Result<Shard, Damage> {
-        Shard::open(self.folder, &self.identity, shard, self.dealt.deal.tiles_of(shard))
+        Shard::open(self.folder, &self.identity, shard, &self.deal.tiles_of(shard))
     }
 
     /// Computes one shard, unless it is finished.
@@ -91,7 +84,7 @@ impl<'a> Sweep<'a> {
     /// What the verb objects to, and a folder that cannot be written.
     pub fn run(&self, shard: u32, observer: &dyn SweepObserver) -> Result<()> {
         if self.is_open(shard, observer) {
-            observer.begun(self.dealt.deal.tiles_of(shard).len() as u64);
+            observer.begun(self.deal.tiles_of(shard).len() as u64);
             let lock = self.folder.lock(shard)?;
             if !lock.is_ours() && self.folder.is_locked(shard) {
                 observer.doubled(shard);
@@ -108,7 +101,7 @@ impl<'a> Sweep<'a> {
     /// What the verb objects to, and a folder that cannot be written.
     pub fn run_all(&self, observer: &dyn SweepObserver) -> Result<()> {
         let open = self.open_shards(observer);
-        let tiles = |shard: &u32| self.dealt.deal.tiles_of(*shard).len() as u64;
+        let tiles = |shard: &u32| self.deal.tiles_of(*shard).len() as u64;
         observer.begun(open.iter().map(tiles).sum());
         let mut left = Vec::new();
         for shard in open {
@@ -148,7 +141,7 @@ impl<'a> Sweep<'a> {
 
     fn compute(&self, shard: u32, observer: &dyn SweepObserver) -> Result<()> {
         let begun = Instant::now();
-        let numbers = self.dealt.deal.tiles_of(shard);
+        let numbers = self.deal.tiles_of(shard);
         let compute = |tile: &u64| {
             let done = self.tile(*tile);
             observer.tile();
@@ -181,7 +174,7 @@ impl<'a> Sweep<'a> {
         if self.shard(shard).is_ok() {
             return Ok(());
         }
-        let numbers = self.dealt.deal.tiles_of(shard);
+        let numbers = self.deal.tiles_of(shard);
         let lengths = tiles.iter().map(|it| it.len() as u64);
         let head = ShardHead {
             identity: self.identity.clone(),

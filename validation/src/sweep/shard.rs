@@ -29,8 +29,6 @@ pub struct Identity {
     pub schema: u32,
     /// The plan's hash.
     pub plan: String,
-    /// The hash of the costs by which tiles were dealt to shards.
-    pub deal: String,
     /// The program that computed the shard.
     pub program: ComputedBy,
 }
@@ -175,12 +173,10 @@ impl TileLocation {
 impl Identity {
     /// The first difference from another identity.
     fn difference(&self, other: &Self) -> &'static str {
-        if self.plan != other.plan {
-            "it is of another plan"
-        } else if self.program != other.program {
+        if self.plan == other.plan {
             "it is of another version of percuss, or of another arithmetic"
         } else {
-            "its tiles were dealt in another way"
+            "it is of another plan"
         }
     }
 }

@@ -38,14 +38,14 @@ impl SweepStatus {
     /// Looks at all shards of a sweep.
     #[must_use]
     pub fn of(sweep: &Sweep<'_>) -> Self {
-        let (mut seconds, mut done, mut left) = (0.0, 0.0, 0.0);
+        let (mut seconds, mut done, mut left) = (0.0, 0, 0);
         let mut shards = Vec::new();
         for shard in 0..sweep.plan.shards {
-            let cost = sweep.dealt.deal.cost_of(shard) as f64;
+            let tiles = sweep.deal.tiles_of(shard).len();
             let state = match sweep.shard(shard) {
                 Ok(shard) => {
                     seconds += shard.head.seconds;
-                    done += cost;
+                    done += tiles;
                     ShardState::Done
                 }
                 Err(_) if sweep.folder.is_locked(shard) => ShardState::Running,
@@ -53,12 +53,13 @@ impl SweepStatus {
                 Err(Damage::Damaged(why)) => ShardState::Damaged(why),
             };
             if state != ShardState::Done {
-                left += cost;
+                left += tiles;
             }
             shards.push(state);
         }
         let running = shards.iter().filter(|it| **it == ShardState::Running).count().max(1);
-        let seconds_to_end = (done > 0.0).then(|| left * seconds / done / running as f64);
+        let seconds_to_end =
+            (done > 0).then(|| left as f64 * seconds / done as f64 / running as f64);
         Self { shards, seconds_to_end }
     }
 

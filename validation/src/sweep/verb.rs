@@ -35,13 +35,6 @@ pub trait SweepVerb: Sync {
     /// A tile that cannot be read.
     fn join(&self, point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>>;
 
-    /// About how many events each tile of a point costs, or a quantity in proportion to it: counted
-    /// where the point is one of the pilot's.
-    ///
-    /// # Errors
-    /// What the verb objects to.
-    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>>;
-
     /// Arrays that are the same at every point: the axes that the verb has itself.
     fn coordinates(&self) -> Vec<Array> {
         Vec::new()

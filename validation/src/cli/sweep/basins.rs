@@ -9,7 +9,6 @@ use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
 use anyhow::Result;
 use percuss::dynamics::attractor::{Basins, BlockLabeller, Grid, Label, LabelledBlock};
 use percuss::dynamics::strobe::StrobeMap;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -34,9 +33,6 @@ struct Ground {
     map: StrobeMap,
     grid: Grid,
 }
-
-/// Starts along p and along y of the pilot.
-const PILOT: u32 = 16;
 
 impl BasinWork {
     pub(super) fn labels(arguments: BasinArguments) -> Result<Self> {
@@ -162,25 +158,6 @@ impl SweepVerb for BasinWork {
         let blocks: Vec<LabelledBlock> = blocks.collect::<Result<_>>()?;
         let Ground { problem, map, grid } = self.ground(point)?;
         self.arrays(problem, &map, Basins::joined(grid, blocks))
-    }
-
-    /// A lattice of starts stands for the blocks in whose rows they lie.
-    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
-        let Ground { map, grid, .. } = self.ground(point)?;
-        let labeller = BlockLabeller::new(&map, &grid, self.grid.limits());
-        let lattice = Grid { columns: PILOT, rows: PILOT, ..grid };
-        let events: Vec<u64> =
-            lattice.starts().par_iter().map(|start| labeller.events(*start)).collect();
-        let rows: Vec<u64> = events.chunks(PILOT as usize).map(|row| row.iter().sum()).collect();
-        let search = labeller.events_of_long_runs() + rows.iter().sum::<u64>();
-        let cost = |block: u32| {
-            let of = grid.rows_of(block);
-            let starts = u64::from(of.end - of.start) * u64::from(grid.columns);
-            let middle = u64::from(of.start + of.end) * u64::from(PILOT) / 2;
-            let row = (middle / u64::from(grid.rows)).min(u64::from(PILOT) - 1);
-            search + rows[row as usize] * starts / u64::from(PILOT)
-        };
-        Ok((0..grid.blocks()).map(cost).collect())
     }
 
     fn coordinates(&self) -> Vec<Array> {

@@ -33,13 +33,6 @@ impl SweepVerb for BranchWork {
     fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
         records::of_single(tiles)
     }
-
-    /// The iterations of a branch are as many as its events, which are not known before it is
-    /// followed: those of a run at its first value stand for them.
-    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
-        let (problem, ..) = family(&self.arguments, &self.arguments.model.at(point))?;
-        Ok(vec![records::events(&problem.model, problem.entry, u64::MAX)])
-    }
 }
 
 /// What the verb writes as JSON: its numbers as arrays, and all of it as text.

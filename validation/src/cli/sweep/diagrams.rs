@@ -13,7 +13,6 @@ use percuss::dynamics::diagram::{Diagram, DiagramStep};
 /// Diagrams at each point; a point is one tile.
 pub(super) struct DiagramWork {
     arguments: Arguments,
-    periods: u32,
     /// Whether the last axis is what varies in the diagram.
     by_axis: bool,
 }
@@ -55,7 +54,7 @@ impl DiagramWork {
         if names_parameter(plan) {
             arguments.model.check_varied(arguments.parameter_of_oscillator()?)?;
         }
-        Ok(Self { arguments, periods, by_axis: !names_parameter(plan) })
+        Ok(Self { arguments, by_axis: !names_parameter(plan) })
     }
 
     fn diagram(&self, point: &SweepPoint) -> Result<Diagram> {
@@ -119,11 +118,5 @@ impl SweepVerb for DiagramWork {
 
     fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
         records::of_single(tiles)
-    }
-
-    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
-        let problem = self.arguments.model.at(point).problem()?;
-        let periods = self.arguments.transient + u64::from(self.periods);
-        Ok(vec![records::events(&problem.model, problem.entry, periods)])
     }
 }

@@ -38,12 +38,6 @@ impl SweepVerb for ExponentWork {
     fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
         records::of_single(tiles)
     }
-
-    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
-        let Arguments { transient, model, .. } = &self.arguments;
-        let problem = model.at(point).problem()?;
-        Ok(vec![records::events(&problem.model, problem.entry, transient + self.periods)])
-    }
 }
 
 /// The arrays of the verb's JSON, with infinite exponents as they are.

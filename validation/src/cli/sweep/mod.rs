@@ -94,7 +94,7 @@ struct MergeArguments {
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     match &arguments.step {
         SweepStep::Run(arguments) => compute(arguments, threads),
-        SweepStep::Status(arguments) => status(arguments, threads),
+        SweepStep::Status(arguments) => status(arguments),
         SweepStep::Merge(arguments) => merged(arguments, threads),
     }
 }
@@ -135,7 +135,7 @@ fn compute(arguments: &RunArguments, threads: Option<u16>) -> Result<u8> {
     }
     long_work::pool(threads)?.install(|| {
         folder.begin(&plan)?;
-        let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
+        let sweep = Sweep::new(&plan, work.as_ref(), &folder);
         let progress = SweepProgress { bar: long_work::bar(0, "tiles") };
         match shard {
             Some(shard) => sweep.run(shard, &progress),
@@ -158,10 +158,10 @@ fn by_ranks(
     let begin = || {
         pool.install(|| {
             folder.begin(plan)?;
-            Sweep::new(plan, work, folder)
+            anyhow::Ok(Sweep::new(plan, work, folder))
         })
     };
-    // The pilot is left to the first rank; the others read what it has found.
+    // The first rank makes the folder; the others read what it is of.
     let first = if ranks.is_first() { Some(begin()) } else { None };
     let others = ranks.are_well(first.as_ref().is_none_or(Result::is_ok));
     if !others {
@@ -177,16 +177,13 @@ fn by_ranks(
     Ok(DONE)
 }
 
-fn status(arguments: &StatusArguments, threads: Option<u16>) -> Result<u8> {
+fn status(arguments: &StatusArguments) -> Result<u8> {
     let usual = shown::usual(&arguments.output.destination());
     let format = arguments.output.format(usual)?;
     let folder = Folder::new(&arguments.sweep.out)?;
     let (plan, work) = arguments.sweep.plan()?;
     let status = if folder.check(&plan)? {
-        long_work::pool(threads)?.install(|| {
-            let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
-            anyhow::Ok(SweepStatus::of(&sweep))
-        })?
+        SweepStatus::of(&Sweep::new(&plan, work.as_ref(), &folder))
     } else {
         SweepStatus::not_begun(&plan)
     };
@@ -216,7 +213,7 @@ fn merged(arguments: &MergeArguments, threads: Option<u16>) -> Result<u8> {
     let beside = output::folder_of(output);
     let merged = if folder.check(&plan)? {
         long_work::pool(threads)?.install(|| {
-            let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
+            let sweep = Sweep::new(&plan, work.as_ref(), &folder);
             let bar = long_work::bar(plan.points(), "points");
             let merge = Merge::new(&sweep)?;
             destination.write(|out| merge.write(beside, out, &|| bar.inc(1)))

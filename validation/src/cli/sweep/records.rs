@@ -18,16 +18,3 @@ pub(super) fn of_single(tiles: crate::sweep::Tiles<'_>) -> Result<Vec<Array>> {
     let tile = tiles.next().context("a point has no tile")??;
     value(&tile)
 }
-
-/// About how many events a motion meets in a forcing period, times [`SCALE`].
-pub(super) fn events(model: &percuss::Model, entry: percuss::Entry, periods: u64) -> u64 {
-    let looked_at = periods.clamp(1, LOOKED_AT);
-    let end = entry.instant.after_periods(looked_at, 1);
-    let events = model.trajectory(entry).until(end).count() as u64;
-    events * SCALE / looked_at
-}
-
-/// Forcing periods over which events are counted, at most.
-const LOOKED_AT: u64 = 64;
-/// Costs are integers, so that all programs deal alike.
-pub(super) const SCALE: u64 = 1024;

@@ -113,11 +113,6 @@ impl SweepVerb for SystemBasinWork {
         records::of_single(tiles)
     }
 
-    /// The start's own motion stands for those of the grid.
-    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
-        Ok(vec![self.swept.events(point, &self.section)?])
-    }
-
     fn coordinates(&self) -> Vec<Array> {
         let centres = |axis: usize| {
             let centres = self.plane.centres(axis);

@@ -100,12 +100,6 @@ impl SweepVerb for SystemBranchWork {
         records::of_single(tiles)
     }
 
-    /// The iterations of a branch are as many as its events, which are not known before it is
-    /// followed: those of a run from the start stand for them.
-    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
-        Ok(vec![self.swept.events(point, &self.arguments.section)?])
-    }
-
     fn names(&self) -> Vec<(&'static str, Vec<String>)> {
         self.swept.names()
     }

@@ -82,10 +82,6 @@ impl SweepVerb for SystemDiagramWork {
         records::of_single(tiles)
     }
 
-    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
-        Ok(vec![self.swept.events(point, &self.arguments.section)?])
-    }
-
     fn names(&self) -> Vec<(&'static str, Vec<String>)> {
         self.swept.names()
     }

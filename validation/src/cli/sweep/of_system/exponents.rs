@@ -70,10 +70,6 @@ impl SweepVerb for SystemExponentWork {
         records::of_single(tiles)
     }
 
-    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
-        Ok(vec![self.swept.events(point, &self.arguments.section)?])
-    }
-
     fn names(&self) -> Vec<(&'static str, Vec<String>)> {
         vec![("states", self.swept.first.states.clone()), ("drifts", self.swept.drifts())]
     }

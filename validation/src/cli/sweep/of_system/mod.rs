@@ -10,13 +10,12 @@ pub(super) use branches::SystemBranchWork;
 pub(super) use diagrams::SystemDiagramWork;
 pub(super) use exponents::SystemExponentWork;
 
-use super::records::SCALE;
 use crate::cli::shared::section::{SectionFlags, is_told_by_model};
 use crate::cli::shared::system_choice::{ChosenSystem, SystemChoice};
 use crate::sweep::{Plan, SweepPoint};
 use anyhow::{Result, bail};
 use percuss::System;
-use percuss::affine::{LeftOut, NoReturn, Return, SectionMap, Solver};
+use percuss::affine::{LeftOut, NoReturn, Return, Solver};
 
 /// A system whose parameters are a plan's axes.
 pub(super) struct SweptSystem {
@@ -49,14 +48,6 @@ impl SweptSystem {
         section.map(&Solver::new(&self.first)?).map(drop)
     }
 
-    /// About how many events a return to a section takes from the start of a point, times
-    /// [`SCALE`].
-    fn events(&self, point: &SweepPoint, section: &SectionFlags) -> Result<u64> {
-        let system = self.system(point)?;
-        let solver = Solver::new(&system)?;
-        events(&section.map(&solver)?)
-    }
-
     /// The names of modes and states, to which numbers of arrays refer.
     fn names(&self) -> Vec<(&'static str, Vec<String>)> {
         let modes = self.first.modes.iter().map(|it| it.name.clone()).collect();
@@ -67,23 +58,6 @@ impl SweptSystem {
     fn drifts(&self) -> Vec<String> {
         self.first.drifts().into_iter().map(|it| self.first.states[it].clone()).collect()
     }
-}
-
-/// Returns over which events are counted, at most.
-const LOOKED_AT: u64 = 16;
-
-fn events(map: &SectionMap<'_, f64>) -> Result<u64> {
-    let mut returns = map.returns(map.system().start()?)?;
-    let begun = matches!(returns.next(), Some(Ok(_)));
-    let Some(mut place) = returns.place().ok().filter(|_| begun) else { return Ok(SCALE) };
-    let (mut events, mut passed) = (0, 0);
-    while passed < LOOKED_AT {
-        let Ok(passage) = map.passage(&place) else { break };
-        events += passage.events.len() as u64;
-        passed += 1;
-        place = passage.image;
-    }
-    Ok(events.max(1) * SCALE / passed.max(1))
 }
 
 /// The number in files of the reason for which a motion is left out; -1 of one that is not.
