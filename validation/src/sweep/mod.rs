@@ -13,8 +13,6 @@ mod axis;
 mod deal;
 mod folder;
 mod merge;
-#[cfg(feature = "mpi")]
-mod mpi;
 mod plan;
 mod run;
 mod shard;
@@ -27,8 +25,6 @@ pub use array::{Array, ArrayValues};
 pub use axis::{SweepAxis, SweepPoint};
 pub use folder::{ComputedBy, Folder};
 pub use merge::{Merge, NotMerged};
-#[cfg(feature = "mpi")]
-pub use mpi::Ranks;
 pub use plan::{Plan, PlanFile};
 pub use run::{Sweep, SweepObserver};
 pub use shard::Damage;

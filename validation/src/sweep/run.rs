@@ -1,7 +1,7 @@
 //! Computes the shards of a sweep.
 
-use super::deal::Deal;
-use super::folder::{ComputedBy, Folder};
+use super::deal::{self, Deal};
+use super::folder::{ComputedBy, Folder, Lock};
 use super::plan::Plan;
 use super::shard::{self, Damage, Identity, Shard, ShardHead};
 use super::tiling::{self, Tiling};
@@ -12,6 +12,8 @@ use std::time::{Duration, Instant};
 
 /// Most tiles of a plan: every task and every merge holds what is known of each in memory.
 const MOST_TILES: u64 = 1 << 24;
+/// The time between two looks at a shard that another process computes.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
 
 /// A sweep that is ready to be computed, looked at or merged.
 pub struct Sweep<'a> {
@@ -94,38 +96,53 @@ impl<'a> Sweep<'a> {
         Ok(())
     }
 
-    /// Computes all shards that are not finished. Those that another process computes are left to
-    /// the end, and computed as well where they are not finished by then.
+    /// Computes all shards that are not finished. Processes of other ranks begin at other shards, far
+    /// from each other. The shards that another process computes are left to the end, and waited for
+    /// as long as the longest of this process took; then they are computed as well.
     ///
     /// # Errors
     /// What the verb objects to, and a folder that cannot be written.
-    pub fn run_all(&self, observer: &dyn SweepObserver) -> Result<()> {
-        let open = self.open_shards(observer);
+    pub fn run_all(&self, rank: u64, observer: &dyn SweepObserver) -> Result<()> {
+        let first = deal::spread(rank, self.plan.shards);
+        let shards = (first..self.plan.shards).chain(0..first);
+        let open: Vec<u32> = shards.filter(|shard| self.is_open(*shard, observer)).collect();
         let tiles = |shard: &u32| self.deal.tiles_of(*shard).len() as u64;
         observer.begun(open.iter().map(tiles).sum());
-        let mut left = Vec::new();
+        let (mut left, mut longest) = (Vec::new(), Duration::ZERO);
         for shard in open {
             let lock = self.folder.lock(shard)?;
             if !lock.is_ours() && self.folder.is_locked(shard) {
                 left.push(shard);
             } else if self.shard(shard).is_err() {
+                let begun = Instant::now();
                 self.compute(shard, observer)?;
+                longest = longest.max(begun.elapsed());
             } else {
                 (0..tiles(&shard)).for_each(|_| observer.tile());
             }
         }
         for shard in left {
-            let _lock = self.folder.lock(shard)?;
+            let _lock = self.awaited(shard, longest)?;
             if self.shard(shard).is_err() {
                 self.compute(shard, observer)?;
+            } else {
+                (0..tiles(&shard)).for_each(|_| observer.tile());
             }
         }
         Ok(())
     }
 
-    /// The shards that are still to be computed.
-    pub(super) fn open_shards(&self, observer: &dyn SweepObserver) -> Vec<u32> {
-        (0..self.plan.shards).filter(|shard| self.is_open(*shard, observer)).collect()
+    /// The lock of a shard that another process computes, once that is free, or held by the other
+    /// for longer than is waited: the lock of a machine that is lost may stay.
+    fn awaited(&self, shard: u32, patience: Duration) -> Result<Lock> {
+        let begun = Instant::now();
+        loop {
+            let lock = self.folder.lock(shard)?;
+            if lock.is_ours() || begun.elapsed() >= patience {
+                return Ok(lock);
+            }
+            std::thread::sleep(BETWEEN_LOOKS);
+        }
     }
 
     fn is_open(&self, shard: u32, observer: &dyn SweepObserver) -> bool {
@@ -157,7 +174,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Computes one tile.
-    pub(super) fn tile(&self, tile: u64) -> Result<Vec<u8>> {
+    fn tile(&self, tile: u64) -> Result<Vec<u8>> {
         let block = self.tiling.block_of(tile);
         let piece = |number: u64| {
             let point = self.plan.point(number);
@@ -169,7 +186,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Writes a shard's tiles, which took so long.
-    pub(super) fn keep(&self, shard: u32, took: Duration, tiles: &[Vec<u8>]) -> Result<()> {
+    fn keep(&self, shard: u32, took: Duration, tiles: &[Vec<u8>]) -> Result<()> {
         // Another worker may have finished it, and a merge may be reading that.
         if self.shard(shard).is_ok() {
             return Ok(());

@@ -124,3 +124,43 @@ fn what_a_killed_worker_has_left_is_removed() {
     // Another shard's may be another worker's, which is at it.
     assert_eq!(left.map(|path| path.exists()), [false, false, true]);
 }
+
+/// The processes of an MPI job, one more than there are shards: each shard is there
+/// once, and only the first process says what it finds.
+#[test]
+fn ranks_share_the_shards() {
+    let alone = Case::drift(4);
+    alone.done("run", &[]);
+    let case = Case::drift(4);
+    case.done("run", &["--shard", "1/4"]);
+    fs::write(case.shard(1), "spoiled").expect("written");
+    let start = |rank: u32| {
+        let words = case.command("run", &[]);
+        let mut command = percuss(&words.iter().map(String::as_str).collect::<Vec<_>>());
+        command.env("OMPI_COMM_WORLD_RANK", rank.to_string());
+        std::thread::spawn(move || command.output().expect("run"))
+    };
+    let ranks: Vec<_> = (0..5).map(start).collect();
+    for (rank, started) in ranks.into_iter().enumerate() {
+        let output = started.join().expect("no panic");
+        let said = text(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        assert!(rank == 0 || said.is_empty(), "{rank}: {said}");
+    }
+    assert_eq!(case.merged(), alone.merged());
+}
+
+/// The lock of a machine that is lost may stay on a file system that others share: whoever waits for
+/// it computes the shard in the end.
+#[test]
+fn a_shard_whose_lock_stays_is_computed_by_another() {
+    let alone = Case::drift(4);
+    alone.done("run", &[]);
+    let case = Case::drift(4);
+    case.done("run", &["--shard", "3/4"]);
+    let lock = fs::File::create(case.folder.path().join("out/00001.lock")).expect("created");
+    lock.lock().expect("locked");
+    assert_eq!(case.status().1["running"], serde_json::json!([1]));
+    case.done("run", &[]);
+    assert_eq!(case.merged(), alone.merged());
+}

@@ -1,4 +1,5 @@
-//! The shard of a task in a job array, by the variables that schedulers set.
+//! The shard of a task in a job array, and the rank of a process in an MPI job, by the variables that
+//! schedulers and launchers set.
 
 use crate::cli::note;
 use crate::sweep::Plan;
@@ -8,6 +9,10 @@ use anyhow::{Result, bail};
 /// Each with the index that its arrays begin at unless the plan states one.
 const VARIABLES: [(&str, u32); 4] =
     [("HQ_TASK_ID", 0), ("SLURM_ARRAY_TASK_ID", 0), ("PBS_ARRAY_INDEX", 0), ("SGE_TASK_ID", 1)];
+
+/// The variables by which launchers of MPI jobs and Slurm's `srun` tell a process its rank, innermost
+/// launcher first: `mpirun` may run inside a job of Slurm.
+const RANKS: [&str; 4] = ["OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"];
 
 /// The value that Grid Engine sets outside arrays.
 const UNDEFINED: &str = "undefined";
@@ -35,6 +40,11 @@ pub(super) fn of_task(
     };
     note(&format!("{name} = {value}: this is shard {shard} of {}", plan.shards));
     Ok(Some(shard))
+}
+
+/// The rank of this process among those that compute a sweep together; 0 where no launcher says it.
+pub(super) fn rank(variable: impl Fn(&str) -> Option<String>) -> u64 {
+    RANKS.iter().find_map(|name| variable(name)?.parse().ok()).unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -68,6 +78,17 @@ mod tests {
         assert_eq!(shard(Some(1), &[("PBS_ARRAY_INDEX", "4")]).unwrap(), Some(3));
         let both = [("SLURM_ARRAY_TASK_ID", "3"), ("HQ_TASK_ID", "1")];
         assert_eq!(shard(None, &both).unwrap(), Some(1));
+    }
+
+    #[test]
+    fn the_rank_is_that_of_the_innermost_launcher() {
+        let of = |set: &[(&str, &str)]| {
+            rank(|name| set.iter().find(|it| it.0 == name).map(|it| it.1.to_owned()))
+        };
+        assert_eq!(of(&[]), 0);
+        assert_eq!(of(&[("PMI_RANK", "7")]), 7);
+        assert_eq!(of(&[("SLURM_PROCID", "0"), ("OMPI_COMM_WORLD_RANK", "3")]), 3);
+        assert_eq!(of(&[("PMIX_RANK", "")]), 0);
     }
 
     /// An array that is submitted again for shards 2 and 3 has another least index and count.

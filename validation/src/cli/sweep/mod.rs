@@ -10,16 +10,12 @@ mod records;
 mod shown;
 mod verb;
 
-#[cfg(feature = "mpi")]
-use super::REFUSED;
 use super::help;
 use super::shared::format::OutputFlags;
 use super::shared::long_work::{self, Bar};
 use super::shared::output::{self, Destination};
 use super::shared::parse;
 use super::{DONE, OUT_OF_BOUNDS, note, say};
-#[cfg(feature = "mpi")]
-use crate::sweep::Ranks;
 use crate::sweep::{
     Damage, Folder, Merge, NotMerged, Plan, Sweep, SweepObserver, SweepStatus, SweepVerb,
 };
@@ -127,53 +123,17 @@ fn compute(arguments: &RunArguments, threads: Option<u16>) -> Result<u8> {
         ),
         None => index::of_task(&plan, |name| std::env::var(name).ok())?,
     };
-    #[cfg(feature = "mpi")]
-    if shard.is_none()
-        && let Some(ranks) = Ranks::of_job()
-    {
-        return by_ranks(&ranks, &plan, work.as_ref(), &folder, threads);
-    }
+    // Of an MPI job the first process alone speaks of the work of all.
+    let rank = index::rank(|name| std::env::var(name).ok());
+    let progress = SweepProgress { bar: (rank == 0).then(|| long_work::bar(0, "tiles")) };
     long_work::pool(threads)?.install(|| {
         folder.begin(&plan)?;
         let sweep = Sweep::new(&plan, work.as_ref(), &folder);
-        let progress = SweepProgress { bar: long_work::bar(0, "tiles") };
         match shard {
             Some(shard) => sweep.run(shard, &progress),
-            None => sweep.run_all(&progress),
+            None => sweep.run_all(rank, &progress),
         }
     })?;
-    Ok(DONE)
-}
-
-/// Computes all shards by the ranks of an MPI job.
-#[cfg(feature = "mpi")]
-fn by_ranks(
-    ranks: &Ranks,
-    plan: &Plan,
-    work: &dyn SweepVerb,
-    folder: &Folder,
-    threads: Option<u16>,
-) -> Result<u8> {
-    let pool = long_work::pool(threads)?;
-    let begin = || {
-        pool.install(|| {
-            folder.begin(plan)?;
-            anyhow::Ok(Sweep::new(plan, work, folder))
-        })
-    };
-    // The first rank makes the folder; the others read what it is of.
-    let first = if ranks.is_first() { Some(begin()) } else { None };
-    let others = ranks.are_well(first.as_ref().is_none_or(Result::is_ok));
-    if !others {
-        return first.map_or(Ok(REFUSED), |failed| failed.map(|_| REFUSED));
-    }
-    let sweep = first.unwrap_or_else(begin);
-    // No rank waits for one that cannot begin.
-    if !ranks.are_well(sweep.is_ok()) && sweep.is_ok() {
-        return Ok(REFUSED);
-    }
-    let sweep = sweep?;
-    ranks.run(&sweep, &pool, &SweepProgress { bar: long_work::bar(0, "tiles") })?;
     Ok(DONE)
 }
 
@@ -230,27 +190,33 @@ fn merged(arguments: &MergeArguments, threads: Option<u16>) -> Result<u8> {
     }
 }
 
+/// Shows how a sweep goes on; without a bar nothing at all.
 struct SweepProgress {
-    bar: Bar,
+    bar: Option<Bar>,
 }
 
 impl SweepObserver for SweepProgress {
     fn redone(&self, shard: u32, why: &Damage) {
-        note(&format!("shard {shard} ({}) is {why}; it is computed again", Folder::name(shard)));
+        if self.bar.is_some() {
+            let name = Folder::name(shard);
+            note(&format!("shard {shard} ({name}) is {why}; it is computed again"));
+        }
     }
 
     fn doubled(&self, shard: u32) {
-        note(&format!(
-            "shard {shard} is being computed by another process as well: both give the same, and \
-             one of them may be ended"
-        ));
+        if self.bar.is_some() {
+            note(&format!(
+                "shard {shard} is being computed by another process as well: both give the same, \
+                 and one of them may be ended"
+            ));
+        }
     }
 
     fn begun(&self, tiles: u64) {
-        self.bar.inc_length(tiles);
+        self.bar.iter().for_each(|bar| bar.inc_length(tiles));
     }
 
     fn tile(&self) {
-        self.bar.inc(1);
+        self.bar.iter().for_each(|bar| bar.inc(1));
     }
 }
