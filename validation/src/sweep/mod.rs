@@ -14,6 +14,7 @@ mod deal;
 mod folder;
 mod merge;
 mod plan;
+pub mod records;
 mod run;
 mod shard;
 mod spool;

@@ -1,4 +1,8 @@
 //! The arrays of one name at all points, on the disk until their common shape is known.
+//!
+//! That shape is known at the end, and an archive takes one array after the other. Without a spool
+//! each array would take a pass over all shards that joins every point anew, or all arrays would
+//! have to fit in the memory.
 
 use super::array::{Array, ArrayValues, places};
 use anyhow::{Result, bail};

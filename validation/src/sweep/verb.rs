@@ -1,6 +1,6 @@
 //! The work of a verb at the points of a sweep.
 
-use super::{Array, SweepPoint};
+use super::{Array, SweepPoint, records};
 use anyhow::Result;
 
 /// The tiles, one after the other, of a point; each may fail to be read.
@@ -28,12 +28,15 @@ pub trait SweepVerb: Sync {
     /// What the verb objects to.
     fn tile(&self, point: &SweepPoint, tile: u32) -> Result<Vec<u8>>;
 
-    /// Joins the tiles of a point, given in order, into the arrays of that point. Points give the
-    /// same names, types and numbers of dimensions.
+    /// Joins the tiles of a point, given in order, into the arrays of that point: those that the
+    /// only tile holds, unless a verb cuts its points. Points give the same names, types and numbers
+    /// of dimensions.
     ///
     /// # Errors
     /// A tile that cannot be read.
-    fn join(&self, point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>>;
+    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
+        records::of_single(tiles)
+    }
 
     /// Arrays that are the same at every point: the axes that the verb has itself.
     fn coordinates(&self) -> Vec<Array> {

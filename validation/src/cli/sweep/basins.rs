@@ -1,11 +1,10 @@
 //! `basins` and `attractors` at the points of a sweep.
 
-use super::records;
 use crate::case::Problem;
 use crate::cli::basins::json::{AttractorJson, Json};
 use crate::cli::basins::{AttractorArguments, BasinArguments, GridFlags, Survey};
 use crate::cli::shared::model::ModelFlags;
-use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
+use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles, records};
 use anyhow::Result;
 use percuss::dynamics::attractor::{Basins, BlockLabeller, Grid, Label, LabelledBlock};
 use percuss::dynamics::strobe::StrobeMap;

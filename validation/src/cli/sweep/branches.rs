@@ -1,9 +1,8 @@
 //! `continue` at the points of a sweep.
 
-use super::records;
 use crate::cli::orbits::follow::{Arguments, Reporting, family, followed};
 use crate::cli::orbits::json::{BranchJson, Followed, JsonPlace, Special};
-use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
+use crate::sweep::{Array, SweepPoint, SweepVerb, records};
 use anyhow::Result;
 
 /// A branch at each point; a point is one tile.
@@ -28,10 +27,6 @@ impl SweepVerb for BranchWork {
         let model = self.arguments.model.at(point);
         let (followed, _) = followed(&self.arguments, &model, Reporting::Alone)?;
         records::bytes(&arrays(&followed)?)
-    }
-
-    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
-        records::of_single(tiles)
     }
 }
 

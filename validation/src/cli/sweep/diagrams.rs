@@ -4,9 +4,8 @@
 //! place of that parameter and each point has the strobes of one value.
 
 use super::exponents::number_of;
-use super::records;
 use crate::cli::bifurcation::{self, Arguments, MAX_ROWS};
-use crate::sweep::{Array, Plan, SweepPoint, SweepVerb, Tiles};
+use crate::sweep::{Array, Plan, SweepPoint, SweepVerb, records};
 use anyhow::{Result, anyhow, bail};
 use percuss::dynamics::diagram::{Diagram, DiagramStep};
 
@@ -114,9 +113,5 @@ impl SweepVerb for DiagramWork {
         let name = diagram.parameter.as_str();
         let steps = steps.map_err(|error| anyhow!("parameter {name}: {error}"))?;
         records::bytes(&self.arrays(&diagram, &steps))
-    }
-
-    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
-        records::of_single(tiles)
     }
 }

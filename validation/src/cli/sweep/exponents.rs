@@ -1,9 +1,8 @@
 //! `lyapunov` at the points of a sweep.
 
-use super::records;
 use crate::cli::lyapunov::Arguments;
 use crate::cli::shared::long_work;
-use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
+use crate::sweep::{Array, SweepPoint, SweepVerb, records};
 use anyhow::Result;
 use percuss::Endless;
 use percuss::dynamics::batches::Stationarity;
@@ -33,10 +32,6 @@ impl SweepVerb for ExponentWork {
         let problem = model.at(point).problem()?;
         let found = Spectrum::of(&problem.model, problem.entry, *transient, self.periods);
         records::bytes(&arrays(&found))
-    }
-
-    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
-        records::of_single(tiles)
     }
 }
 

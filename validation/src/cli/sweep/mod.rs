@@ -6,7 +6,6 @@ mod diagrams;
 mod exponents;
 mod index;
 mod of_system;
-mod records;
 mod shown;
 mod verb;
 

@@ -6,8 +6,7 @@ use crate::cli::basins::system::{Survey, array_name};
 use crate::cli::basins::{AttractorArguments, BasinArguments, GridFlags};
 use crate::cli::shared::section::SectionFlags;
 use crate::cli::sweep::basins::{Wanted, kind, labels};
-use crate::cli::sweep::records;
-use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
+use crate::sweep::{Array, SweepPoint, SweepVerb, records};
 use anyhow::Result;
 use percuss::affine::{Plane, ReturnAttractor, ReturnBasins};
 use percuss::dynamics::attractor::Label;
@@ -107,10 +106,6 @@ impl SweepVerb for SystemBasinWork {
             Wanted::Labels => records::bytes(&labels(size, all, found.len(), &Json::of(&survey))?),
             Wanted::Attractors => records::bytes(&attractors(&survey)),
         }
-    }
-
-    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
-        records::of_single(tiles)
     }
 
     fn coordinates(&self) -> Vec<Array> {

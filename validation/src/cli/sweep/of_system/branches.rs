@@ -5,9 +5,8 @@ use crate::cli::orbits::follow::Arguments;
 use crate::cli::orbits::follow::of_system;
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::cli::sweep::branches::kind;
-use crate::cli::sweep::records;
 use crate::returns;
-use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
+use crate::sweep::{Array, SweepPoint, SweepVerb, records};
 use anyhow::{Result, anyhow};
 use percuss::System;
 use percuss::affine::{NoOrbit, Orbit, ReturnBifurcation, ReturnBranch, Solver};
@@ -94,10 +93,6 @@ impl SweepVerb for SystemBranchWork {
         let first = self.first(&chosen)?;
         let branch = self.followed(&chosen, &first)?.ok();
         records::bytes(&self.arrays(&first, branch.as_ref())?)
-    }
-
-    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
-        records::of_single(tiles)
     }
 
     fn names(&self) -> Vec<(&'static str, Vec<String>)> {

@@ -6,8 +6,7 @@
 use super::{SweptSystem, columns, counted, number_of};
 use crate::cli::bifurcation::{Arguments, MAX_ROWS, system};
 use crate::cli::sweep::diagrams::names_parameter;
-use crate::cli::sweep::records;
-use crate::sweep::{Array, Plan, SweepPoint, SweepVerb, Tiles};
+use crate::sweep::{Array, Plan, SweepPoint, SweepVerb, records};
 use anyhow::Result;
 use percuss::affine::{ReturnDiagram, ReturnDiagramStep};
 use percuss::dynamics::diagram::values;
@@ -76,10 +75,6 @@ impl SweepVerb for SystemDiagramWork {
         let parameter = &self.arguments.parameter;
         let steps = system::steps(&self.diagram, &chosen, parameter, &values, || ())?;
         records::bytes(&self.arrays(&steps))
-    }
-
-    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
-        records::of_single(tiles)
     }
 
     fn names(&self) -> Vec<(&'static str, Vec<String>)> {

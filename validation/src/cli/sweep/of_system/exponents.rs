@@ -4,9 +4,8 @@ use super::{SweptSystem, counted, number_of};
 use crate::cli::lyapunov::Arguments;
 use crate::cli::shared::long_work;
 use crate::cli::sweep::exponents::stationary;
-use crate::cli::sweep::records;
 use crate::returns;
-use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
+use crate::sweep::{Array, SweepPoint, SweepVerb, records};
 use anyhow::Result;
 use percuss::affine::{Exponents, LeftOut, NoReturn, Solver};
 
@@ -64,10 +63,6 @@ impl SweepVerb for SystemExponentWork {
         let map = self.arguments.section.map(&solver)?;
         let found = returns::exponents(&map, self.arguments.transient, self.returns, &mut |_| ())?;
         records::bytes(&self.arrays(found))
-    }
-
-    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
-        records::of_single(tiles)
     }
 
     fn names(&self) -> Vec<(&'static str, Vec<String>)> {
