@@ -1,10 +1,10 @@
 //! The distribution of tiles over shards.
 //!
-//! Every round of as many tiles as there are shards gives one tile to each, so that shards differ by
-//! one tile at most. Neighbours cost about the same, which makes rounds even; and each round begins
-//! at another shard, so that no period in the costs of tiles, as of the blocks of a point, falls on
-//! the same shards again and again. Shards that are dealt by a count of events are no more even, as
-//! the measurements in docs/SWEEPS.md tell.
+//! Every round of as many tiles as there are shards gives one tile to each, so that shards differ
+//! by one tile at most. Neighbours cost about the same, which makes rounds even; and each round
+//! begins at another shard, so that no period in the costs of tiles, as of the blocks of a point,
+//! falls on the same shards again and again. Shards that are dealt by a count of events are no
+//! more even, as the measurements in docs/SWEEPS.md tell.
 
 /// The shard of each tile.
 #[derive(Clone, Copy, Debug)]

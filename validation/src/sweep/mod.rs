@@ -2,11 +2,11 @@
 //! compute.
 //!
 //! A [`Plan`] spans *points*, one for each combination of its axes' values. They are cut into
-//! *tiles*, some points each or blocks of a large one (`tiling.rs`), and what a [`SweepVerb`] gives
-//! depends on the point and block alone. Tiles are dealt evenly to shards (`deal.rs`). A shard is
-//! computed by [`Sweep`] and is one file (`shard.rs`) in the sweep's folder ([`Folder`]). When all
-//! are there, [`Merge`] joins them into one archive of arrays, which tells nothing of shards, threads
-//! or machines.
+//! *tiles*, some points each or blocks of a large one (`tiling.rs`), and what a [`SweepVerb`]
+//! gives depends on the point and block alone. Tiles are dealt evenly to shards (`deal.rs`). A
+//! shard is computed by [`Sweep`] and is one file (`shard.rs`) in the sweep's folder ([`Folder`]).
+//! When all are there, [`Merge`] joins them into one archive of arrays, which tells nothing of
+//! shards, threads or machines.
 
 mod array;
 mod axis;

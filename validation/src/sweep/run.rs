@@ -96,9 +96,9 @@ impl<'a> Sweep<'a> {
         Ok(())
     }
 
-    /// Computes all shards that are not finished. Processes of other ranks begin at other shards, far
-    /// from each other. The shards that another process computes are left to the end, and waited for
-    /// as long as the longest of this process took; then they are computed as well.
+    /// Computes all shards that are not finished. Processes of other ranks begin at other shards,
+    /// far from each other. The shards that another process computes are left to the end, and
+    /// waited for as long as the longest of this process took; then they are computed as well.
     ///
     /// # Errors
     /// What the verb objects to, and a folder that cannot be written.

@@ -29,8 +29,8 @@ pub trait SweepVerb: Sync {
     fn tile(&self, point: &SweepPoint, tile: u32) -> Result<Vec<u8>>;
 
     /// Joins the tiles of a point, given in order, into the arrays of that point: those that the
-    /// only tile holds, unless a verb cuts its points. Points give the same names, types and numbers
-    /// of dimensions.
+    /// only tile holds, unless a verb cuts its points. Points give the same names, types and
+    /// numbers of dimensions.
     ///
     /// # Errors
     /// A tile that cannot be read.

@@ -150,8 +150,8 @@ fn ranks_share_the_shards() {
     assert_eq!(case.merged(), alone.merged());
 }
 
-/// The lock of a machine that is lost may stay on a file system that others share: whoever waits for
-/// it computes the shard in the end.
+/// The lock of a machine that is lost may stay on a file system that others share: whoever waits
+/// for it computes the shard in the end.
 #[test]
 fn a_shard_whose_lock_stays_is_computed_by_another() {
     let alone = Case::drift(4);

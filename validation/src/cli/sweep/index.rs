@@ -1,5 +1,5 @@
-//! The shard of a task in a job array, and the rank of a process in an MPI job, by the variables that
-//! schedulers and launchers set.
+//! The shard of a task in a job array, and the rank of a process in an MPI job, by the variables
+//! that schedulers and launchers set.
 
 use crate::cli::note;
 use crate::sweep::Plan;
@@ -10,8 +10,8 @@ use anyhow::{Result, bail};
 const VARIABLES: [(&str, u32); 4] =
     [("HQ_TASK_ID", 0), ("SLURM_ARRAY_TASK_ID", 0), ("PBS_ARRAY_INDEX", 0), ("SGE_TASK_ID", 1)];
 
-/// The variables by which launchers of MPI jobs and Slurm's `srun` tell a process its rank, innermost
-/// launcher first: `mpirun` may run inside a job of Slurm.
+/// The variables by which launchers of MPI jobs and Slurm's `srun` tell a process its rank,
+/// innermost launcher first: `mpirun` may run inside a job of Slurm.
 const RANKS: [&str; 4] = ["OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"];
 
 /// The value that Grid Engine sets outside arrays.
@@ -42,7 +42,7 @@ pub(super) fn of_task(
     Ok(Some(shard))
 }
 
-/// The rank of this process among those that compute a sweep together; 0 where no launcher says it.
+/// The rank of this process among those that share a sweep; 0 where no launcher says it.
 pub(super) fn rank(variable: impl Fn(&str) -> Option<String>) -> u64 {
     RANKS.iter().find_map(|name| variable(name)?.parse().ok()).unwrap_or(0)
 }
