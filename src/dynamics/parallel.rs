@@ -15,6 +15,7 @@ pub(crate) fn map<T: Sync, R: Send>(items: &[T], each: impl Fn(&T) -> R + Sync +
 }
 
 /// The results of two pieces of work that do not wait for each other.
+#[cfg(feature = "affine")]
 pub(crate) fn join<A: Send, B: Send>(
     first: impl FnOnce() -> A + Send,
     second: impl FnOnce() -> B + Send,

@@ -1,16 +1,17 @@
 //! A grid of starts in two states, and which attractor each of them reaches.
 
 use super::ReturnAttractor;
-use super::catalog::AttractorCatalog;
-use super::space::Space;
-use super::unresolved::UnresolvedReturn;
+use super::motions::SectionMotions;
 use crate::affine::model::error::SystemError;
 use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{StartPoint, System};
 use crate::affine::returns::map::SectionMap;
+use crate::affine::returns::walk::Return;
 use crate::affine::run::place::Place;
 use crate::affine::solver::Solver;
+use crate::dynamics::attractor::catalog::Catalog;
 use crate::dynamics::attractor::thresholds::LATTICE;
+use crate::dynamics::attractor::unresolved::{described, examples};
 use crate::dynamics::attractor::{Label, SearchLimits, grid};
 use crate::dynamics::parallel;
 use std::collections::BTreeSet;
@@ -40,6 +41,28 @@ pub struct ReturnBasins {
     pub labels: Vec<Label>,
     /// Some of the starts that were not recognised, described.
     pub unresolved: Vec<UnresolvedReturn>,
+}
+
+/// A start that was not recognised, and its motion after the last extension of its transient.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnresolvedReturn {
+    /// The start, as the grid has it.
+    pub point: Return<f64>,
+    /// The largest exponent per return, that along the flow included; NaN where the motion does
+    /// not return as often.
+    pub lyapunov_per_return: f64,
+    /// The least number of returns, up to the longest period that was looked for, after which they
+    /// repeat to a thousandth of their size.
+    pub recurrence: Option<u32>,
+}
+
+impl UnresolvedReturn {
+    fn of(catalog: &Catalog<SectionMotions<'_>>, start: &Place<f64>) -> Self {
+        let late = described(&catalog.motions, catalog.limits, start);
+        let (mode, time, state) = (start.mode, start.time.value(), start.state.clone());
+        let point = Return { mode, time, state };
+        Self { point, lyapunov_per_return: late.exponent, recurrence: late.recurrence }
+    }
 }
 
 impl Plane {
@@ -154,15 +177,15 @@ impl SectionMap<'_, f64> {
         seen: &(dyn Fn(u64) + Sync),
     ) -> Result<ReturnBasins, SystemError> {
         let at = PlaneStart::of(self.solver(), start, &plane.axes)?;
-        let limits = limits.into().clamped();
-        let mut catalog = AttractorCatalog { space: Space::of(self), limits, known: Vec::new() };
+        let mut catalog = Catalog::new(SectionMotions::of(self), limits.into());
         let lattice = Plane { columns: LATTICE, rows: LATTICE, ..*plane };
         catalog.label_all(&lattice.starts(&at)?, &|_| ());
         let starts = plane.starts(&at)?;
         let labels = catalog.label_all(&starts, seen);
         let known: Vec<_> = catalog.known.iter().map(|it| it.attractor.clone()).collect();
         let mut basins = ReturnBasins::sorted(*plane, &known, labels);
-        basins.unresolved = super::unresolved::examples(&catalog, &starts, &basins.labels);
+        let examples = examples(&basins.labels).into_iter();
+        basins.unresolved = examples.map(|n| UnresolvedReturn::of(&catalog, &starts[n])).collect();
         Ok(basins)
     }
 }

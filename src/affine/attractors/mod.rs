@@ -5,38 +5,32 @@
 //!
 //! - **Periodic**: returns repeat, Newton's method confirms the orbit, its multipliers are inside
 //!   the unit circle, and there is a neighbourhood from which all sampled points return closer
-//!   ([`trap`]): evidence, not proof.
+//!   (`trap_search.rs`): evidence, not proof.
 //! - **Chaotic**: the largest exponent is above zero by more than [`ERRORS`] standard errors over a
 //!   long run that met no orbit. Another motion is on the same attractor when 48 returns in a row
-//!   lie in the cells of that run ([`cells`]).
+//!   lie in the cells of that run (`cells.rs`).
 //! - **Quasi-periodic**: neither, with a largest exponent below 1e-3. In the oscillator every
 //!   contact contracts areas; in other systems there may be such motions.
 //! - **Equilibrium**: the motion does not return to the section within the longest time.
 //!
 //! What is none of these stays unresolved, as does a start at which an orbit attracts too slowly.
-//! [`space`] has the co-ordinates, [`known`] what a motion is recognised by ([`recognition`]);
-//! [`search`] says what a motion settles on, and [`catalog`] labels starts, those of a grid in
-//! [`basins`]. Read them in this order. [`scan`] finds orbits, unstable ones too, from such a grid.
+//! The search is that of [`crate::dynamics::attractor`] over the [`motions`] between returns, whose
+//! distances are taken in [`coordinates`]; [`basins`] labels the starts of a grid. [`scan`] finds
+//! orbits, unstable ones too, from such a grid.
 
 pub mod basins;
-mod catalog;
-mod cells;
-mod known;
-mod recognition;
+mod coordinates;
+mod motions;
 mod scan;
-mod search;
-mod space;
-mod trap;
-mod unresolved;
 
-pub use basins::{Plane, ReturnBasins};
-pub use unresolved::UnresolvedReturn;
+pub use basins::{Plane, ReturnBasins, UnresolvedReturn};
 
 use crate::affine::returns::map::SectionMap;
 use crate::affine::returns::orbit::Orbit;
 use crate::affine::returns::walk::Return;
 use crate::affine::run::place::Place;
 use crate::dynamics::attractor::AttractorKind;
+use crate::dynamics::attractor::motions::RunMeans;
 use std::cmp::Ordering;
 
 /// An attractor of a section's return map.
@@ -61,23 +55,6 @@ pub struct ReturnAttractor {
     pub drift_standard_error: Vec<f64>,
 }
 
-/// Means over a run: those of the drifts with their standard errors, and the largest exponent, with
-/// its error, without those that are zero for any motion.
-#[derive(Clone, Debug)]
-struct RunMeans {
-    largest_exponent: [f64; 2],
-    drift: Vec<f64>,
-    drift_error: Vec<f64>,
-}
-
-impl RunMeans {
-    const UNKNOWN: Self =
-        Self { largest_exponent: [f64::NAN; 2], drift: Vec::new(), drift_error: Vec::new() };
-}
-
-/// Standard errors by which a positive exponent must differ from zero.
-const ERRORS: f64 = crate::dynamics::attractor::ERRORS;
-
 /// Returns that are kept of an attractor that is no orbit.
 pub const POINTS: usize = crate::dynamics::attractor::POINTS;
 
@@ -98,7 +75,7 @@ impl ReturnAttractor {
     }
 
     /// An attractor that is no orbit, with the largest exponent and its error, and the drifts.
-    fn of_run(kind: AttractorKind, run: &[Return<f64>], means: RunMeans) -> Self {
+    fn of_run(kind: AttractorKind, run: &[Return<f64>], means: &RunMeans) -> Self {
         let [exponent, error] = means.largest_exponent;
         Self {
             kind,
@@ -106,8 +83,8 @@ impl ReturnAttractor {
             points: run[run.len().saturating_sub(POINTS)..].to_vec(),
             lyapunov_per_return: exponent,
             lyapunov_error: error,
-            drift_per_return: means.drift,
-            drift_standard_error: means.drift_error,
+            drift_per_return: means.drift.clone(),
+            drift_standard_error: means.drift_error.clone(),
         }
     }
 

@@ -1,13 +1,16 @@
 //! Orbits found without a guess: Newton's method from the starts of a plane.
 
 use super::basins::{Plane, PlaneStart};
-use super::space::{Space, Spot};
+use super::coordinates::Spot;
+use super::motions::SectionMotions;
 use super::{first, from_smallest};
 use crate::affine::model::error::SystemError;
 use crate::affine::model::system::StartPoint;
 use crate::affine::returns::map::SectionMap;
 use crate::affine::returns::orbit::Orbit;
 use crate::affine::run::place::Place;
+use crate::dynamics::attractor::coordinates::Coordinates;
+use crate::dynamics::attractor::motions::Motions;
 use crate::dynamics::linear::modulus;
 use crate::dynamics::orbit::scan::{Rank, SAME, SETTLING, WATCHED, are_one};
 use crate::dynamics::parallel;
@@ -32,16 +35,16 @@ impl SectionMap<'_, f64> {
         period: u32,
         seen: &(dyn Fn(u64) + Sync),
     ) -> Result<Vec<Orbit>, SystemError> {
-        let space = Space::of(self);
+        let motions = SectionMotions::of(self);
         let starts = plane.starts(&PlaneStart::of(self.solver(), start, &plane.axes)?)?;
         let reached = parallel::map(&starts, |start| {
-            let reached = space.reached(start, period);
+            let reached = motions.reached(start, period);
             seen(1);
             reached
         });
         let mut found: Vec<Orbit> = Vec::new();
         for orbit in reached.into_iter().flatten() {
-            if !found.iter().any(|it| space.is_same(it, &orbit)) {
+            if !found.iter().any(|it| motions.is_same(it, &orbit)) {
                 found.push(orbit);
             }
         }
@@ -50,7 +53,7 @@ impl SectionMap<'_, f64> {
     }
 }
 
-impl Space<'_> {
+impl SectionMotions<'_> {
     /// The orbits that Newton's method reaches from a start's guesses, each from its smallest first
     /// state on: what is found does not depend on which start found it.
     fn reached(&self, start: &Place<f64>, period: u32) -> Vec<Orbit> {
@@ -64,19 +67,15 @@ impl Space<'_> {
         if !self.map.solver().admits(start) {
             return Vec::new();
         }
-        let Some(first) = self.after(start, 1) else { return Vec::new() };
-        let Some(settled) = self.after(&first, SETTLING) else { return vec![first] };
+        let Ok(first) = self.after(start, 1) else { return Vec::new() };
+        let Ok(settled) = self.after(&first, SETTLING) else { return vec![first] };
         let closest = self.closest(&settled, period);
         [Some(first), Some(settled), closest].into_iter().flatten().collect()
     }
 
-    fn after(&self, from: &Place<f64>, returns: u64) -> Option<Place<f64>> {
-        self.follow(from, returns, &mut |_, _, _| None).ok()
-    }
-
     /// The place of a settled motion that is nearest to that of so many returns later.
     fn closest(&self, settled: &Place<f64>, period: u32) -> Option<Place<f64>> {
-        let next = |place: &Place<f64>| self.after(place, 1);
+        let next = |place: &Place<f64>| self.after(place, 1).ok();
         let places = std::iter::successors(Some(settled.clone()), next);
         let places: Vec<_> = places.take((WATCHED + u64::from(period)) as usize).collect();
         let later = places.iter().skip(period as usize);
@@ -90,13 +89,13 @@ impl Space<'_> {
         if one.mode != other.mode {
             return f64::INFINITY;
         }
-        self.step(one, other).iter().fold(0.0, |most, it| it.abs().max(most))
+        self.coordinates.step(one, other).iter().fold(0.0, |most, it| it.abs().max(most))
     }
 
     /// Whether two orbits are one, wherever they begin.
     fn is_same(&self, one: &Orbit, other: &Orbit) -> bool {
         let [one, other] = [one, other].map(|it| {
-            let spots = it.points.iter().map(|point| self.spot(point));
+            let spots = it.points.iter().map(|point| self.coordinates.spot(point));
             spots.collect::<Vec<_>>()
         });
         let size = |it: &Spot| it.at.iter().fold(0.0_f64, |most, it| it.abs().max(most));

@@ -4,21 +4,19 @@
 //! by any number of programs, and joined to the same [`Basins`].
 
 use super::Attractor;
-use super::catalog::AttractorCatalog;
+use super::catalog::place_of;
 use super::grid::{Basins, Grid};
-use super::known::{KnownAttractor, Label};
+use super::known::Label;
 use super::limits::SearchLimits;
-use super::settle::LONG_RUN;
+use super::strobe_catalog::AttractorCatalog;
+use super::strobes::{Known, StrobeCoordinates};
 use super::thresholds::LATTICE;
-use crate::dynamics::strobe::{StrobeMap, StrobePoint};
+use crate::dynamics::strobe::StrobeMap;
 use std::ops::Range;
 
 /// A block has as many whole rows as hold this number of starts: enough to make the search for
 /// attractors that precedes each block a small part of the work, which is 256 starts.
 const STARTS: u32 = 1 << 16;
-
-/// Forcing periods of a long run over which its events are counted.
-const PART: u64 = 256;
 
 /// Labels the starts of a grid, block by block.
 #[derive(Clone, Debug)]
@@ -37,7 +35,7 @@ pub struct LabelledBlock {
     /// How many attractors all blocks know.
     shared_count: usize,
     /// The attractors that only starts of this block have led to.
-    found: Vec<KnownAttractor>,
+    found: Vec<Known>,
     /// The numbers of the labels ([`Label::number`]): places among the shared attractors, then
     /// among those found.
     labels: Vec<i32>,
@@ -86,27 +84,6 @@ impl BlockLabeller {
             labels: labels.into_iter().map(Label::number).collect(),
         }
     }
-
-    /// How many events are met until a start is recognised or given up: what its label costs.
-    #[must_use]
-    pub fn events(&self, start: StrobePoint) -> u64 {
-        self.shared.events(start)
-    }
-
-    /// About how many events the long runs were that decided about attractors other than orbits;
-    /// each is as long, so their events per period are counted over a part of it.
-    #[must_use]
-    pub fn events_of_long_runs(&self) -> u64 {
-        let map = self.shared.map();
-        let runs = self.shared.attractors().filter(|it| it.orbit.is_none());
-        let counted = runs.map(|attractor| {
-            let entry = attractor.points.last().and_then(|point| map.entry(*point).ok());
-            let Some(entry) = entry else { return 0 };
-            let end = entry.instant.after_periods(PART, 1);
-            map.model().trajectory(entry).until(end).count() as u64
-        });
-        counted.sum::<u64>() * (LONG_RUN / PART)
-    }
 }
 
 impl Basins {
@@ -130,12 +107,15 @@ impl Basins {
     #[must_use]
     pub fn joined(grid: Grid, blocks: impl IntoIterator<Item = LabelledBlock>) -> Self {
         let mut shared = Vec::new();
-        let mut found: Vec<KnownAttractor> = Vec::new();
+        let mut found: Vec<Known> = Vec::new();
         let mut labels = Vec::with_capacity(grid.len());
         for block in blocks {
             shared.extend(block.shared);
-            let places: Vec<usize> =
-                block.found.into_iter().map(|new| place_of(&mut found, new)).collect();
+            let places: Vec<usize> = block
+                .found
+                .into_iter()
+                .map(|new| place_of(&StrobeCoordinates, &mut found, new))
+                .collect();
             let joined = |number: i32| match usize::try_from(number) {
                 Ok(place) if place < block.shared_count => Label::Attractor(place),
                 Ok(place) => match places.get(place - block.shared_count) {
@@ -152,38 +132,15 @@ impl Basins {
     }
 }
 
-/// The place of an attractor among those that are known, which it joins if it is new.
-fn place_of(known: &mut Vec<KnownAttractor>, new: KnownAttractor) -> usize {
-    let same = known.iter().position(|it| it.is(&new));
-    same.unwrap_or_else(|| {
-        known.push(new);
-        known.len() - 1
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::attractor::known::Evidence;
-    use crate::dynamics::attractor::trap::Trap;
-    use crate::dynamics::attractor::{AttractorKind, Window};
+    use crate::dynamics::attractor::Window;
+    use crate::dynamics::attractor::strobes::known_point;
 
-    /// An attractor of period 1 at a place on the p axis, with a ball of radius 1e-3 as its trap.
-    fn at(p: f64) -> KnownAttractor {
-        let attractor = Attractor {
-            kind: AttractorKind::Periodic,
-            orbit: None,
-            points: vec![[p, 0.0, 0.0]],
-            drift_per_period: 0.0,
-            drift_standard_error: 0.0,
-            lyapunov_per_period: -1.0,
-            lyapunov_error: 0.0,
-        };
-        KnownAttractor {
-            attractor,
-            evidence: Evidence::Traps(vec![Trap::ball([p, 0.0, 0.0], 1e-3)]),
-            transient: None,
-        }
+    /// An attractor of period 1 at a place on the p axis.
+    fn at(p: f64) -> Known {
+        known_point([p, 0.0, 0.0], 1e-3)
     }
 
     fn grid(columns: u32, rows: u32) -> Grid {

@@ -1,11 +1,10 @@
 //! What is known of an attractor that has been met: what a motion near it is recognised by.
 
-use super::Attractor;
 use super::cells::CellSet;
+use super::coordinates::Coordinates;
 use super::thresholds::SAME;
 use super::trap::Trap;
-use crate::dynamics::orbit::Orbit;
-use crate::dynamics::strobe::StrobePoint;
+use std::borrow::Borrow;
 
 /// The place to which a start leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -42,52 +41,95 @@ impl Label {
 /// An attractor and what a motion near it is recognised by.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct KnownAttractor {
-    pub attractor: Attractor,
-    pub evidence: Evidence,
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "C::Attractor: serde::Serialize, Trap<C>: serde::Serialize,
+            CellSet<C>: serde::Serialize",
+        deserialize = "C::Attractor: serde::Deserialize<'de>, Trap<C>: serde::Deserialize<'de>,
+            CellSet<C>: serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) struct KnownAttractor<C: Coordinates> {
+    pub attractor: C::Attractor,
+    pub evidence: Evidence<C>,
     /// What the motion that led to an orbit had visited before, where that took long: chaos there
     /// ends, and is no attractor.
-    pub transient: Option<CellSet>,
+    pub transient: Option<CellSet<C>>,
 }
 
 /// The evidence by which a motion is recognised.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) enum Evidence {
-    Traps(Vec<Trap>),
-    Cells(CellSet),
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "Trap<C>: serde::Serialize, CellSet<C>: serde::Serialize",
+        deserialize = "Trap<C>: serde::Deserialize<'de>, CellSet<C>: serde::Deserialize<'de>"
+    ))
+)]
+pub(crate) enum Evidence<C: Coordinates> {
+    Traps(Vec<Trap<C>>),
+    Cells(CellSet<C>),
+    /// The state at which a motion has come to rest.
+    Rest,
 }
 
-impl KnownAttractor {
+/// States of rest that differ by less, beside 1 and their size, are one: so much is left of what
+/// decays while a return is waited for.
+const RESTS_TOGETHER: f64 = 1e-3;
+
+impl<C: Coordinates> KnownAttractor<C> {
+    pub fn new(attractor: C::Attractor, evidence: Evidence<C>) -> Self {
+        Self { attractor, evidence, transient: None }
+    }
+
     /// Whether both are the same attractor.
-    pub fn is(&self, other: &Self) -> bool {
+    pub fn is(&self, coordinates: &C, other: &Self) -> bool {
+        let mine = || coordinates.spots(&self.attractor);
+        let its = || coordinates.spots(&other.attractor);
         match (&self.evidence, &other.evidence) {
-            (Evidence::Traps(traps), Evidence::Traps(_)) => {
-                self.attractor.period() == other.attractor.period()
-                    && traps.iter().any(|trap| trap.is_at_rest_at(&other.attractor.points))
+            (Evidence::Traps(_), Evidence::Traps(_)) => {
+                self.is_orbit(coordinates, other.period(), its())
             }
             (Evidence::Cells(cells), Evidence::Cells(others)) => {
-                cells.share(&other.attractor.points) > SAME
-                    || others.share(&self.attractor.points) > SAME
+                cells.share(coordinates, its()) > SAME || others.share(coordinates, mine()) > SAME
+            }
+            (Evidence::Rest, Evidence::Rest) => {
+                C::points(&other.attractor).iter().any(|it| self.rests_at(coordinates, it))
             }
             _ => false,
         }
     }
 
     /// Whether a long run has gone where the motion that led here was before it settled.
-    pub fn is_led_to_by(&self, run: &[StrobePoint]) -> bool {
-        self.transient.as_ref().is_some_and(|cells| cells.share(run) > SAME)
+    pub fn is_led_to_by(&self, coordinates: &C, run: &[C::Spot]) -> bool {
+        self.transient.as_ref().is_some_and(|cells| cells.share(coordinates, run.iter()) > SAME)
     }
 
-    /// Whether the attractor is this orbit.
-    pub fn is_orbit(&self, orbit: &Orbit) -> bool {
+    /// Whether the attractor is an orbit of this period through these spots.
+    pub fn is_orbit<S: Borrow<C::Spot>>(
+        &self,
+        coordinates: &C,
+        period: u64,
+        mut spots: impl Iterator<Item = S>,
+    ) -> bool {
         let Evidence::Traps(traps) = &self.evidence else { return false };
-        self.attractor.period() == Some(orbit.period())
-            && traps.iter().any(|trap| trap.is_at_rest_at(&orbit.points))
+        let rests =
+            |spot: &C::Spot| traps.iter().any(|trap| trap.is_at_rest(trap.size(coordinates, spot)));
+        self.period() == period && spots.any(|it| rests(it.borrow()))
     }
 
-    /// The orbit's period in forcing periods; one where the attractor is no orbit.
+    /// Whether the attractor is the state of rest at which a motion has arrived.
+    pub fn rests_at(&self, coordinates: &C, point: &C::Point) -> bool {
+        let spot = coordinates.spot(point);
+        let mut own = coordinates.spots(&self.attractor);
+        matches!(self.evidence, Evidence::Rest)
+            && own.any(|it| coordinates.are_near(&it, &spot, RESTS_TOGETHER))
+    }
+
+    /// The orbit's period in returns; one where the attractor is no orbit.
     pub fn period(&self) -> u64 {
-        u64::from(self.attractor.period().unwrap_or(1))
+        C::period(&self.attractor).unwrap_or(1)
     }
 }

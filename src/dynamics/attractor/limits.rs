@@ -31,8 +31,8 @@ impl SearchLimits {
         }
     }
 
-    /// The number of strobes in which an orbit of the longest period repeats once.
-    pub(crate) const fn strobes(self) -> u64 {
+    /// The number of returns in which an orbit of the longest period repeats once.
+    pub(crate) const fn returns(self) -> u64 {
         2 * self.max_period as u64
     }
 }

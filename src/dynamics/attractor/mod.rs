@@ -17,20 +17,24 @@
 //! attractor by any run of that length.
 
 mod block;
-mod catalog;
+pub(crate) mod catalog;
 mod cells;
+pub(crate) mod coordinates;
 mod fractal;
 pub(crate) mod grid;
-mod known;
+pub(crate) mod known;
 mod limits;
+pub(crate) mod motions;
 mod recognition;
-mod settle;
+pub(crate) mod search;
+mod strobe_catalog;
+mod strobes;
 pub(crate) mod thresholds;
 mod trap;
-mod unresolved;
+pub(crate) mod trap_search;
+pub(crate) mod unresolved;
 
 pub use block::{BlockLabeller, LabelledBlock};
-pub use catalog::AttractorCatalog;
 pub use fractal::{
     Entropy, Scale, Uncertainty, entropy, entropy_of_labels, uncertainty, uncertainty_of,
     uncertainty_of_labels,
@@ -38,13 +42,13 @@ pub use fractal::{
 pub use grid::{Basins, Grid, Window};
 pub use known::Label;
 pub use limits::{MAX_PERIOD, SearchLimits};
-pub use unresolved::UnresolvedStart;
+pub use strobe_catalog::{AttractorCatalog, UnresolvedStart};
 
-use super::lyapunov::Spectrum;
 use super::orbit::Orbit;
 use super::strobe::{StrobeMap, StrobePoint};
 use crate::model::instant::Instant;
 use crate::unknown_name::UnknownName;
+use motions::RunMeans;
 use std::cmp::Ordering;
 use std::fmt;
 use std::str::FromStr;
@@ -155,15 +159,18 @@ impl Attractor {
         }
     }
 
-    fn of_run(kind: AttractorKind, run: &[StrobePoint], spectrum: &Spectrum) -> Self {
+    /// An attractor that is no orbit, with the means over its run.
+    fn of_run(kind: AttractorKind, run: &[StrobePoint], means: &RunMeans) -> Self {
+        let [lyapunov_per_period, lyapunov_error] = means.largest_exponent;
+        let first = |of: &[f64]| of.first().copied().unwrap_or(f64::NAN);
         Self {
             kind,
             orbit: None,
             points: run[run.len().saturating_sub(POINTS)..].to_vec(),
-            drift_per_period: spectrum.drift_per_period,
-            drift_standard_error: spectrum.drift_standard_error,
-            lyapunov_per_period: spectrum.exponents_per_period[0],
-            lyapunov_error: spectrum.standard_error[0],
+            drift_per_period: first(&means.drift),
+            drift_standard_error: first(&means.drift_error),
+            lyapunov_per_period,
+            lyapunov_error,
         }
     }
 
