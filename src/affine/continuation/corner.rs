@@ -1,12 +1,12 @@
 //! From one smooth piece of the map to the next.
 
-use super::super::returns::newton::polished;
 use super::super::returns::shooting::{ReturnMap, Shots};
 use super::curve::Curve;
 use super::family::OrbitShots;
 use super::point::{CurvePoint, are_on_one_piece};
 use crate::dynamics::continuation::corner::last_along;
 use crate::dynamics::continuation::steps::{Corner, OrbitPoint};
+use crate::dynamics::orbit::newton::polished;
 use core::cell::Cell;
 
 /// Distance at which a corner counts as reached: some roundings of the points.

@@ -1,6 +1,5 @@
 //! The curve of a return map's orbits, as step control sees it.
 
-use super::super::returns::newton::polished;
 use super::super::returns::orbit::Orbit;
 use super::super::returns::shooting::{ReturnMap, Shots};
 use super::ReturnBifurcation;
@@ -9,6 +8,7 @@ use super::point::{CurvePoint, are_on_one_piece};
 use super::words::{Meaning, cyclic};
 use crate::dynamics::continuation::steps::{Corner, Noted, OrbitCurve, OrbitPoint};
 use crate::dynamics::linear::ReIm;
+use crate::dynamics::orbit::newton::polished;
 
 impl OrbitPoint for CurvePoint {
     fn value(&self) -> f64 {

@@ -1,9 +1,9 @@
 //! Where a branch ends because its orbits close after half their period.
 
-use super::super::returns::newton::solved;
 use super::super::returns::shooting::{Change, MOST, ReturnMap, Shots};
 use super::curve::Curve;
 use super::point::{CurvePoint, Direction};
+use crate::dynamics::orbit::newton::solved;
 
 impl Curve<'_> {
     /// An orbit of half the period midway between the halves of a point's, if the curve runs into

@@ -2,13 +2,13 @@
 
 use super::map::SectionMap;
 use super::multipliers::multipliers;
-use super::newton::{least, solved};
 use super::passage::Passage;
 use super::section::Guard;
 use super::shooting::{Change, Derivative, Image, MOST, ReturnMap, Shots};
 use super::walk::{NoReturn, Return};
 use crate::affine::model::system::System;
 use crate::affine::run::place::Place;
+use crate::dynamics::orbit::newton::{least, solved};
 use std::fmt;
 
 /// The largest period that is looked for, in returns.
@@ -112,7 +112,7 @@ impl SectionMap<'_, f64> {
             return Err(NoOrbit::Period(period));
         }
         let shots = Shots::along(self, &self.rebased(guess), period).map_err(NoOrbit::NoReturn)?;
-        let shots = solved(self, shots).map_err(NoOrbit::Stalled)?;
+        let shots = solved(self, shots).map_err(|it| NoOrbit::Stalled(it.residual))?;
         let shots = least(self, shots);
         let orbit = self.of_shots(&shots).ok_or(NoOrbit::NoDerivative(shots.residual))?;
         Ok((orbit, shots.points))

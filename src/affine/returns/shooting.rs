@@ -5,6 +5,7 @@ use super::multipliers::orthonormal;
 use super::walk::NoReturn;
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::dynamics::linear::{apply, product, solve};
+use crate::dynamics::orbit::newton::Shooting;
 
 /// The most co-ordinates of a point: the states, and the time.
 pub const MOST: usize = LARGEST_DIMENSION;
@@ -135,20 +136,6 @@ impl<P: Clone, W: Clone> Shots<P, W> {
         self.is_joined && self.residual <= rounding
     }
 
-    /// The points with a share of Newton's step made; each on the piece of the image before it.
-    pub fn moved<M>(&self, map: &M, share: f64) -> Option<Self>
-    where
-        M: ReturnMap<Point = P, Way = W>,
-    {
-        let changes = self.newton_step();
-        let count = self.points.len();
-        let moved = self.points.iter().zip(changes).enumerate().map(|(k, (point, change))| {
-            let piece = &self.images[(k + count - 1) % count].point;
-            map.moved(point, &change.map(|it| it * share), piece)
-        });
-        Self::of(map, moved.collect())
-    }
-
     /// Newton's step for all points: that of the first follows from once around, those of the
     /// others from it.
     fn newton_step(&self) -> Vec<Change> {
@@ -181,6 +168,48 @@ impl<P: Clone, W: Clone> Shots<P, W> {
             false => f64::INFINITY,
         });
         apart.fold(0.0, f64::max)
+    }
+}
+
+impl<M: ReturnMap> Shooting<M> for Shots<M::Point, M::Way> {
+    fn period(&self) -> usize {
+        self.points.len()
+    }
+
+    fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    fn is_closed(&self) -> bool {
+        Self::is_closed(self)
+    }
+
+    /// The points with a share of Newton's step made, each on the piece of the image before it.
+    fn stepped(&self, map: &M, share: f64) -> Option<Self> {
+        let changes = self.newton_step();
+        let count = self.points.len();
+        let moved = self.points.iter().zip(changes).enumerate().map(|(k, (point, change))| {
+            let piece = &self.images[(k + count - 1) % count].point;
+            map.moved(point, &change.map(|it| it * share), piece)
+        });
+        Self::of(map, moved.collect())
+    }
+
+    fn first(&self, map: &M, count: usize) -> Option<Self> {
+        Self::of(map, self.points[..count].to_vec())
+    }
+
+    fn apart(&self, map: &M, other: &Self) -> f64 {
+        self.distance(map, &other.points)
+    }
+
+    fn half_way(&self, map: &M, other: &Self) -> Option<Self> {
+        let pairs = self.points.iter().zip(other.points.iter().cycle());
+        let between = pairs.map(|(one, other)| {
+            let half = map.apart(one, other).map(|it| 0.5 * it);
+            map.moved(one, &half, one)
+        });
+        Self::of(map, between.collect())
     }
 }
 

@@ -3,7 +3,8 @@
 use super::point::{BranchTangent, ContinuationPoint, FamilyCurve};
 use super::{Bifurcation, Branch, Family};
 use crate::dynamics::linear::{IDENTITY, adjugate, norm};
-use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size, solved};
+use crate::dynamics::orbit::newton::solved;
+use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size};
 use crate::dynamics::strobe::StrobePoint;
 
 /// The side of a flip on which the doubled orbit exists.

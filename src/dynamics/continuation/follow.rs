@@ -4,7 +4,8 @@ use super::point::{ContinuationPoint, FamilyCurve};
 use super::steps::{Corner, Noted, OrbitCurve, OrbitPoint};
 use super::{Bifurcation, BifurcationKind, BranchPoint};
 use crate::dynamics::linear::ReIm;
-use crate::dynamics::orbit::{ShootingIterate, polished};
+use crate::dynamics::orbit::ShootingIterate;
+use crate::dynamics::orbit::newton::{Shooting, polished};
 
 impl OrbitPoint for ContinuationPoint {
     fn value(&self) -> f64 {

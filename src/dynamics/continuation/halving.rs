@@ -2,7 +2,8 @@
 
 use super::point::{BranchTangent, ContinuationPoint, FamilyCurve};
 use crate::dynamics::linear::dot;
-use crate::dynamics::orbit::{ShootingIterate, solved};
+use crate::dynamics::orbit::ShootingIterate;
+use crate::dynamics::orbit::newton::solved;
 use crate::dynamics::strobe::StrobePoint;
 
 impl FamilyCurve {

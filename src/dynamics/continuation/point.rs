@@ -2,6 +2,7 @@
 
 use super::family::Family;
 use crate::dynamics::linear::{IDENTITY, dot, solve};
+use crate::dynamics::orbit::newton::Shooting;
 use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size};
 use crate::dynamics::strobe::StrobePoint;
 use crate::phase::Phase;

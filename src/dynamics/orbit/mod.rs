@@ -4,16 +4,15 @@
 //! unstable orbit each strobe is then found to the last digits, where one that is shot through the
 //! whole period carries its rounding times the largest multiplier.
 
-mod least;
 mod multipliers;
-mod newton;
+pub(crate) mod newton;
 pub(crate) mod scan;
 mod shooting;
 
 use super::strobe::{StrobeMap, StrobePoint};
 use crate::error::InputError;
 use crate::phase::Phase;
-pub(crate) use newton::{polished, solved};
+use newton::{Unsolved, least, solved};
 pub use scan::scan;
 pub(crate) use shooting::{Around, ShootingIterate, size};
 use std::fmt;
@@ -47,10 +46,10 @@ impl Orbit {
     /// [`NoOrbit`] says why none was reached and how close it came.
     pub fn find(map: &StrobeMap, guess: StrobePoint, period: u32) -> Result<Self, NoOrbit> {
         let iterate = ShootingIterate::shot(map, guess, period)?;
-        Ok(Self::of(&least::closed(map, solved(map, iterate)?)))
+        Ok(Self::of(&least(map, solved(map, iterate)?)))
     }
 
-    /// What a converged iterate is.
+    /// The orbit of a converged iterate.
     pub(crate) fn of(iterate: &ShootingIterate) -> Self {
         Self {
             points: iterate.points.clone(),
@@ -123,6 +122,13 @@ impl fmt::Display for NoOrbit {
 }
 
 impl std::error::Error for NoOrbit {}
+
+impl From<Unsolved> for NoOrbit {
+    fn from(Unsolved { residual, still_falls }: Unsolved) -> Self {
+        let reason = if still_falls { Reason::Slow } else { Reason::Stalled };
+        Self { residual, reason }
+    }
+}
 
 impl From<Reason> for NoOrbit {
     fn from(reason: Reason) -> Self {

@@ -1,8 +1,5 @@
-//! Newton's method on a sequence of strobes, damped, and over the corners of the map.
-
-use super::shooting::ShootingIterate;
-use super::{NoOrbit, Reason};
-use crate::dynamics::strobe::StrobeMap;
+//! Newton's method for the points of an orbit of any return map, damped, and over the corners of
+//! the map.
 
 /// Steps before it is given up: near a fold they halve the distance at worst, 52 times.
 const STEPS: usize = 60;
@@ -13,66 +10,114 @@ const SHORTEST: f64 = 1.0 / 64.0;
 const WILD: usize = 6;
 /// Steps without a better residual that end the polishing.
 const IDLE: usize = 3;
+/// Orbits further apart than this are never taken for one: at a flip the residual of the doubled
+/// orbit is cubic in its width, and rounding hides (1e-15)^(1/3).
+const NEAR: f64 = 1e-4;
 
-/// The closed iterate that is reached from this one.
-pub(crate) fn solved(map: &StrobeMap, start: ShootingIterate) -> Result<ShootingIterate, NoOrbit> {
+/// Points that are to be an orbit of a map, each with its image.
+pub(crate) trait Shooting<M>: Clone {
+    /// The number of points.
+    fn period(&self) -> usize;
+
+    /// The largest distance of an image to the next point, over 1 + |point|.
+    fn residual(&self) -> f64;
+
+    /// Whether the points close to the last digits.
+    fn is_closed(&self) -> bool;
+
+    /// The points with a share of Newton's step made; none where one is out of range.
+    fn stepped(&self, map: &M, share: f64) -> Option<Self>;
+
+    /// The first points alone, so many, which are to be an orbit of their own.
+    fn first(&self, map: &M, count: usize) -> Option<Self>;
+
+    /// The largest distance to the points of another orbit, which may close sooner.
+    fn apart(&self, map: &M, other: &Self) -> f64;
+
+    /// The points half way to those of another orbit, which may close sooner.
+    fn half_way(&self, map: &M, other: &Self) -> Option<Self>;
+}
+
+/// The closed points that are reached from these, or the least residual that was, and whether it
+/// still fell.
+pub(crate) fn solved<M, S: Shooting<M>>(map: &M, start: S) -> Result<S, Unsolved> {
     let mut best = start.clone();
-    let mut iterate = start;
+    let mut shots = start;
     let mut wild = 0;
     for _ in 0..STEPS {
-        if iterate.residual < best.residual {
-            best = iterate.clone();
+        if shots.residual() < best.residual() {
+            best = shots.clone();
         }
         if best.is_closed() {
             return Ok(polished(map, best));
         }
-        let step = iterate.newton_step();
-        if let Some(next) = damped(map, &iterate, &step) {
-            iterate = next;
-            continue;
-        }
-        wild += 1;
-        let blind = iterate.moved(map, &step, 1.0).filter(|_| wild <= WILD);
-        let Some(next) = blind else {
-            return Err(NoOrbit { residual: best.residual, reason: Reason::Stalled });
+        let next = damped(map, &shots).or_else(|| {
+            wild += 1;
+            shots.stepped(map, 1.0).filter(|_| wild <= WILD)
+        });
+        let Some(next) = next else {
+            return Err(Unsolved { residual: best.residual(), still_falls: false });
         };
-        iterate = next;
+        shots = next;
     }
-    Err(NoOrbit { residual: best.residual, reason: Reason::Slow })
+    Err(Unsolved { residual: best.residual(), still_falls: true })
+}
+
+/// The end of Newton's method without an orbit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unsolved {
+    /// The least residual.
+    pub residual: f64,
+    /// Whether the residual still fell.
+    pub still_falls: bool,
 }
 
 /// The longest share of the step that comes closer.
-fn damped(
-    map: &StrobeMap,
-    iterate: &ShootingIterate,
-    step: &[[f64; 3]],
-) -> Option<ShootingIterate> {
-    let mut share = 1.0;
-    while share >= SHORTEST {
-        let next = iterate.moved(map, step, share);
-        let closer =
-            |next: &ShootingIterate| next.residual <= (1.0 - 0.1 * share) * iterate.residual;
-        if let Some(next) = next.filter(closer) {
-            return Some(next);
-        }
-        share *= 0.5;
-    }
-    None
+fn damped<M, S: Shooting<M>>(map: &M, shots: &S) -> Option<S> {
+    let halved = |share: &f64| Some(0.5 * share).filter(|it| *it >= SHORTEST);
+    let mut shares = std::iter::successors(Some(1.0), halved);
+    shares.find_map(|share| {
+        let limit = (1.0 - 0.1 * share) * shots.residual();
+        shots.stepped(map, share).filter(|next| next.residual() <= limit)
+    })
 }
 
 /// Newton's steps as long as they gain anything.
-pub(crate) fn polished(map: &StrobeMap, start: ShootingIterate) -> ShootingIterate {
+pub(crate) fn polished<M, S: Shooting<M>>(map: &M, start: S) -> S {
     let mut best = start.clone();
-    let mut iterate = start;
+    let mut shots = start;
     let mut idle = 0;
-    while idle < IDLE && best.residual > 0.0 {
-        let Some(next) = iterate.moved(map, &iterate.newton_step(), 1.0) else { break };
+    while idle < IDLE && best.residual() > 0.0 {
+        let Some(next) = shots.stepped(map, 1.0) else { break };
         idle += 1;
-        if next.residual < best.residual {
+        let is_better = next.residual() < best.residual();
+        if is_better && (next.is_closed() || !best.is_closed()) {
             best = next.clone();
             idle = 0;
         }
-        iterate = next;
+        shots = next;
     }
     best
+}
+
+/// The orbit with the least number of points that it needs.
+pub(crate) fn least<M, S: Shooting<M>>(map: &M, orbit: S) -> S {
+    let period = orbit.period();
+    let divisors = (1..=period / 2).filter(|it| period.is_multiple_of(*it));
+    let mut shorter = divisors.filter_map(|it| shortened(map, &orbit, it));
+    shorter.next().unwrap_or(orbit)
+}
+
+/// The orbit of so few points that cannot be told from this one.
+fn shortened<M, S: Shooting<M>>(map: &M, orbit: &S, count: usize) -> Option<S> {
+    let first = orbit.first(map, count)?;
+    if orbit.apart(map, &first) > NEAR {
+        return None;
+    }
+    let shorter = solved(map, first).ok()?;
+    if orbit.apart(map, &shorter) > NEAR {
+        return None;
+    }
+    // Two that differ have something between them that does not close.
+    orbit.half_way(map, &shorter)?.is_closed().then_some(shorter)
 }

@@ -2,6 +2,7 @@
 
 use super::super::linear::{IDENTITY, apply, norm, product, solve};
 use super::super::strobe::{Jacobian, Passage, StrobeMap, StrobePoint};
+use super::newton::Shooting;
 use super::{LARGEST_PERIOD, NoOrbit, Reason};
 use crate::phase::Phase;
 
@@ -81,11 +82,6 @@ impl ShootingIterate {
         ROUNDINGS * f64::EPSILON * carried.fold(1.0, f64::max)
     }
 
-    /// Whether the iterate closes to the last digits.
-    pub(crate) fn is_closed(&self) -> bool {
-        self.residual <= self.rounding()
-    }
-
     /// Once around for changes of the first strobe, each strobe's defect (or whatever stands in its
     /// place) being added on the way.
     pub(crate) fn around(&self, defects: &[StrobePoint]) -> Around {
@@ -116,20 +112,6 @@ impl ShootingIterate {
         });
         let first = solve(less_identity, offset.map(|x| -x));
         self.spread(first, &self.defects)
-    }
-
-    /// The iterate with a share of these changes made.
-    pub(crate) fn moved(
-        &self,
-        map: &StrobeMap,
-        changes: &[StrobePoint],
-        share: f64,
-    ) -> Option<Self> {
-        let moved = self.points.iter().zip(changes);
-        let points: Vec<StrobePoint> = moved
-            .map(|(point, change)| std::array::from_fn(|i| point[i] + share * change[i]))
-            .collect();
-        Self::of(map, &points)
     }
 
     /// The phases of the whole orbit: one that goes on over a strobe, the first one's too, is one.
@@ -172,6 +154,43 @@ impl ShootingIterate {
             size(&apart) / (1.0 + size(a))
         });
         apart.fold(0.0, f64::max)
+    }
+}
+
+impl Shooting<StrobeMap> for ShootingIterate {
+    fn period(&self) -> usize {
+        self.points.len()
+    }
+
+    fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    fn is_closed(&self) -> bool {
+        self.residual <= self.rounding()
+    }
+
+    fn stepped(&self, map: &StrobeMap, share: f64) -> Option<Self> {
+        let moved = self.points.iter().zip(self.newton_step());
+        let points: Vec<StrobePoint> = moved
+            .map(|(point, change)| std::array::from_fn(|i| point[i] + share * change[i]))
+            .collect();
+        Self::of(map, &points)
+    }
+
+    fn first(&self, map: &StrobeMap, count: usize) -> Option<Self> {
+        Self::of(map, &self.points[..count])
+    }
+
+    fn apart(&self, _: &StrobeMap, other: &Self) -> f64 {
+        self.distance(other)
+    }
+
+    fn half_way(&self, map: &StrobeMap, other: &Self) -> Option<Self> {
+        let pairs = self.points.iter().zip(other.points.iter().cycle());
+        let between: Vec<StrobePoint> =
+            pairs.map(|(a, b)| std::array::from_fn(|i| 0.5 * (a[i] + b[i]))).collect();
+        Self::of(map, &between)
     }
 }
 
