@@ -48,7 +48,7 @@ impl Curve<'_> {
     /// from the other side if it is, but at least what is looked for.
     pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
         let (before, own) = self.end(base, distance);
-        let least = self.least_error(&before);
+        let least = self.least_error(base, &before);
         let mut best = Corner { before, beyond: None, error: f64::INFINITY };
         for step in BEYOND {
             let before = &best.before;
@@ -73,7 +73,7 @@ impl Curve<'_> {
     /// The end of a piece of the curve as a corner beyond which no orbit is looked for.
     pub fn lost_corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
         let (before, own) = self.end(base, distance);
-        let error = own.max(self.least_error(&before));
+        let error = own.max(self.least_error(base, &before));
         Corner { before, beyond: None, error }
     }
 
@@ -85,9 +85,10 @@ impl Curve<'_> {
         (last, own)
     }
 
-    /// The least error that is said of a corner.
-    fn least_error(&self, before: &CurvePoint) -> f64 {
-        SHARP * before.value.abs() + self.uncertainty(before) + self.blur(before)
+    /// The least error that is said of a corner which was reached from a base.
+    fn least_error(&self, base: &CurvePoint, before: &CurvePoint) -> f64 {
+        let blur = self.blur(before, &base.tangent);
+        SHARP * before.value.abs() + self.uncertainty(before) + blur
     }
 
     /// The distance in the parameter between the corner and where it is found from beyond; none

@@ -289,12 +289,13 @@ impl<'a> Curve<'a> {
             + f64::EPSILON * point.value.abs()
     }
 
-    /// The distance in the parameter along the curve that is as long as what rounding of the map
-    /// leaves uncertain of the orbit at one value.
+    /// The distance in the parameter along a direction of the curve that is as long as what rounding
+    /// of the map leaves uncertain of an orbit at one value.
     ///
     /// A corner is where the orbit touches another piece of the map, so that the corner is found
-    /// where an uncertain orbit touches it. The orbit is uncertain where a multiplier is near 1.
-    pub fn blur(&self, point: &CurvePoint) -> f64 {
+    /// where an uncertain orbit touches it. The orbit is uncertain where a multiplier is near 1, and
+    /// so is the curve's direction there: it is taken from where it is known better.
+    pub fn blur(&self, point: &CurvePoint, along: &Direction) -> f64 {
         let Around { matrix, .. } = around(&point.shots, &point.shots.defects);
         let apart = self.less_identity(&matrix);
         let by_row = (0..MOST).map(|row| {
@@ -302,7 +303,7 @@ impl<'a> Curve<'a> {
             right[row] = 1.0;
             solve(apart, right).iter().map(|it| it * it).sum::<f64>().sqrt()
         });
-        let Direction { points, rate } = &point.tangent;
+        let Direction { points, rate } = along;
         let by_state = points[0].iter().zip(&self.scales).map(|(it, scale)| (it / scale).powi(2));
         let length = (by_state.sum::<f64>() + (rate / self.unit).powi(2)).sqrt();
         by_row.sum::<f64>() * self.rounding(&point.shots) * rate.abs() / length
