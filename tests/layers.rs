@@ -115,6 +115,8 @@ const PACKAGES: [Package; 8] = [
             "arrays",
             "gradient",
             "collect",
+            "section",
+            "between_returns",
             "derivatives",
             "solvers",
             "asked",

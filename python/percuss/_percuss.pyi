@@ -54,6 +54,7 @@ class System:
         count: int | None,
         max_events: int | None,
         backward: bool,
+        returns: tuple[int | None, int, Section] | None,
     ) -> Rows: ...
     def stream(
         self,
@@ -260,7 +261,7 @@ def follow(
 ) -> FollowedBranch: ...
 
 class Section:
-    def __new__(cls, text: str, every: int, max_time: float | None) -> Section: ...
+    def __new__(cls, text: str | None, every: int, max_time: float | None) -> Section: ...
 
 class Points(TypedDict):
     time: Floats

@@ -215,7 +215,7 @@ class Run:
 
     @property
     def cause(self) -> str | None:
-        """The cause of an ending that was not decided."""
+        """The cause of an ending that was not decided, or of fewer returns than were asked for."""
         return self._rows.cause
 
     @property

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from percuss import _percuss
-from percuss._dynamics import Dynamics
+from percuss._dynamics import Dynamics, section_of
 from percuss._run import Run, Stream, real, whole
 from percuss._sweep import Swept, SweptSystem
 
@@ -235,13 +235,45 @@ class System(Dynamics, Swept):
         until: float | None = None,
         *,
         count: int | None = None,
+        returns: int | None = None,
+        transient: int = 0,
+        section: str | None = None,
+        every: int = 1,
+        max_time: float | None = None,
         max_events: int | None = None,
         backward: bool = False,
     ) -> Run:
         """Run the system in f64, which is quicker and proves no digits.
 
-        The parameters are those of :meth:`events`. ``undecidable`` of the run counts the choices
-        that rounding leaves open.
+        Exactly one of `until`, `count` and `returns` is given.
+
+        Parameters
+        ----------
+        until, count, max_events, backward
+            As :meth:`events` takes them.
+        returns : int, optional
+            The number of returns to the section with which the run ends, the start not counted.
+        transient : int, optional
+            Returns that are left out: row 0 is the state at the last of them, and `count`,
+            `returns` and `max_events` count from there.
+        section : str, optional
+            The section of these returns, as all :class:`Dynamics` take it; by default the forcing's
+            angle at the start, so that a return is a forcing period.
+        every, max_time
+            As all :class:`Dynamics` take them.
+
+        Returns
+        -------
+        Run
+            The rows that ``percuss simulate SYSTEM`` prints. ``undecidable`` counts the choices
+            that rounding leaves open, and ``cause`` is why a run does not return in time.
+
+        Raises
+        ------
+        TypeError
+            None or several of `until`, `count` and `returns`, and what is no number.
+        ValueError
+            A number or a section that is not accepted, and a system without a start.
 
         Examples
         --------
@@ -249,9 +281,27 @@ class System(Dynamics, Swept):
         >>> run = percuss.systems["bouncing-ball"].simulate(2.0)
         >>> run.ending, len(run)
         ('end', 3)
+        >>> relay = percuss.systems["relay-feedback"]
+        >>> relay.simulate(returns=1, transient=50, section="switch-up").name.tolist()
+        ['', 'switch-down', 'switch-up']
         """
-        until, count, most = self._length(until, count, max_events)
-        rows = self._native.simulate(until, count, most, bool(backward))
+        left_out = whole("transient", transient)
+        wanted = None if returns is None else whole("returns", returns, 1)
+        cut = section_of(section, every, max_time)
+        until, count, most = self._length(until, count, max_events, wanted)
+        if wanted is None and left_out == 0:
+            flags = {"section": section, "every": None if every == 1 else every}
+            for name, given in {**flags, "max_time": max_time}.items():
+                if given is not None:
+                    accepted = "it is accepted with returns and with transient"
+                    raise ValueError(f"{name} = {given!r} has no effect here: {accepted}")
+            measured = None
+        elif backward:
+            name, given = ("returns", wanted) if wanted is not None else ("transient", left_out)
+            raise ValueError(f"{name} = {given} is not accepted of a run back in time: until is")
+        else:
+            measured = (wanted, left_out, cut)
+        rows = self._native.simulate(until, count, most, bool(backward), measured)
         return Run(rows, self._native, 17)
 
     def iterate(
@@ -282,14 +332,14 @@ class System(Dynamics, Swept):
         return Stream(self._native.stream(until, count, wanted, bits, bool(backward)))
 
     def _length(
-        self, until: float | None, count: int | None, most: int | None
+        self, until: float | None, count: int | None, most: int | None, returns: int | None = None
     ) -> tuple[float | None, int | None, int | None]:
         """The length of a run, its numbers checked for their types."""
         end = None if until is None else real("until", until)
         number = None if count is None else whole("count", count, 1)
         if most is not None:
             most = whole("max_events", most, 1)
-        elif count is None:
+        elif count is None and returns is None:
             most = _MOST_EVENTS
         return end, number, most
 

@@ -1,10 +1,12 @@
 //! A run as it is asked for, and what all runs of a system share.
 
+use crate::between_returns::{self, Returning};
 use crate::collect::{End, Kept, Limits, walk};
 use crate::failure::value;
 use crate::long_work::Patience;
 use crate::solvers::Solvers;
 use percuss::{Proved, SystemError};
+use std::sync::Arc;
 
 /// The part of a system that its runs share.
 pub(crate) struct Shared {
@@ -19,13 +21,15 @@ impl Shared {
 }
 
 /// The length of a run, and how it is made.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct Asked {
     pub(crate) until: f64,
     pub(crate) limits: Limits,
     pub(crate) digits: usize,
     pub(crate) max_bits: u32,
     pub(crate) backward: bool,
+    /// The returns in which a run in f64 is measured, if it is in any.
+    pub(crate) returning: Option<Arc<Returning>>,
 }
 
 impl Shared {
@@ -33,7 +37,7 @@ impl Shared {
     /// `keep`.
     pub(crate) fn proved<E: From<SystemError>>(
         &self,
-        asked: Asked,
+        asked: &Asked,
         names: &[String],
         keep: &mut dyn FnMut(Kept<Proved>) -> Result<(), E>,
     ) -> Result<End, E> {
@@ -42,16 +46,22 @@ impl Shared {
         walk(run.gradients(names)?.until(asked.until)?, asked.limits, names, keep)
     }
 
-    /// A run in f64, differentiated by these names, whose rows are given to `keep`.
+    /// A run in f64, differentiated by these names, whose rows are given to `keep`, and nothing for
+    /// each event that is left out.
     pub(crate) fn plain<E: From<SystemError>>(
         &self,
-        asked: Asked,
+        asked: &Asked,
         names: &[String],
-        keep: &mut dyn FnMut(Kept<f64>) -> Result<(), E>,
+        keep: &mut dyn FnMut(Option<Kept<f64>>) -> Result<(), E>,
     ) -> Result<End, E> {
         let solver = self.solvers(asked.backward).plain(&self.system, asked.backward)?;
         let run = solver.run().gradients(names)?;
-        walk(run.until(asked.until)?, asked.limits, names, keep)
+        let Some(returning) = &asked.returning else {
+            let events = run.until(asked.until)?;
+            return walk(events, asked.limits, names, &mut |row| keep(Some(row)));
+        };
+        let stop = returning.first_stop(self.system.start()?.time.to_f64());
+        between_returns::walk(run.until(stop)?, returning, asked.limits, names, keep)
     }
 }
 
@@ -76,13 +86,13 @@ impl From<Failure> for pyo3::PyErr {
     }
 }
 
-/// All rows of a run.
-pub(crate) fn all<V>(
-    run: impl FnOnce(&mut dyn FnMut(Kept<V>) -> Result<(), Failure>) -> Result<End, Failure>,
+/// All rows of a run, which gives nothing for what is left out.
+pub(crate) fn all<V, R: Into<Option<Kept<V>>>>(
+    run: impl FnOnce(&mut dyn FnMut(R) -> Result<(), Failure>) -> Result<End, Failure>,
 ) -> Result<(Vec<Kept<V>>, End), Failure> {
     let (mut rows, mut patience) = (Vec::new(), Patience::new());
     let end = run(&mut |row| {
-        rows.push(row);
+        rows.extend(row.into());
         patience.step().map_err(Failure::Python)
     })?;
     Ok((rows, end))

@@ -5,7 +5,8 @@ use crate::dynamics::check_period;
 use crate::failure::value;
 use crate::long_work::{Progress, SHARES, interruptible};
 use crate::oscillator::Oscillator;
-use crate::returns::{Section, check_returns};
+use crate::returns::check_returns;
+use crate::section::Section;
 use crate::system::System;
 use numpy::{PyArray1, PyArray2};
 use percuss::affine::{Orbit, ReturnBranch, ReturnFamily, SystemError};
@@ -151,7 +152,7 @@ pub(crate) fn system_follow<'py>(
     let map = section.map(&solver)?;
     let branch = interruptible(py, &Progress { told, all: SHARES }, |stop| {
         let (guess, _) = returns::guess(&map, transient)?;
-        let family = ReturnFamily::new(section.section.clone(), section.longest, &at);
+        let family = ReturnFamily::new(section.section(), section.longest, &at);
         let told = &mut |share| stop.share(share);
         Ok(guess.and_then(|it| ReturnBranch::follow(&family, &it, period, ends, told)))
     })?;

@@ -7,7 +7,7 @@ use percuss::{Answer, Ending, Event, Events, Proved};
 const FEW: usize = 6;
 
 /// The ending of a run that has as many events as it may have.
-const STOPPED: &str = "stopped";
+pub(crate) const STOPPED: &str = "stopped";
 
 /// The ending of a run whose time has no digit left.
 const NO_DIGITS: &str = "no-digits";
@@ -49,6 +49,15 @@ pub(crate) struct End {
     pub(crate) bits: u32,
     /// The choices that rounding leaves open.
     pub(crate) undecidable: u64,
+}
+
+impl End {
+    /// The run ends with an event that is its ending.
+    pub(crate) fn comes_with<V: Value>(&mut self, event: &Event<'_, V>, ending: Ending) {
+        self.name = Some(ending.as_str().to_owned());
+        self.is_decided = ending.is_decided();
+        self.accumulation = (ending == Ending::Accumulation).then(|| between(event)).flatten();
+    }
 }
 
 /// A number of a run.
@@ -113,9 +122,7 @@ where
         }
         last = row(&event, event.name().to_owned(), names);
         if let Some(ending) = event.ending() {
-            end.name = Some(ending.as_str().to_owned());
-            end.is_decided = ending.is_decided();
-            end.accumulation = (ending == Ending::Accumulation).then(|| between(&event)).flatten();
+            end.comes_with(&event, ending);
         }
         keep(last.clone())?;
     }
@@ -124,7 +131,8 @@ where
     Ok(end)
 }
 
-fn row<V: Clone>(event: &Event<'_, V>, name: String, names: &[String]) -> Kept<V> {
+/// The row of an event, differentiated by these names.
+pub(crate) fn row<V: Clone>(event: &Event<'_, V>, name: String, names: &[String]) -> Kept<V> {
     let (time, state) = (event.time().clone(), event.state().to_vec());
     Kept { name, mode: event.mode_index(), time, state, gradients: by_name(event, names) }
 }

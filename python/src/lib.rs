@@ -6,6 +6,7 @@
 
 mod arrays;
 mod asked;
+mod between_returns;
 mod branches;
 mod collect;
 mod command;
@@ -22,6 +23,7 @@ mod return_survey;
 mod returns;
 mod rows;
 mod scores;
+mod section;
 mod solvers;
 mod stream;
 mod survey;
@@ -47,11 +49,13 @@ mod _percuss {
     #[pymodule_export]
     use super::return_survey::{system_basins, system_orbits};
     #[pymodule_export]
-    use super::returns::{Section, system_lyapunov, system_orbit, system_poincare};
+    use super::returns::{system_lyapunov, system_orbit, system_poincare};
     #[pymodule_export]
     use super::rows::Rows;
     #[pymodule_export]
     use super::scores::{Cases, case_names};
+    #[pymodule_export]
+    use super::section::Section;
     #[pymodule_export]
     use super::stream::{Row, Stream};
     #[pymodule_export]

@@ -3,7 +3,8 @@
 use crate::diagram::check_points;
 use crate::failure::value;
 use crate::long_work::{Progress, interruptible};
-use crate::returns::{Points, Section, check_returns, solver};
+use crate::returns::{Points, check_returns, solver};
+use crate::section::Section;
 use crate::system::System;
 use numpy::PyArray1;
 use percuss::affine::{Return, ReturnDiagram};
@@ -46,9 +47,8 @@ pub(crate) fn system_bifurcation<'py>(
     let solver = solver(system)?;
     section.map(&solver)?;
     let follow = if reset { Follow::Reset } else { Follow::Carry };
-    let Section { section, longest } = section;
-    let diagram =
-        ReturnDiagram { section: section.clone(), longest: *longest, transient, returns, follow };
+    let (section, longest) = (section.section(), section.longest);
+    let diagram = ReturnDiagram { section, longest, transient, returns, follow };
     let values = values(ends[0], ends[1], steps);
     let at = |value: f64| {
         let mut file = system.file.clone();

@@ -3,7 +3,8 @@
 use crate::dynamics::check_period;
 use crate::failure::value;
 use crate::long_work::{Progress, interruptible};
-use crate::returns::{Points, ReturnOrbit, Section, drifts, solver};
+use crate::returns::{Points, ReturnOrbit, drifts, solver};
+use crate::section::Section;
 use crate::survey::check_grid;
 use crate::system::System;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};

@@ -5,53 +5,16 @@ use crate::dynamics::{check_period, stationary};
 use crate::failure::value;
 use crate::long_work::{Progress, attended};
 use crate::oscillator::MAX_PERIODS;
+use crate::section::Section;
 use crate::system::System;
 use numpy::{PyArray1, PyArray2};
 use percuss::Solver;
-use percuss::affine::{self, Orbit, Return, SectionMap};
-use percuss_validation::{returns, typed};
+use percuss::affine::{self, Orbit, Return};
+use percuss_validation::returns;
 use pyo3::IntoPyObject;
-use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyclass, pyfunction, pymethods};
+use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyfunction};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// A section of a system's motions, and the longest time to wait for a return to it.
-#[pyclass(frozen, module = "percuss._percuss")]
-pub(crate) struct Section {
-    pub(crate) section: affine::Section,
-    pub(crate) longest: Option<f64>,
-}
-
-#[pymethods]
-impl Section {
-    /// The section that is written as `strobe`, `strobe:ANGLE`, `EVENT` or `EVENT@MODE`.
-    #[new]
-    #[pyo3(signature = (text, every, max_time))]
-    fn new(text: &str, every: u32, max_time: Option<f64>) -> PyResult<Self> {
-        let section = typed::section(text).ok_or_else(|| {
-            value(format!(
-                "section = {text:?} is not accepted: strobe, strobe:ANGLE, EVENT and EVENT@MODE are"
-            ))
-        })?;
-        if let Some(longest) = max_time.filter(|it| !(*it > 0.0 && it.is_finite())) {
-            return Err(value(format!(
-                "max_time = {longest} is not accepted: a positive number is"
-            )));
-        }
-        Ok(Self { section: section.every(every), longest: max_time })
-    }
-}
-
-impl Section {
-    /// The return map of the section.
-    pub(crate) fn map<'a>(&self, solver: &'a Solver<f64>) -> PyResult<SectionMap<'a, f64>> {
-        let map = SectionMap::new(solver.for_sections(), &self.section).map_err(value)?;
-        Ok(match self.longest {
-            Some(longest) => map.within(longest),
-            None => map,
-        })
-    }
-}
 
 /// The solver of a system that has a start.
 pub(crate) fn solver(system: &System) -> PyResult<Arc<Solver<f64>>> {

@@ -112,14 +112,14 @@ impl Rows {
 
     /// This run made again with its derivatives by these names.
     fn differentiated(&self, py: Python<'_>, names: Vec<String>) -> PyResult<Self> {
-        let (shared, asked) = (&self.shared, self.asked);
+        let (shared, asked) = (&self.shared, &self.asked);
         let (numbers, end) = py.detach(|| match &self.numbers {
             Numbers::Proved(_) => all(|keep| shared.proved(asked, &names, keep))
                 .map(|(rows, end)| (Numbers::Proved(rows), end)),
             Numbers::Plain(_) => all(|keep| shared.plain(asked, &names, keep))
                 .map(|(rows, end)| (Numbers::Plain(rows), end)),
         })?;
-        Ok(Self::new(Arc::clone(shared), numbers, end, asked))
+        Ok(Self::new(Arc::clone(shared), numbers, end, asked.clone()))
     }
 
     /// The derivatives by so many names on a side, 0 below and 1 above their values, or on both.

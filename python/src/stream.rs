@@ -53,7 +53,7 @@ impl From<SystemError> for Over {
     }
 }
 
-fn run(shared: &Shared, asked: Asked, rows: &SyncSender<Message>) {
+fn run(shared: &Shared, asked: &Asked, rows: &SyncSender<Message>) {
     let end =
         shared.proved(asked, &[], &mut |row| rows.send(Message::Row(row)).map_err(|_| Over::Left));
     let last = match end {
@@ -70,7 +70,7 @@ impl Stream {
         let (sender, receiver) = sync_channel(AHEAD);
         let own = Arc::clone(&shared);
         let thread = std::thread::Builder::new().name("percuss-run".to_owned());
-        thread.spawn(move || run(&own, asked, &sender))?;
+        thread.spawn(move || run(&own, &asked, &sender))?;
         let (rows, end) = (Mutex::new(receiver), Mutex::new(None));
         Ok(Self { rows, end, shared, digits })
     }

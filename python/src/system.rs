@@ -1,14 +1,17 @@
 //! A system: read, changed, and run.
 
 use crate::asked::{Asked, Shared, all};
+use crate::between_returns::Returning;
 use crate::collect::Limits;
 use crate::failure::{arguments, value};
 use crate::rows::{Numbers, Rows};
+use crate::section::Section;
 use crate::stream::Stream;
 use percuss::SystemError;
 use percuss::affine::{BITS, LONGEST, SystemFile};
+use percuss_validation::returns::{CountedReturns, MOST_RETURNS, Strobes, Uncounted};
 use percuss_validation::systems::{SYSTEMS, named};
-use pyo3::prelude::{PyResult, Python, pyclass, pyfunction, pymethods};
+use pyo3::prelude::{PyRef, PyResult, Python, pyclass, pyfunction, pymethods};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -87,7 +90,51 @@ impl System {
             }
         };
         let limits = Limits { count, most: max_events, time_scale: system.time_scale };
-        Ok(Asked { until, limits, digits, max_bits: bits, backward })
+        Ok(Asked { until, limits, digits, max_bits: bits, backward, returning: None })
+    }
+
+    /// The returns in which a run is measured that ends at a time, if it does, at the latest.
+    fn returning(
+        &self,
+        until: Option<f64>,
+        (wanted, left_out): (Option<u64>, u64),
+        section: &Section,
+    ) -> PyResult<Returning> {
+        let shared = &self.shared;
+        let system = &shared.system;
+        let start = system.start().map_err(value)?.time.to_f64();
+        if section.is_written() {
+            section.map(&*shared.solvers(false).plain(system, false).map_err(value)?)?;
+        }
+        let counted = section.returns(left_out, wanted).counted(system).map_err(|why| {
+            value(match why {
+                Uncounted::TooMany(whole) => format!(
+                    "transient = {left_out} and returns make {whole} returns: at most \
+                     {MOST_RETURNS} are accepted"
+                ),
+                Uncounted::NotForced => format!(
+                    "returns without a section are not accepted: {} is not forced, so that no \
+                     forcing period makes one; an event as section is",
+                    system.name
+                ),
+                Uncounted::NoStart(error) => error.to_string(),
+            })
+        })?;
+        let strobes = match &counted {
+            CountedReturns::Strobes(strobes) => Some(strobes),
+            CountedReturns::Events(_) => None,
+        };
+        let transient = strobes.filter(|it| it.left_out > 0).map(Strobes::first);
+        let first_row = transient.unwrap_or(start);
+        if let Some(until) = until.filter(|until| *until < first_row) {
+            return Err(value(format!(
+                "until = {until} is not accepted: a finite time at or after the end of transient \
+                 = {left_out} at {first_row} is"
+            )));
+        }
+        let last = until.or_else(|| strobes.and_then(Strobes::last));
+        let horizon = last.unwrap_or(first_row + LONGEST * system.time_scale);
+        Ok(Returning { counted, horizon, is_timed: until.is_some() })
     }
 }
 
@@ -217,14 +264,15 @@ impl System {
         backward: bool,
     ) -> PyResult<Rows> {
         let asked = self.asked((until, count, max_events), (digits, max_bits), backward)?;
-        one_length(until, count)?;
+        one_length(&[until.is_some(), count.is_some()], "until and count")?;
         let shared = &self.shared;
-        let (rows, end) = py.detach(|| all(|keep| shared.proved(asked, &[], keep)))?;
+        let (rows, end) = py.detach(|| all(|keep| shared.proved(&asked, &[], keep)))?;
         Ok(Rows::new(Arc::clone(shared), Numbers::Proved(rows), end, asked))
     }
 
-    /// A run in f64.
-    #[pyo3(signature = (until, count, max_events, backward))]
+    /// A run in f64, measured in returns: in so many, if its length is a number of them, and after
+    /// so many that are left out.
+    #[pyo3(signature = (until, count, max_events, backward, returns))]
     fn simulate(
         &self,
         py: Python<'_>,
@@ -232,11 +280,18 @@ impl System {
         count: Option<usize>,
         max_events: Option<usize>,
         backward: bool,
+        returns: Option<(Option<u64>, u64, PyRef<'_, Section>)>,
     ) -> PyResult<Rows> {
-        let asked = self.asked((until, count, max_events), (MOST_DIGITS, None), backward)?;
-        one_length(until, count)?;
-        let shared = &self.shared;
-        let (rows, end) = py.detach(|| all(|keep| shared.plain(asked, &[], keep)))?;
+        let mut asked = self.asked((until, count, max_events), (MOST_DIGITS, None), backward)?;
+        let wanted = returns.as_ref().and_then(|it| it.0);
+        let given = [until.is_some(), count.is_some(), wanted.is_some()];
+        one_length(&given, "until, count and returns")?;
+        if let Some((wanted, left_out, section)) = returns {
+            let returning = self.returning(until, (wanted, left_out), &section)?;
+            asked.returning = Some(Arc::new(returning));
+        }
+        let (shared, asked) = (&self.shared, asked);
+        let (rows, end) = py.detach(|| all(|keep| shared.plain(&asked, &[], keep)))?;
         Ok(Rows::new(Arc::clone(shared), Numbers::Plain(rows), end, asked))
     }
 
@@ -258,11 +313,12 @@ impl System {
     }
 }
 
-fn one_length(until: Option<f64>, count: Option<usize>) -> PyResult<()> {
-    match (until, count) {
-        (Some(_), None) | (None, Some(_)) => Ok(()),
-        _ => Err(arguments("a run needs its length: accepted is one of until and count")),
+/// Refuses a run of no length, or of several.
+fn one_length(given: &[bool], accepted: &str) -> PyResult<()> {
+    if given.iter().filter(|it| **it).count() == 1 {
+        return Ok(());
     }
+    Err(arguments(&format!("a run needs its length: accepted is one of {accepted}")))
 }
 
 /// The names of the systems inside the program.

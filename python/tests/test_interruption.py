@@ -10,6 +10,11 @@ import pytest
 WORK = {
     "events": "percuss.systems['rigid-impact-oscillator'].events(count=10**8)",
     "f64": "percuss.systems['rigid-impact-oscillator'].simulate(count=10**8)",
+    "f64 in returns": "percuss.systems['rigid-impact-oscillator'].simulate(returns=10**8)",
+    "f64 in a transient": "percuss.systems['rigid-impact-oscillator']"
+    ".simulate(count=1, transient=10**8)",
+    "f64 in a transient of events": "percuss.systems['rigid-impact-oscillator']"
+    ".simulate(count=1, transient=10**8, section='impact')",
     "iteration": "[None for _ in percuss.systems['rigid-impact-oscillator'].iterate()]",
     "oscillator": "percuss.Oscillator().simulate(periods=10**9)",
     "section": "percuss.Oscillator().poincare(periods=10**8)",

@@ -104,6 +104,78 @@ def test_f64_runs_have_the_same_events():
             fast.digits
 
 
+RIGID, RELAY, BALL = "rigid-impact-oscillator", "relay-feedback", "bouncing-ball"
+MEASURED = [
+    (RIGID, {"returns": 7}, None),
+    (RIGID, {"returns": 5, "transient": 20}, "end"),
+    (RIGID, {"returns": 5, "transient": 20, "every": 3}, "end"),
+    (RIGID, {"returns": 4, "transient": 2, "section": "strobe:pi/2"}, "end"),
+    (RIGID, {"returns": 4, "section": "strobe:-1", "every": 2}, "end"),
+    (RIGID, {"count": 9, "transient": 20}, None),
+    (RIGID, {"until": 60.0, "transient": 3, "section": "strobe"}, "end"),
+    (RIGID, {"returns": 6, "transient": 4, "section": "impact", "every": 2}, None),
+    (RIGID, {"count": 5, "transient": 10, "section": "impact"}, None),
+    (RIGID, {"until": 60.0, "transient": 3, "section": "impact"}, "end"),
+    (RIGID, {"until": 60.0, "transient": 1000, "section": "impact"}, "end"),
+    (RELAY, {"returns": 3, "transient": 2, "section": "switch-up@down"}, None),
+    (RELAY, {"returns": 3, "section": "switch-up", "max_time": 1.9}, "end"),
+    (RELAY, {"count": 4, "transient": 3, "section": "switch-up", "every": 2}, None),
+    (BALL, {"returns": 10_000, "section": "impact"}, "accumulation"),
+    (BALL, {"until": 2.5, "transient": 10_000, "section": "impact"}, "end"),
+    (BALL, {"count": 3, "transient": 10_000, "section": "impact"}, "accumulation"),
+    ("percussive-oscillator", {"returns": 3, "transient": 5}, "end"),
+    ("dry-friction-oscillator", {"returns": 2, "transient": 5, "section": "strobe:1"}, "end"),
+]
+
+
+@pytest.mark.parametrize(("name", "asked", "ending"), MEASURED)
+def test_runs_in_returns_have_the_bytes_of_the_command(command, name, asked, ending):
+    names = {"count": "events"}
+    flags = [(f"--{names.get(it, it).replace('_', '-')}", f"{at}") for it, at in asked.items()]
+    code, out, err = command("simulate", name, *["=".join(flag) for flag in flags])
+    assert code == 0, err
+    rows, system = table(out), percuss.systems[name]
+    run = system.simulate(**asked)
+    known = np.array([[float(row[it]) for it in ("time", *system.states)] for row in rows])
+    assert np.column_stack([run.time, run.state]).tobytes() == known.tobytes()
+    assert run.name.tolist() == [row["event"] for row in rows]
+    assert run.mode.tolist() == [row["mode"] for row in rows]
+    if ending is not None:
+        assert run.ending == ending == rows[-1]["event"]
+    assert (run.cause is None) == ("returns:" not in err)
+
+
+def test_a_run_that_does_not_return_says_why():
+    relay = percuss.systems[RELAY]
+    run = relay.simulate(returns=3, section="switch-up", max_time=1.9)
+    assert run.cause == "the motion does not return to the section"
+    assert percuss.systems[RIGID].simulate(returns=2).cause is None
+
+
+def test_returns_are_those_of_the_section():
+    """A run between returns and a section are made in two ways."""
+    rigid = percuss.systems[RIGID]
+    section = rigid.poincare(returns=9, transient=30, section="impact")
+    run = rigid.simulate(returns=8, transient=31, section="impact")
+    shown = (run.name == "impact") | (run.name == "")
+    # Of 39 impacts each may grow what roundings of 1e-16 leave by some tenths of a decade.
+    assert abs(run.time[shown] - section.time).max() < 1e-9
+    assert abs(run.state[shown] - section.state).max() < 1e-9
+
+
+def test_runs_in_returns_have_their_motion_and_their_derivatives():
+    relay = percuss.systems[RELAY]
+    run = relay.simulate(returns=2, section="switch-up")
+    whole = relay.simulate(count=len(run) - 1)
+    assert run.time.tobytes() == whole.time.tobytes()
+    assert run.sol(1.0).tobytes() == whole.sol(1.0).tobytes()
+    gradient, known = run.gradient("delta"), whole.gradient("delta")
+    assert gradient.state.tobytes() == known.state.tobytes()
+    # What is left out is differentiated through: rows are those of the whole run.
+    late = relay.simulate(returns=1, transient=1, section="switch-up").gradient("delta")
+    assert late.time.tobytes() == known.time[-3:].tobytes()
+
+
 def test_iteration_gives_the_same_rows_and_its_ending():
     system = percuss.systems["bouncing-ball"]
     run, stream = system.events(24, digits=25), system.iterate(24, digits=25)

@@ -17,10 +17,10 @@ use crate::cli::shared::outputs::Outputs;
 use crate::cli::shared::picture::{PictureFormat, Shown};
 use crate::cli::shared::run_arrays::Arrays;
 use crate::cli::shared::system_choice::ChosenSystem;
+use crate::returns::CountedReturns;
 use anyhow::{Result, bail};
 use percuss::System;
 use plan::PlannedRun;
-use section::CountedReturns;
 use sink::{All, RunEnd, Sink};
 
 /// Makes the run; whether it was decided to its end.

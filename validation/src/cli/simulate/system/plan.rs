@@ -1,9 +1,10 @@
 //! The beginning of a run's rows, its horizon and its samples.
 
 use super::super::Arguments;
-use super::section::{CountedReturns, Strobes, counted};
+use super::section::counted;
 use crate::cli::shared::long_work::Bar;
 use crate::cli::shared::parse::Typed;
+use crate::returns::{CountedReturns, Strobes};
 use anyhow::{Result, anyhow};
 use percuss::affine::{LONGEST, StartPoint};
 use percuss::{Solver, System};

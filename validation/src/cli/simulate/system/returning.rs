@@ -2,8 +2,8 @@
 
 use super::plan::PlannedRun;
 use super::rows::{Underway, row};
-use super::section::EventReturns;
 use super::sink::{RunEnd, Sink};
+use crate::returns::EventReturns;
 use anyhow::Result;
 use percuss::affine::NoReturn;
 use percuss::{Ending, Event};

@@ -1,5 +1,9 @@
 //! A SYSTEM's motions from return to return, as the verbs and the Python package ask for them.
 
+mod counted;
+
+pub use counted::{CountedReturns, EventReturns, MOST_RETURNS, Strobes, Uncounted, WantedReturns};
+
 use percuss::affine::{Exponents, NoOrbit, NoReturn, Place, SectionMap, SystemError};
 
 /// The most returns of the transient in which the directions of small changes are found.
