@@ -113,12 +113,17 @@ class Model:
         names = dict(self.names) | dict(zip(self.states, z, strict=False))
         if "forcing" in self.table:
             names |= {"cos": z[-3], "sin": z[-2]}
-        waiting = dict(self.table.get("let", {}))
+        return self.evaluate(text, self.defined(self.table.get("let", {}), names))
+
+    def defined(self, definitions: dict, names: dict) -> dict:
+        """The names with those of definitions, which may use each other."""
+        names, waiting = dict(names), dict(definitions)
         while waiting:
             for name, inner in list(waiting.items()):
-                if not set(re.findall(r"[A-Za-z]\w*", inner)) & waiting.keys():
+                used = re.findall(r"[A-Za-z]\w*", inner) if isinstance(inner, str) else []
+                if not set(used) & waiting.keys():
                     names[name] = self.evaluate(waiting.pop(name), names)
-        return self.evaluate(text, names)
+        return names
 
     def row(self, text: str) -> list:
         """The coefficients of an affine expression, from its values at the unit vectors."""
@@ -164,8 +169,21 @@ class Model:
             angle = self.names["omega"] * clock + self.names["phi"]
             names |= {"cos": mp.cos(angle), "sin": mp.sin(angle)}
             appended = [names["cos"], names["sin"], mpf(1)]
-        state = [self.evaluate(self.first[name], names) for name in self.states]
-        return self.first["mode"], clock, state + appended
+        names = self.defined({name: self.first[name] for name in self.states}, names)
+        z = [names[name] for name in self.states] + appended
+        given = self.first["mode"]
+        choices = given if isinstance(given, list) else [{"mode": given}]
+        return self.following(choices, z), clock, z
+
+    def following(self, successors: list, z: list) -> str:
+        """The mode of the first successor whose condition holds."""
+        for successor in successors:
+            if "when" not in successor:
+                return successor["mode"]
+            coefficients = series(self.matrix(successor["mode"]), z)
+            if Guard(self.guard(successor["when"]), coefficients).sign > 0:
+                return successor["mode"]
+        raise ArithmeticError("no mode follows")
 
 
 def dot(row: list, z: list):
@@ -275,13 +293,7 @@ class Integration:
             self.mode, left = None, self.mode
             return "leaves-domain", left, self.elapsed, self.z
         self.z = self.model.reset(event, self.z)
-        for successor in event.get("next", [{"mode": self.mode}]):
-            matrix = self.model.matrix(successor["mode"])
-            if "when" not in successor:
-                break
-            if Guard(self.model.guard(successor["when"]), series(matrix, self.z)).sign > 0:
-                break
-        self.mode = successor["mode"]
+        self.mode = self.model.following(event.get("next", [{"mode": self.mode}]), self.z)
         return event["name"], self.mode, self.elapsed, self.z
 
     def fire_at_once(self):

@@ -14,6 +14,7 @@ import random_aimed as aimed
 import random_exact
 import random_mechanics as mechanics
 import random_spectra as spectra
+import random_starts
 from system_text import Chance, Draft
 
 KINDS = {
@@ -35,6 +36,7 @@ KINDS = {
     "decays": spectra.decays,
     "bilinear": mechanics.bilinear,
     "exact": random_exact.exact,
+    "following-starts": random_starts.following_starts,
 }
 
 
