@@ -311,4 +311,6 @@ fn a_rigid_stop_is_touched_along_the_response() {
     ends.sort_by(|a, b| a[1].total_cmp(&b[1]));
     assert_eq!((ends[0][1], ends[1][0]), (2.75, 0.9));
     assert_eq!(graze.endings, [CurveEnding::Left; 2]);
+    let places = graze.points.windows(2).map(|it| [it[0].values[1], it[1].values[1]]);
+    assert!(places.into_iter().all(|[one, next]| one != next), "{:?}", graze.points);
 }

@@ -57,6 +57,8 @@ const LONGEST: f64 = 0.03;
 const SHORTEST: f64 = 1e-6;
 /// First steps, of which the first that leads anywhere tells the curve's direction.
 const BEGINNINGS: [f64; 3] = [1e-3, 1e-4, 1e-5];
+/// Steps so short are roundings of a place on the window's edge.
+const AT_EDGE: f64 = 8.0 * f64::EPSILON;
 /// Places on a curve before it is given up.
 const POINTS: usize = 5_000;
 /// Cosine of the largest turn of the curve in a step.
@@ -106,6 +108,9 @@ impl Tracer<'_> {
     pub fn trace(&self, start: &Traced, way: Way, told: &mut dyn FnMut(usize)) -> Trace {
         let mut way = way.map(|it| it / length(way));
         let mut points: Vec<Traced> = Vec::new();
+        if self.plane.room(start.at, way) <= AT_EDGE {
+            return Trace { points, ending: CurveEnding::Left };
+        }
         let mut step = FIRST;
         loop {
             let (from, before) = match points.len() {
