@@ -289,12 +289,12 @@ impl<'a> Curve<'a> {
             + f64::EPSILON * point.value.abs()
     }
 
-    /// The distance in the parameter along a direction of the curve that is as long as what rounding
-    /// of the map leaves uncertain of an orbit at one value.
+    /// The distance in the parameter along a direction of the curve that is as long as what
+    /// rounding of the map leaves uncertain of an orbit at one value.
     ///
     /// A corner is where the orbit touches another piece of the map, so that the corner is found
-    /// where an uncertain orbit touches it. The orbit is uncertain where a multiplier is near 1, and
-    /// so is the curve's direction there: it is taken from where it is known better.
+    /// where an uncertain orbit touches it. The orbit is uncertain where a multiplier is near 1,
+    /// and so is the curve's direction there: it is taken from where it is known better.
     pub fn blur(&self, point: &CurvePoint, along: &Direction) -> f64 {
         let Around { matrix, .. } = around(&point.shots, &point.shots.defects);
         let apart = self.less_identity(&matrix);

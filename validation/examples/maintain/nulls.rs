@@ -4,7 +4,7 @@ use anyhow::Result;
 use percuss_validation::case::{defaults, embedded};
 use percuss_validation::engine::{Accuracy, Engine};
 use percuss_validation::integrators;
-use percuss_validation::power::{Trial, Variant, sets_limits, tallies, trial};
+use percuss_validation::power::{Trial, Variant, set_limits, tallies, trial};
 use percuss_validation::score::local::Defects;
 use percuss_validation::suite::{Suite, SuiteScope, prepare};
 use percuss_validation::truth::Library;
@@ -36,6 +36,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let variants = if *power { &Variant::ALL[..] } else { &[] };
     let prepared = prepare(embedded()?, &Library::embedded()?, None)?;
     let classes = defaults()?.classes;
+    let set_limits = set_limits(&prepared);
     let mut jobs: Vec<(usize, &'static dyn Engine, Accuracy)> = Vec::new();
     for (n, case) in prepared.iter().enumerate() {
         let chosen = integrators::all().iter().filter(|it| engines.is_match(it.declaration().name));
@@ -45,7 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
         }
     }
     let one = |(n, engine, accuracy): (usize, &'static dyn Engine, Accuracy)| {
-        Some((sets_limits(n), trial(&prepared[n], (engine, accuracy), &classes, variants)?))
+        Some((set_limits[n], trial(&prepared[n], (engine, accuracy), &classes, variants)?))
     };
     let found: Vec<(bool, Trial)> = jobs.into_par_iter().filter_map(one).collect();
     print_defects(&found);

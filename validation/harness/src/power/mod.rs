@@ -9,7 +9,7 @@ mod trials;
 mod variants;
 mod ways;
 
-pub use trials::{Tally, Trial, loosened, sets_limits, tallies, trial, trials};
+pub use trials::{Tally, Trial, loosened, set_limits, tallies, trial, trials};
 pub use variants::Variant;
 pub use ways::is_run;
 
