@@ -2,7 +2,7 @@
 //!
 //! - **Periodic**: strobes repeat, Newton's method confirms the orbit ([`Orbit::find`]), its
 //!   multipliers are inside the unit circle, and there is a neighbourhood from which all sampled
-//!   points return closer: evidence, not proof (`trap.rs`).
+//!   points return closer: evidence, not proof (`trap_search.rs`).
 //! - **Chaotic**: the largest exponent is above zero by more than [`ERRORS`] standard errors over a
 //!   run of 2^17 strobes that met no orbit. Another motion is on the same attractor when 48 strobes
 //!   in a row lie in the cells of that run (`cells.rs`); so its bands are one attractor.
@@ -15,6 +15,11 @@
 //!
 //! A chaotic set of which a motion leaves after some 10^5 periods on average cannot be told from an
 //! attractor by any run of that length.
+//!
+//! The search is written for the returns to any section: `coordinates.rs` has its points and
+//! `motions.rs` what happens between them, `known.rs` what a motion is recognised by
+//! (`recognition.rs`), `search.rs` what it settles on, and `catalog.rs` labels starts. The
+//! oscillator's strobes are one such section (`strobes.rs`).
 
 mod block;
 pub(crate) mod catalog;
