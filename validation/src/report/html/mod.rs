@@ -3,7 +3,9 @@
 //! What is read off at a glance (verdicts, recall, grazing, power) is made here, so that it shows
 //! without scripts and in print; the rows, which are filtered, and the curves are drawn in the
 //! page. The charts are SVG of our own: each engine has abscissas of its own, which charting
-//! libraries with one shared column do not take, and SVG follows the colour scheme and prints.
+//! libraries with one shared column do not take, and SVG follows the colour scheme and prints. They
+//! are no copies of the pictures beside the report, which are made for the whole of it: a page with
+//! a close-up of every wrong row inside would be nearly three times as large.
 
 mod command;
 mod data;
