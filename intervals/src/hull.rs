@@ -90,12 +90,12 @@ pub(crate) fn holds(terms: &[Ball], remainder: f64, bounds: &Between) -> bool {
         }
         sharp = true;
     }
-    !sharp || holds_sharply(terms, remainder, bounds)
+    !sharp || holds_in_two_words(terms, remainder, bounds)
 }
 
 /// Decides in two words what one word leaves open.
 #[cold]
-fn holds_sharply(terms: &[Ball], remainder: f64, bounds: &Between) -> bool {
+fn holds_in_two_words(terms: &[Ball], remainder: f64, bounds: &Between) -> bool {
     let Between { low, high, zeros } = *bounds;
     let last = terms.len() - 1;
     bernstein(terms).iter().take(last + 1).enumerate().all(|(i, it)| {

@@ -66,7 +66,7 @@ pub(crate) trait Value: Clone + Send + Sync + 'static {
     fn is_known(&self, time_scale: f64) -> bool;
 
     /// The two decimals between which the number lies.
-    fn between(&self) -> [Option<String>; 2];
+    fn enclosing_decimals(&self) -> [Option<String>; 2];
 }
 
 impl Value for Proved {
@@ -75,7 +75,7 @@ impl Value for Proved {
         self.error() <= f64::EPSILON * time_scale || self.digits(FEW) != Some(0)
     }
 
-    fn between(&self) -> [Option<String>; 2] {
+    fn enclosing_decimals(&self) -> [Option<String>; 2] {
         /// The digits that the command shows of the times of an accumulation.
         const DIGITS: u8 = 30;
         [self.lower(DIGITS), self.upper(DIGITS)]
@@ -87,7 +87,7 @@ impl Value for f64 {
         self.is_finite()
     }
 
-    fn between(&self) -> [Option<String>; 2] {
+    fn enclosing_decimals(&self) -> [Option<String>; 2] {
         [Some(format!("{self:?}")), Some(format!("{self:?}"))]
     }
 }
@@ -140,6 +140,6 @@ pub(crate) fn row<V: Clone>(event: &Event<'_, V>, name: String, names: &[String]
 /// The times between which impacts accumulate.
 fn between<V: Value>(event: &Event<'_, V>) -> Option<[String; 2]> {
     let [from, to] = event.accumulation()?;
-    let ([earliest, _], [_, latest]) = (from.between(), to.between());
+    let ([earliest, _], [_, latest]) = (from.enclosing_decimals(), to.enclosing_decimals());
     Some([earliest?, latest?])
 }

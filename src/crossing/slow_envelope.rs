@@ -182,12 +182,12 @@ impl SlowEnvelope {
     ) -> Option<f64> {
         const STEPS: usize = 40;
         // At larger angles one leap more, with an evaluation, is worth its cost.
-        const FURTHEST: f64 = 1e6;
+        const LARGEST_ANGLE: f64 = 1e6;
         for _ in 0..STEPS {
             if self.parabola(here.elapsed) + self.amplitude < 0.0 {
                 inside = true;
                 let opens = here.elapsed + self.opens_after(here.elapsed)?;
-                if (opens - here.elapsed) * self.omega > FURTHEST {
+                if (opens - here.elapsed) * self.omega > LARGEST_ANGLE {
                     return None;
                 }
                 if opens > here.elapsed + look.length {

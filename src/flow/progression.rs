@@ -19,11 +19,11 @@ pub struct Progression<T, C = Constants<T>> {
     pub entry: State<T>,
     /// Forcing angle when the progression begins.
     pub angle: EntryAngle<T>,
-    /// Drift velocity when the progression begins: 0 exactly when entered from contact, positive
-    /// from an impact.
+    /// Drift velocity when the progression begins: zero, without rounding, when it is entered from
+    /// contact, and positive from an impact.
     pub drift_rate: T,
-    /// Velocity of the slider's top when the progression begins, (1 - q)/(2 xi): y exactly when
-    /// entered from contact.
+    /// Velocity of the slider's top when the progression begins, (1 - q)/(2 xi). When it is entered
+    /// from contact this is the mass's velocity y itself, without rounding.
     pub closing: T,
 }
 

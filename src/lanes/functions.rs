@@ -2,7 +2,7 @@
 //! ([`crate::numeric::remainders`]).
 //!
 //! The argument is reduced by Cody and Waite's method with fused products and a tail of its own
-//! (two words of pi/2: up to [`FURTHEST`] the third would be 1e-28); the kernels are those of
+//! (two words of pi/2: up to [`LARGEST_ARGUMENT`] the third would be 1e-28); the kernels are those of
 //! fdlibm. Errors are below one unit in the last place.
 
 use super::wide::{Mask, Wide};
@@ -14,7 +14,7 @@ use pulp::Simd;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, LN_2, LOG2_E};
 
 /// Arguments of sine and cosine up to this size are accepted.
-pub const FURTHEST: f64 = 1e5;
+pub const LARGEST_ARGUMENT: f64 = 1e5;
 
 /// What one word leaves of pi/2.
 const FRAC_PI_2_LOW: f64 = 6.123_233_995_736_766e-17;

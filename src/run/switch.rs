@@ -73,7 +73,7 @@ enum SearchEnd {
 
 /// The forcing angle by which a phase is cut that has no horizon: in two words nothing is known of
 /// the angle much later, and squares of times would overflow.
-const FURTHEST: f64 = 1e30;
+const LARGEST_ANGLE: f64 = 1e30;
 
 /// How far a search looks beyond its horizon, radians of the forcing.
 const BEYOND: f64 = 0.1;
@@ -131,7 +131,7 @@ fn pass_by<P: Landing>(
     // The horizon in two words is computed only where it matters. It is looked beyond by more than
     // guesses err, so that a switch next to it is found as without it; its instant decides.
     let beyond = BEYOND / omega;
-    let (certain, limit) = horizon.map_or((f64::INFINITY, FURTHEST / omega), |h| {
+    let (certain, limit) = horizon.map_or((f64::INFINITY, LARGEST_ANGLE / omega), |h| {
         let (certain, limit) = h.since_roughly(instant, omega);
         (certain - beyond, limit + beyond)
     });
@@ -190,7 +190,7 @@ fn pass_late<P: Landing>(
     counters: &mut Counters,
 ) -> PhaseEnd {
     let (omega, instant) = (model.parameters().omega, &begun.entry.instant);
-    let left = || horizon.map_or(FURTHEST / omega, |h| h.since(instant, omega).value());
+    let left = || horizon.map_or(LARGEST_ANGLE / omega, |h| h.since(instant, omega).value());
     let ended = |end, duration| PhaseEnd { end, duration: TwoWord::new(duration) };
     let found = match found {
         SearchEnd::Stage(from) => phase.in_stages(model, (begun, next), (from, limit), counters),

@@ -75,7 +75,7 @@ impl Motions for SectionMotions<'_> {
     type Place = Place<f64>;
     type Orbit = Orbit;
 
-    const SHOWS_START: bool = false;
+    const FIRST_RETURN_IS_START: bool = false;
 
     fn coordinates(&self) -> &SectionCoordinates {
         &self.coordinates

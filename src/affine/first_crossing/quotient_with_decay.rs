@@ -151,8 +151,9 @@ mod tests {
         }
     }
 
-    /// Guards that begin below zero, and how far a root is looked for. The decay holds a guard down
-    /// that rises without it, or lifts one that is further below.
+    /// Guards that are negative at the beginning, with the time up to which a root is looked for. A
+    /// negative decaying term delays the crossing; a positive one is added to a remainder that is
+    /// lower by as much, so that the sum is negative at the beginning.
     fn guard() -> impl Strategy<Value = (Guard, f64)> {
         let size = prop_oneof![Just(1e-3), Just(0.1), Just(1.0)];
         let coefficient = (size, -1.0..1.0_f64).prop_map(|(size, it)| size * it);

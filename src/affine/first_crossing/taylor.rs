@@ -47,20 +47,21 @@ pub(super) enum Attempt {
 }
 
 impl FailedAttempts {
-    const MOST: u8 = 2;
+    /// Failed attempts in a row after which attempts pause.
+    const FAILURES_BEFORE_PAUSE: u8 = 2;
     /// The pauses after so many failures, in attempts: those without a decaying term seldom succeed
     /// where they once failed.
     const PAUSE: [u8; 2] = [16, 64];
 
-    /// Whether an attempt is to be made: at first, and once more after a pause.
+    /// Whether an attempt is to be made: at first, and then once after each pause.
     #[inline]
     pub(super) fn is_due(&mut self, attempt: Attempt, is_later: bool) -> bool {
         let count = &mut self.0[Self::at(attempt, is_later)];
         *count += 1;
-        if *count > Self::MOST + Self::PAUSE[attempt as usize] {
-            *count = Self::MOST;
+        if *count > Self::FAILURES_BEFORE_PAUSE + Self::PAUSE[attempt as usize] {
+            *count = Self::FAILURES_BEFORE_PAUSE;
         }
-        *count <= Self::MOST
+        *count <= Self::FAILURES_BEFORE_PAUSE
     }
 
     /// Sets the count of failures to zero, because a crossing is proved.

@@ -168,7 +168,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
                 slack[n] = T::Bound::ZERO;
             }
         }
-        self.add_inherited(0..self.rows.len(), point);
+        self.add_error_bounds(0..self.rows.len(), point);
     }
 
     /// Evaluates the closed form, as far as guards need it.
@@ -192,7 +192,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         let by_series = self.is_by_series(n, time.to_f64());
         let series_at = by_series.then_some(time);
         (point.orders[n], point.slack[n]) = self.guard(n, point, series_at);
-        self.add_inherited(n..n + 1, point);
+        self.add_error_bounds(n..n + 1, point);
     }
 
     /// Evaluates all guards of a point at the crossing of one of them.
@@ -224,7 +224,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
             let evaluated = self.guard(n, point, is_by_series(n).then_some(time));
             (point.orders[n], point.slack[n]) = evaluated;
         }
-        self.add_inherited(0..self.rows.len(), point);
+        self.add_error_bounds(0..self.rows.len(), point);
     }
 
     /// Whether a guard is summed from its series at a time: where it begins with a structural zero,
@@ -270,9 +270,9 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         (orders, self.margin * size)
     }
 
-    /// Adds the inherited errors to guards, in a run that follows its errors.
+    /// Adds the bounds of inherited and own errors to the guards, in a run that follows its errors.
     #[inline(always)]
-    fn add_inherited(&self, guards: Range<usize>, point: &mut GuardedPoint<T>) {
+    fn add_error_bounds(&self, guards: Range<usize>, point: &mut GuardedPoint<T>) {
         if let Some(followed) = &self.followed {
             self.add_followed_errors(followed, guards, point);
         }

@@ -62,7 +62,7 @@ impl<T: Number> Solver<T> {
     pub(super) fn at_start(&self, start: &StartPoint, until: T) -> Result<Run<'_, T>, SystemError> {
         let mut graph = self.pool.lend();
         self.system.check_start(start)?;
-        let begin = graph.run_start(&self.system, start, || self.time_and_state(start));
+        let begin = graph.start_of_run(&self.system, start, || self.time_and_state(start));
         let item = || format!("a start of {}", self.system.name);
         let begin = begin.ok_or_else(|| SystemError::Undecidable { item: item() })?;
         Ok(self.not_begun(graph, begin, Time { high: until, low: T::zero() }))

@@ -298,7 +298,8 @@ fn product_size<T: Number>(row: &Vector<T>, state: &Vector<T>) -> T::Bound {
     row.iter().zip(state).map(|(a, b)| (a.bound() * b.bound()).abs()).sum()
 }
 
-/// The sum of the sizes of a row's products with entries of at most these sizes.
+/// An upper bound of the size of a row's product with any vector whose entries have at most these
+/// sizes.
 fn row_size<T: Number>(row: &Vector<T>, sizes: &Vector<T::Bound>) -> T::Bound {
     row.iter().zip(sizes).map(|(a, b)| a.bound().abs() * *b).sum()
 }

@@ -48,15 +48,15 @@ impl<T> CachePool<T> {
 }
 
 impl<T: Copy> Loan<'_, T> {
-    /// The node, time and state of a start, by [`StartCache::run_start`].
-    pub fn run_start(
+    /// The node, time and state of a start, by [`StartCache::start_of_run`].
+    pub fn start_of_run(
         &mut self,
         system: &System,
         point: &StartPoint,
         time_and_state: impl FnOnce() -> (Time<T>, Vector<T>),
     ) -> Option<RunStart<T>> {
         let PooledCaches { graph, starts } = &mut self.own;
-        starts.run_start(system, graph, point, time_and_state)
+        starts.start_of_run(system, graph, point, time_and_state)
     }
 }
 

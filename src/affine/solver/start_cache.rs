@@ -46,7 +46,7 @@ impl<T> Default for StartCache<T> {
 impl<T: Copy> StartCache<T> {
     /// The node, time and state of a start; `time_and_state` is called if the start is new. None if
     /// the start's structural zeros cannot be decided.
-    pub fn run_start(
+    pub fn start_of_run(
         &mut self,
         system: &System,
         graph: &mut ZeroGraph,

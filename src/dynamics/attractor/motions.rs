@@ -18,7 +18,7 @@ pub(crate) trait Motions: Sized + Sync {
     type Orbit;
 
     /// Whether the first return of a motion is its start, which is the return of number 0.
-    const SHOWS_START: bool;
+    const FIRST_RETURN_IS_START: bool;
 
     /// The co-ordinates of the section.
     fn coordinates(&self) -> &Self::Coordinates;

@@ -111,7 +111,7 @@ impl Motions for StrobeMotions {
     type Place = Entry;
     type Orbit = Orbit;
 
-    const SHOWS_START: bool = true;
+    const FIRST_RETURN_IS_START: bool = true;
 
     fn coordinates(&self) -> &StrobeCoordinates {
         &StrobeCoordinates

@@ -48,12 +48,14 @@ pub(crate) const RECURRENCES: u32 = 48;
 /// Two runs are on one attractor when this share of one lies in the cells of the other.
 pub(crate) const SAME: f64 = 0.5;
 
-/// Turns in a row that have to bring a motion in a trap closer.
+/// A motion that has entered a trap is taken for one that leads to the trap's orbit after so many
+/// successive turns around the orbit, each of which brings it closer to the orbit.
 pub(crate) const CLOSER_TURNS: u32 = 3;
 /// Radii of traps that are tried, largest first: how far one may reach in any direction. In a
 /// larger one the net would be too coarse for a tongue of another basin.
 pub(crate) const LARGEST_RADIUS: f64 = 0.25;
-pub(crate) const HALVINGS: i32 = 28;
+/// The largest number of times that the radius of a trap is halved.
+pub(crate) const RADIUS_HALVINGS: i32 = 28;
 /// Points of a trap's net on each of its shells, in three dimensions.
 pub(crate) const DIRECTIONS: u32 = 48;
 /// The shells, as shares of the radius: a corner of the map inside must not stay unseen.

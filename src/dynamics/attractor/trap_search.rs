@@ -12,7 +12,7 @@
 use super::coordinates::Coordinates;
 use super::motions::{Motions, Turn};
 use super::thresholds::{
-    DOUBLINGS, HALVINGS, LARGEST_RADIUS, RESTING, RESTING_TURNS, SHELLS, TRAPS,
+    DOUBLINGS, LARGEST_RADIUS, RADIUS_HALVINGS, RESTING, RESTING_TURNS, SHELLS, TRAPS,
 };
 use super::trap::Trap;
 use crate::dynamics::linear::product;
@@ -55,7 +55,7 @@ impl<'a, M: Motions> TrapSearch<'a, M> {
             let trap = Trap { radius, rest, ..self.unit.clone() };
             SHELLS.iter().all(|shell| self.comes_back(&trap, *shell)).then_some(trap)
         };
-        (0..=HALVINGS).find_map(attempt)
+        (0..=RADIUS_HALVINGS).find_map(attempt)
     }
 
     /// The distance by which rounding may move a motion that begins at the place.
@@ -88,7 +88,7 @@ impl<'a, M: Motions> TrapSearch<'a, M> {
         turns: u64,
         see: &mut dyn FnMut(&<M::Coordinates as Coordinates>::Spot),
     ) -> bool {
-        let count = turns * self.period + u64::from(M::SHOWS_START);
+        let count = turns * self.period + u64::from(M::FIRST_RETURN_IS_START);
         let followed = self.motions.follow(from, count, &mut |n, _, spot| {
             if n.is_multiple_of(self.period) && n > 0 {
                 see(spot);

@@ -50,7 +50,8 @@ pub(crate) struct Rank {
 }
 
 impl Rank {
-    /// The order of preference where so long a period is looked for.
+    /// The order of preference in a search for orbits of this period: first the orbits of exactly
+    /// this period, then those of its divisors, the longest first.
     pub(crate) fn preferred(&self, other: &Self, period: u32) -> Ordering {
         let is_shorter = |it: &Self| it.period != period as usize;
         is_shorter(self)

@@ -55,7 +55,8 @@ proptest! {
         prop_assert!(agree((a * b) * c, a * (b * c), a * b * c));
     }
 
-    /// The functional equations, and the other precision.
+    /// exp(x + y) = exp(x) exp(y) in 212 bits, and exp(x) agrees with that of f64 and that in 848
+    /// bits.
     #[test]
     fn the_exponential_turns_sums_into_products(a in -700.0..700.0_f64, b in -1.0..1.0_f64) {
         let (x, y) = (Small::exact(a), Small::exact(b));

@@ -16,7 +16,7 @@ use std::fmt;
 use std::io::Write;
 use std::path::Path;
 
-/// Shards without which nothing is merged.
+/// The error for shards that are missing or damaged, so that the sweep cannot be merged.
 #[derive(Debug)]
 pub struct NotMerged(Vec<(u32, Damage)>);
 

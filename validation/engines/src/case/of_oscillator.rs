@@ -117,7 +117,8 @@ mod tests {
     use crate::case::{OscillatorCase, embedded};
     use percuss::affine::Solver;
 
-    /// The general solver, from the system's file, comes to the events of the oscillator's own.
+    /// The general solver, given the system's file, finds the same events as the oscillator's own
+    /// solver.
     #[test]
     fn the_systems_run_is_the_oscillators() {
         let cases = embedded().unwrap_or_default();

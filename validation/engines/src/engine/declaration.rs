@@ -18,10 +18,10 @@ pub enum Location {
     Harness,
 }
 
-/// In which tests beyond ordinary rows the engine takes part. Each role includes those before it.
+/// The tests in which an engine takes part. Each role includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// The engine takes part in ordinary rows only.
+    /// The engine takes part in the suite's rows of case, engine and tolerance only.
     Rows,
     /// `bench` also measures what the engine's work costs against the damping ratio.
     Damping,

@@ -19,7 +19,7 @@ struct Turn {
 
 impl<E: Equations> GuardSearch<'_, E> {
     /// A crossing of a guard that ends its mode.
-    pub(super) fn of_guard(
+    pub(super) fn of_ending_guard(
         &self,
         guard: usize,
         left: &GuardValues<E::Guards>,
@@ -47,7 +47,7 @@ impl<E: Equations> GuardSearch<'_, E> {
     /// A crossing of a guard that ends nothing: it becomes positive after it was negative. One that
     /// touches zero and turns has not; so a touch to rounding is none or two crossings of a value
     /// that is watched in both directions, each of which has its own guard.
-    pub(super) fn of_counted(
+    pub(super) fn of_watched_guard(
         &self,
         guard: usize,
         left: &GuardValues<E::Guards>,

@@ -120,7 +120,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         let mut first: Option<GuardRise> = None;
         let guards = self.equations.count(self.mode);
         for guard in (0..guards).filter(|guard| self.equations.ends(self.mode, *guard)) {
-            let found = self.of_guard(guard, left, right, state_at)?;
+            let found = self.of_ending_guard(guard, left, right, state_at)?;
             let earlier = |t: &f64| first.is_none_or(|first| *t < first.t * (1.0 - ONE_INSTANT));
             if let Some(t) = found.filter(earlier) {
                 first = Some(GuardRise { t, guard });
@@ -128,7 +128,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         }
         let known = counted.len();
         for guard in (0..guards).filter(|guard| !self.equations.ends(self.mode, *guard)) {
-            let found = self.of_counted(guard, left, right, state_at)?;
+            let found = self.of_watched_guard(guard, left, right, state_at)?;
             let before = |t: &f64| first.is_none_or(|first| *t <= first.t * (1.0 + ONE_INSTANT));
             if let Some(t) = found.filter(before) {
                 let t = first.map_or(t, |first| t.min(first.t));

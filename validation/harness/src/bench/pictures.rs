@@ -44,9 +44,9 @@ pub(super) fn both(drawn: &[(String, Curves)]) -> Result<Vec<Picture>, DrawError
 /// Which times are drawn.
 #[derive(Clone, Copy)]
 enum Times {
-    /// Without the harness's own share.
+    /// The measured time without the harness's own share.
     Net,
-    /// With it.
+    /// The measured time, which includes the harness's own share.
     Gross,
 }
 

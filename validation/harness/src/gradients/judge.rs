@@ -244,7 +244,8 @@ impl<'a> OneName<'a> {
         Some((Verdict::WrongLimit, Some(Mechanism::CoarseDifferences), why))
     }
 
-    /// Whether the error falls with the tolerance, of those at which the case was answered.
+    /// The verdict by whether the error falls from the largest to the smallest of the tolerances at
+    /// which the engine answered.
     fn by_tolerances(&self, cells: &[(usize, usize)], off: String) -> Said {
         let at = |it: usize| {
             let answer = self.answer(it)?;

@@ -75,19 +75,19 @@ fn after(system: &System, before: &DVector<f64>, event: &Event<'_, f64>) -> DVec
     after
 }
 
-/// How a stretch carries errors and derivatives: e^(M t), and its derivative by a name.
+/// The matrix e^(M t) of a segment's motion, and its derivative by a parameter or a start state.
 #[derive(Clone, Debug)]
 pub(super) struct Flow {
-    pub own: DMatrix<f64>,
-    pub rate: DMatrix<f64>,
+    pub exponential: DMatrix<f64>,
+    pub derivative: DMatrix<f64>,
 }
 
 /// The flows of a path by a name.
 pub(super) fn flows(path: &[Stretch], linear: &Linear, rates: &Linear) -> Vec<Flow> {
     let flow = |it: &Stretch| {
         let [matrix, rate] = [linear, rates].map(|all| &all.modes[it.mode].matrix);
-        let (own, rate) = flow_with_rate(matrix, rate, it.elapsed);
-        Flow { own, rate }
+        let (exponential, derivative) = flow_with_rate(matrix, rate, it.elapsed);
+        Flow { exponential, derivative }
     };
     path.iter().map(flow).collect()
 }

@@ -32,10 +32,10 @@ pub(super) fn units(along: &Along<'_>, time_scale: f64) -> Vec<Vec<f64>> {
         let steps = 1.0 + stretch.elapsed / time_scale;
         begin(&mut all, along.states, (&stretch.begin, &slope), steps);
         for it in &mut all {
-            it.slope = &flow.own * &it.slope + &flow.rate * &it.state;
-            it.state = &flow.own * &it.state;
+            it.slope = &flow.exponential * &it.slope + &flow.derivative * &it.state;
+            it.state = &flow.exponential * &it.state;
         }
-        let there = &flow.own * &slope + &flow.rate * &stretch.begin;
+        let there = &flow.exponential * &slope + &flow.derivative * &stretch.begin;
         begin(&mut all, along.states, (&stretch.before, &there), steps);
         if stretch.stop == Stop::End {
             let sums = (0..along.states)

@@ -25,7 +25,7 @@ pub(super) fn walk(along: &Along<'_>, rule: Rule) -> Rows {
     let mut time = 0.0;
     let mut rows = vec![cells(along, 0.0, &slope)];
     for (stretch, flow) in along.path.iter().zip(along.flows) {
-        let there = &flow.own * &slope + &flow.rate * &stretch.begin;
+        let there = &flow.exponential * &slope + &flow.derivative * &stretch.begin;
         if stretch.stop == Stop::End {
             rows.push(cells(along, 0.0, &there));
             break;

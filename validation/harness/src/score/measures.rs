@@ -102,7 +102,8 @@ impl Measures {
     pub fn concerns(&self, quantity: Quantity) -> bool {
         match quantity {
             Quantity::EventsWrongMode => self.local.is_some(),
-            // An exact engine is judged by the tables alone.
+            // The sequence of phases is compared with the reference tables for exact engines only;
+            // the records of other engines are judged one by one.
             Quantity::PhaseSequence => self.local.is_none(),
             Quantity::Location
             | Quantity::Inconsistency

@@ -100,7 +100,9 @@ fn write_csv(system: &System, steps: &[ReturnDiagramStep], out: &mut dyn Write) 
     Ok(())
 }
 
-/// What is shown of all points, over the parameter, on which it may depend itself.
+/// The points of the picture: the values of the `--show` expressions at each return. A single
+/// expression is drawn over the parameter. The expressions may contain the parameter, and are read
+/// again at each of its values.
 fn points(
     chosen: &ChosenSystem,
     parameter: &str,

@@ -34,7 +34,8 @@ pub(super) struct GradientRow<'a> {
     pub(super) event: &'a str,
     pub(super) mode: &'a str,
     pub(super) wrt: &'a str,
-    /// `-` below and `+` above the name's value, where derivatives differ; empty elsewhere.
+    /// The side of the value of `wrt` for which the derivatives hold, where the two sides differ:
+    /// `-` for smaller values, `+` for larger ones. It is empty where they do not differ.
     pub(super) side: &'static str,
     pub(super) dtime: Option<String>,
     #[serde(serialize_with = "in_order")]

@@ -209,7 +209,8 @@ impl ModelFlags {
     }
 }
 
-/// The error for a piecewise-affine system, by its file or its name, in the place of a problem.
+/// The error where a piecewise-affine system is given, by its file or its name, and a problem file
+/// of the oscillator is expected.
 fn told_as_system(path: &Path) -> Option<String> {
     let shown = path.display();
     let is_named = path.to_str().and_then(systems::named).is_some();

@@ -28,7 +28,8 @@ pub(in super::super) trait DiffsolMethod: Sync {
     /// The order that the method's authors state; none where it varies from 1 on.
     const ORDER: Option<u32>;
     const CLASS: Class;
-    /// The tests beyond ordinary rows in which the engine takes part.
+    /// The tests in which the engine takes part beside the suite's rows of case, engine and
+    /// tolerance.
     const ROLE: Role = Role::Rows;
     /// Whether the step may be shortened without loss: a multistep method would begin anew.
     const ONE_STEP: bool;

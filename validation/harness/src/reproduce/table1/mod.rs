@@ -21,7 +21,7 @@ const POINTS: f64 = 4000.0;
 /// Forcing periods until the motion has settled, and a multiple of the period claimed.
 const SETTLED: u64 = 2000;
 
-/// The run from rest, with the part that Table 1 tells.
+/// The run that starts from rest, and the phases of it that are listed in Table 1.
 struct Table1Run {
     model: Model,
     rest: Entry,

@@ -50,7 +50,8 @@ pub(super) enum Said {
     Right,
     /// Either answer is right.
     Undecidable,
-    /// What is wrong, what the exact continuation has instead, and the defect in units.
+    /// The record is wrong: the kind of error, the event of the exact continuation where one is
+    /// known, and the defect as a multiple of its unit, NaN where nothing is measured.
     Wrong(WrongKind, Option<Exact>, f64),
 }
 
