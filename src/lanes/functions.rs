@@ -2,8 +2,8 @@
 //! ([`crate::numeric::remainders`]).
 //!
 //! The argument is reduced by Cody and Waite's method with fused products and a tail of its own
-//! (two words of pi/2: up to [`LARGEST_ARGUMENT`] the third would be 1e-28); the kernels are those of
-//! fdlibm. Errors are below one unit in the last place.
+//! (two words of pi/2: up to [`LARGEST_ARGUMENT`] the third would be 1e-28); the kernels are those
+//! of fdlibm. Errors are below one unit in the last place.
 
 use super::wide::{Mask, Wide};
 use crate::numeric::exponential;

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::hash::Hash;
 
-/// The co-ordinates of a section's points, with the attractors that are told by such points.
+/// The co-ordinates of a section's points, and the attractors that are kept by such points.
 pub(crate) trait Coordinates: Clone + Debug + Send + Sync {
     /// A point as an attractor keeps it.
     type Point: Clone + Debug + Send + Sync;

@@ -35,8 +35,8 @@ pub(crate) trait Motions: Sized + Sync {
     /// A place with a change of its co-ordinates, and the spot there; none out of range.
     fn moved(&self, place: &Self::Place, step: &[f64]) -> Option<(Self::Place, SpotOf<Self>)>;
 
-    /// Follows a motion for so many returns, or until it is known where it leads; the place of the
-    /// last.
+    /// Follows a motion for `count` returns, or until it is known where it leads; gives the place
+    /// of the last return.
     fn follow(
         &self,
         from: &Self::Place,
@@ -44,21 +44,21 @@ pub(crate) trait Motions: Sized + Sync {
         see: &mut Observer<'_, Self>,
     ) -> Result<Self::Place, StopOf<Self>>;
 
-    /// The place after so many returns.
+    /// The place of a motion after this number of returns.
     fn after(&self, from: &Self::Place, returns: u64) -> Result<Self::Place, StopOf<Self>>;
 
     /// The metric of a trap about a place of a stable orbit, and the axes along which the returns
     /// to it lie; none where the multipliers are not inside the unit circle.
     fn turn(&self, place: &Self::Place, period: u64) -> Option<Turn>;
 
-    /// Directions that are spread evenly over the unit sphere of so many dimensions.
+    /// Directions that are spread evenly over the unit sphere of this dimension.
     fn directions(dimension: usize) -> Vec<Vec<f64>>;
 
-    /// The means of a motion over so many returns; none where it does not return so often.
+    /// The means of a motion over this number of returns; none where it does not return so often.
     fn means(&self, from: &Self::Place, returns: u64) -> Option<RunMeans>;
 
-    /// The largest exponent of a motion over so many returns, those that are zero for any motion
-    /// included; NaN where it does not return so often.
+    /// The largest exponent of a motion over this number of returns, those that are zero for any
+    /// motion included; NaN where it does not return so often.
     fn exponent(&self, from: &Self::Place, returns: u64) -> f64;
 
     /// The stable orbit, with its places, that Newton's method reaches from a motion at a place.

@@ -28,7 +28,7 @@ pub(crate) trait Shooting<M>: Clone {
     /// The points with a share of Newton's step made; none where one is out of range.
     fn stepped(&self, map: &M, share: f64) -> Option<Self>;
 
-    /// The first points alone, so many, which are to be an orbit of their own.
+    /// The first `count` points alone, which are to be an orbit of their own.
     fn first(&self, map: &M, count: usize) -> Option<Self>;
 
     /// The largest distance to the points of another orbit, which may close sooner.
@@ -108,7 +108,7 @@ pub(crate) fn least<M, S: Shooting<M>>(map: &M, orbit: S) -> S {
     shorter.next().unwrap_or(orbit)
 }
 
-/// The orbit of so few points that cannot be told from this one.
+/// The orbit of `count` points that cannot be told from this one.
 fn shortened<M, S: Shooting<M>>(map: &M, orbit: &S, count: usize) -> Option<S> {
     let first = orbit.first(map, count)?;
     if orbit.apart(map, &first) > NEAR {
