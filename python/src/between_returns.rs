@@ -1,9 +1,8 @@
 //! The events of a run that is measured in returns, ended as the command `simulate` ends them.
 
 use crate::collect::{End, Kept, Limits, STOPPED, row};
-use percuss::affine::NoReturn;
 use percuss::{Ending, Event, Events};
-use percuss_validation::returns::{CountedReturns, EventReturns};
+use percuss_validation::returns::{CountedReturns, ReturnCount};
 
 /// The returns in which a run is measured, and its end.
 pub(crate) struct Returning {
@@ -24,20 +23,15 @@ impl Returning {
         }
     }
 
-    /// Whether a run is past the returns that are left out, where so many events of the section
-    /// have come.
-    fn is_shown(&self, returns: u64) -> bool {
+    /// The count of returns of a run from this start, if they are returns to an event, and whether
+    /// none are left out.
+    fn begin(&self, start: f64) -> (Option<ReturnCount<'_>>, bool) {
         match &self.counted {
-            CountedReturns::Strobes(strobes) => strobes.left_out == 0,
-            CountedReturns::Events(returning) => returns >= returning.left_out,
-        }
-    }
-
-    /// The events of a section of events.
-    fn events(&self) -> Option<&EventReturns> {
-        match &self.counted {
-            CountedReturns::Events(returning) => Some(returning),
-            CountedReturns::Strobes(_) => None,
+            CountedReturns::Strobes(strobes) => (None, strobes.left_out == 0),
+            CountedReturns::Events(returning) => {
+                let count = ReturnCount::begin(returning, start);
+                (Some(count), count.is_past_transient())
+            }
         }
     }
 }
@@ -54,11 +48,10 @@ struct Walk<'a, 'k, E> {
     names: &'k [String],
     keep: Keep<'k, E>,
     end: End,
+    /// The returns that have been made, if they are returns to an event.
+    count: Option<ReturnCount<'k>>,
     /// Whether the returns that are left out are over.
     is_shown: bool,
-    /// The events of the section, and the time of the last of them or of the start.
-    returns: u64,
-    since: f64,
     /// The events that are shown.
     passed: usize,
     last: Option<Kept<f64>>,
@@ -73,22 +66,12 @@ pub(crate) fn walk<E>(
     names: &[String],
     keep: Keep<'_, E>,
 ) -> Result<End, E> {
-    let (start, is_shown) = (events.start(), returning.is_shown(0));
+    let start = events.start();
+    let (count, is_shown) = returning.begin(*start.time());
     let end = End { is_decided: true, ..End::default() };
-    let (returns, since, passed, last) = (0, *start.time(), 0, None);
-    let mut walk = Walk {
-        events,
-        returning,
-        limits,
-        names,
-        keep,
-        end,
-        is_shown,
-        returns,
-        since,
-        passed,
-        last,
-    };
+    let (passed, last) = (0, None);
+    let mut walk =
+        Walk { events, returning, limits, names, keep, end, count, is_shown, passed, last };
     if is_shown {
         walk.show(&start, "")?;
     }
@@ -118,9 +101,8 @@ impl<E> Walk<'_, '_, E> {
 
     /// Whether the run has not come to the return or the event that ends it.
     fn is_wanted(&self) -> bool {
-        let last = self.returning.events().and_then(|it| it.last);
-        let by_returns = last.is_none_or(|last| self.returns < last);
-        by_returns && self.limits.count.is_none_or(|wanted| self.passed < wanted)
+        self.count.is_none_or(|it| it.goes_on())
+            && self.limits.count.is_none_or(|wanted| self.passed < wanted)
     }
 
     /// Hands on a row.
@@ -132,22 +114,21 @@ impl<E> Walk<'_, '_, E> {
 
     /// Takes an event of the system.
     fn pass(&mut self, event: &Event<'_, f64>) -> Result<(), E> {
-        if self.returning.events().is_some_and(|it| it.counts(event.kind())) {
-            self.returns += 1;
-            self.since = *event.time();
+        if let Some(count) = &mut self.count {
+            count.take(event.kind(), *event.time());
         }
         if self.is_shown {
             self.passed += 1;
             return self.show(event, event.name());
         }
-        self.is_shown = self.returning.is_shown(self.returns);
+        self.is_shown = self.count.is_some_and(|it| it.is_past_transient());
         if self.is_shown { self.show(event, "") } else { (self.keep)(None) }
     }
 
     /// Lets the run go on from a horizon, which may be the last return that is left out; whether it
     /// does.
     fn goes_on(&mut self, at: &Event<'_, f64>) -> Result<bool, E> {
-        let Some(returning) = self.returning.events() else {
+        let Some(count) = &self.count else {
             if self.is_shown {
                 return Ok(false);
             }
@@ -155,24 +136,17 @@ impl<E> Walk<'_, '_, E> {
             self.show(at, "")?;
             return Ok(self.events.go_on(self.returning.horizon));
         };
-        let waits = !self.is_shown || returning.last.is_some();
-        let stop = match waits && !self.returning.is_timed {
-            true => self.since + returning.longest,
-            false => self.returning.horizon,
-        };
+        let stop = count.horizon(self.returning.is_timed, self.returning.horizon);
         Ok(stop > *at.time() && self.events.go_on(stop))
     }
 
     /// Keeps the ending, and why the run has not returned as often as was asked.
     fn end(&mut self, event: &Event<'_, f64>, ending: Ending) {
         self.end.comes_with(event, ending);
-        let is_timed = self.returning.is_timed;
-        let is_short = self.returning.events().is_some() && (!is_timed || !self.is_shown);
-        if ending == Ending::Horizon && is_short {
-            let why = match is_timed {
-                true => NoReturn::Ended(Ending::Horizon),
-                false => NoReturn::Equilibrium,
-            };
+        let why = self.count.and_then(|it| it.no_return(self.returning.is_timed));
+        if ending == Ending::Horizon
+            && let Some(why) = why
+        {
             self.end.cause = Some(why.to_string());
         }
     }

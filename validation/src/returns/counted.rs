@@ -2,8 +2,8 @@
 //! run, or to an event.
 
 use crate::typed::WrittenSection;
-use percuss::affine::USUAL_LONGEST;
-use percuss::{Kind, System, SystemError};
+use percuss::affine::{NoReturn, USUAL_LONGEST};
+use percuss::{Ending, Kind, System, SystemError};
 use std::f64::consts::TAU;
 
 /// The most returns that a run may have.
@@ -97,9 +97,78 @@ impl Strobes {
 
 impl EventReturns {
     /// Whether an event of this kind is one of the section.
-    #[must_use]
-    pub fn counts(&self, kind: Kind) -> bool {
+    fn counts(&self, kind: Kind) -> bool {
         self.kinds.contains(&kind)
+    }
+}
+
+/// The returns to an event that a run under way has made.
+#[derive(Clone, Copy, Debug)]
+pub struct ReturnCount<'r> {
+    returning: &'r EventReturns,
+    /// Events of the section.
+    events: u64,
+    /// The time of the last of these, or of the start.
+    since: f64,
+}
+
+impl<'r> ReturnCount<'r> {
+    /// The count of a run that starts at this time.
+    #[must_use]
+    pub const fn begin(returning: &'r EventReturns, start: f64) -> Self {
+        Self { returning, events: 0, since: start }
+    }
+
+    /// Takes an event of the system.
+    pub fn take(&mut self, kind: Kind, time: f64) {
+        if self.returning.counts(kind) {
+            self.events += 1;
+            self.since = time;
+        }
+    }
+
+    /// The whole returns that have been made.
+    #[must_use]
+    pub const fn returns(&self) -> u64 {
+        self.events / self.returning.every
+    }
+
+    /// The share of the returns with which the run ends that have been made; none of a run of
+    /// another length.
+    #[must_use]
+    pub fn share(&self) -> Option<f64> {
+        self.returning.last.map(|last| self.events as f64 / last as f64)
+    }
+
+    /// Whether the returns that are left out have been made.
+    #[must_use]
+    pub const fn is_past_transient(&self) -> bool {
+        self.events >= self.returning.left_out
+    }
+
+    /// Whether the run has not come to the return that ends it.
+    #[must_use]
+    pub fn goes_on(&self) -> bool {
+        self.returning.last.is_none_or(|last| self.events < last)
+    }
+
+    /// The time up to which the run goes from here: that to which a return is waited for, or
+    /// `last`, where that time is asked for or no return is wanted.
+    #[must_use]
+    pub fn horizon(&self, is_timed: bool, last: f64) -> f64 {
+        let waits = !self.is_past_transient() || self.returning.last.is_some();
+        if waits && !is_timed { self.since + self.returning.longest } else { last }
+    }
+
+    /// The reason for which a run that ends at its horizon has not returned as often as was asked,
+    /// if it has not.
+    #[must_use]
+    pub fn no_return(&self, is_timed: bool) -> Option<NoReturn> {
+        match is_timed {
+            false => Some(NoReturn::Equilibrium),
+            true if self.is_past_transient() => None,
+            true => Some(NoReturn::Ended(Ending::Horizon)),
+        }
     }
 }
 

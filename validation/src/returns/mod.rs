@@ -2,7 +2,9 @@
 
 mod counted;
 
-pub use counted::{CountedReturns, EventReturns, MOST_RETURNS, Strobes, Uncounted, WantedReturns};
+pub use counted::{
+    CountedReturns, EventReturns, MOST_RETURNS, ReturnCount, Strobes, Uncounted, WantedReturns,
+};
 
 use percuss::affine::{Exponents, NoOrbit, NoReturn, Place, SectionMap, SystemError};
 

@@ -3,9 +3,8 @@
 use super::plan::PlannedRun;
 use super::rows::{Underway, row};
 use super::sink::{RunEnd, Sink};
-use crate::returns::EventReturns;
+use crate::returns::{EventReturns, ReturnCount};
 use anyhow::Result;
-use percuss::affine::NoReturn;
 use percuss::{Ending, Event};
 
 /// Makes the run and hands its rows to a sink.
@@ -19,36 +18,27 @@ pub(super) fn rows(
     Ok(run.end(ending.as_ref()))
 }
 
-/// The events and samples that a run has passed.
-#[derive(Default)]
-struct Passed {
-    /// Events of the section.
-    returns: u64,
-    /// The time of the last return, or of the start.
-    since: f64,
-    /// Events that are shown, and samples, shown or not.
-    events: u64,
-    samples: u64,
-}
-
 /// A run that is measured in returns to an event.
 struct BetweenReturns<'r, 'a, 'p> {
     run: &'r mut Underway<'a, 'p>,
-    returning: &'p EventReturns,
-    passed: Passed,
+    count: ReturnCount<'p>,
+    /// The events that are shown.
+    events: u64,
+    /// The samples that are passed, shown or not.
+    samples: u64,
 }
 
 impl<'r, 'a, 'p> BetweenReturns<'r, 'a, 'p> {
     fn new(run: &'r mut Underway<'a, 'p>, returning: &'p EventReturns) -> Self {
-        let passed = Passed { since: *run.run.start().time(), ..Passed::default() };
-        Self { run, returning, passed }
+        let count = ReturnCount::begin(returning, *run.run.start().time());
+        Self { run, count, events: 0, samples: 0 }
     }
 
     /// Hands on the rows from the return that ends the transient on; how the run ended, where that
     /// is not as it was asked for.
     fn rows(&mut self, sink: &mut dyn Sink) -> Result<Option<Event<'a, f64>>> {
         // The first sample is the start.
-        if self.is_shown() && self.run.plan.samples.is_none() {
+        if self.count.is_past_transient() && self.run.plan.samples.is_none() {
             let start = self.run.run.start();
             self.begin_rows(&start, sink)?;
         }
@@ -73,21 +63,14 @@ impl<'r, 'a, 'p> BetweenReturns<'r, 'a, 'p> {
         Ok(None)
     }
 
-    /// Whether the transient is over.
-    fn is_shown(&self) -> bool {
-        self.passed.returns >= self.returning.left_out
-    }
-
     /// Whether the run has not come to the return or the event that ends it.
     fn is_wanted(&self) -> bool {
-        let returns = self.returning.last.is_none_or(|last| self.passed.returns < last);
-        returns && self.run.plan.events.is_none_or(|wanted| self.passed.events < wanted)
+        self.count.goes_on() && self.run.plan.events.is_none_or(|wanted| self.events < wanted)
     }
 
     /// The share of the run that is done.
     fn share(&self) -> f64 {
-        let of_returns = self.returning.last.map(|last| self.passed.returns as f64 / last as f64);
-        of_returns.unwrap_or_else(|| self.run.plan.share_of_events(self.passed.events))
+        self.count.share().unwrap_or_else(|| self.run.plan.share_of_events(self.events))
     }
 
     /// Hands on the place at which rows begin, which has a row where rows are those of events.
@@ -99,14 +82,11 @@ impl<'r, 'a, 'p> BetweenReturns<'r, 'a, 'p> {
 
     /// Takes an event of the system.
     fn pass(&mut self, event: &Event<'_, f64>, sink: &mut dyn Sink) -> Result<()> {
-        let was_shown = self.is_shown();
-        if self.returning.counts(event.kind()) {
-            self.passed.returns += 1;
-            self.passed.since = *event.time();
-        }
-        match (was_shown, self.is_shown()) {
+        let was_shown = self.count.is_past_transient();
+        self.count.take(event.kind(), *event.time());
+        match (was_shown, self.count.is_past_transient()) {
             (true, _) => {
-                self.passed.events += 1;
+                self.events += 1;
                 self.show(event, sink)
             }
             (false, true) => self.begin_rows(event, sink),
@@ -116,7 +96,7 @@ impl<'r, 'a, 'p> BetweenReturns<'r, 'a, 'p> {
 
     /// Hands on an event, or the ending, by its name.
     fn show(&self, event: &Event<'_, f64>, sink: &mut dyn Sink) -> Result<()> {
-        let (plan, n) = (self.run.plan, self.passed.events);
+        let (plan, n) = (self.run.plan, self.events);
         sink.stop(&row(n, event, false))?;
         if plan.samples.is_some() { Ok(()) } else { sink.row(plan, &row(n, event, true)) }
     }
@@ -125,14 +105,14 @@ impl<'r, 'a, 'p> BetweenReturns<'r, 'a, 'p> {
     fn sample(&mut self, at: &Event<'_, f64>, sink: &mut dyn Sink) -> Result<()> {
         let plan = self.run.plan;
         let Some(samples) = &plan.samples else { return Ok(()) };
-        if samples.at(self.passed.samples) > *at.time() {
+        if samples.at(self.samples) > *at.time() {
             return Ok(());
         }
         // The start itself has no rounding of modal co-ordinates.
-        let start = (self.passed.samples == 0).then(|| self.run.run.start());
+        let start = (self.samples == 0).then(|| self.run.run.start());
         let at = start.as_ref().unwrap_or(at);
-        self.passed.samples += 1;
-        if !self.is_shown() {
+        self.samples += 1;
+        if !self.count.is_past_transient() {
             return Ok(());
         }
         sink.stop(&row(0, at, false))?;
@@ -142,32 +122,21 @@ impl<'r, 'a, 'p> BetweenReturns<'r, 'a, 'p> {
     /// Lets the run go on from a horizon, unless it ends there.
     fn goes_on(&mut self, time: f64) -> bool {
         let plan = self.run.plan;
-        let sample = plan.samples.as_ref().map(|it| it.at(self.passed.samples));
-        let stop = sample.unwrap_or(f64::INFINITY).min(self.horizon());
+        let sample = plan.samples.as_ref().map(|it| it.at(self.samples));
+        let horizon = self.count.horizon(plan.is_timed, plan.horizon);
+        let stop = sample.unwrap_or(f64::INFINITY).min(horizon);
         stop > time && self.run.run.go_on(stop)
-    }
-
-    /// The time at which the run ends at the latest.
-    fn horizon(&self) -> f64 {
-        let waits = !self.is_shown() || self.returning.last.is_some();
-        if waits && !self.run.plan.is_timed {
-            return self.passed.since + self.returning.longest;
-        }
-        self.run.plan.horizon
     }
 
     /// Hands on the ending of a run, and keeps why it has not returned as often as was asked.
     fn end(&mut self, event: &Event<'_, f64>, sink: &mut dyn Sink) -> Result<()> {
         let plan = self.run.plan;
-        if event.ending() == Some(Ending::Horizon) && (!plan.is_timed || !self.is_shown()) {
-            let why = match plan.is_timed {
-                true => NoReturn::Ended(Ending::Horizon),
-                false => NoReturn::Equilibrium,
-            };
-            self.run.no_return = Some((why, self.passed.returns / self.returning.every));
+        if event.ending() == Some(Ending::Horizon) {
+            let why = self.count.no_return(plan.is_timed);
+            self.run.no_return = why.map(|why| (why, self.count.returns()));
         }
-        if self.is_shown() {
-            self.passed.events += 1;
+        if self.count.is_past_transient() {
+            self.events += 1;
             return self.show(event, sink);
         }
         sink.stop(&row(0, event, false))?;
