@@ -86,13 +86,10 @@ impl<M: Motions> Catalog<M> {
         }
     }
 
-    fn search(&self) -> AttractorSearch<'_, M> {
-        AttractorSearch { motions: &self.motions, known: &self.known, limits: self.limits }
-    }
-
     /// The attractor on which a motion settles.
     fn settled(&self, from: &M::Place) -> Settled<M::Coordinates> {
-        let search = self.search();
+        let Self { motions, known, limits } = self;
+        let search = AttractorSearch { motions, known, limits: *limits };
         let mut from = from.clone();
         for extension in 0..=EXTENSIONS {
             match self.recognised(&from, extension) {
@@ -142,10 +139,7 @@ impl<M: Motions> Catalog<M> {
 
     /// The label of a motion that does not go on; none where it rests at a new place.
     fn label_of(&self, stop: StopOf<M>) -> Option<Label> {
-        match self.search().stopped(stop) {
-            Settled::Label(label) => Some(label),
-            Settled::New(_) => None,
-        }
+        stop.label(self.motions.coordinates(), &self.known)
     }
 
     /// Follows a motion until it is recognised, for its transient or an extension of that; where it

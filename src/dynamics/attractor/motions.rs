@@ -97,12 +97,8 @@ pub(crate) trait Motions: Sized + Sync {
     ) -> Vec<Result<Self::Place, StopOf<Self>>> {
         parallel::map(from, |it| {
             let outcome = self.recognised(known, it, returns);
-            let is_labelled = match &outcome {
-                Ok(_) => false,
-                Err(Stop::Label(_)) => true,
-                Err(Stop::Rest(at)) => known.iter().any(|it| it.rests_at(self.coordinates(), at)),
-            };
-            seen(u64::from(is_labelled));
+            let label = outcome.as_ref().err().and_then(|it| it.label(self.coordinates(), known));
+            seen(u64::from(label.is_some()));
             outcome
         })
     }
@@ -133,6 +129,21 @@ pub(crate) enum Stop<P> {
         expect(dead_code, reason = "the oscillator's strobes never end")
     )]
     Rest(P),
+}
+
+impl<P> Stop<P> {
+    /// The label of a motion that ends so; none where it rests at a new place.
+    pub fn label<C>(&self, coordinates: &C, known: &[KnownAttractor<C>]) -> Option<Label>
+    where
+        C: Coordinates<Point = P>,
+    {
+        let point = match self {
+            Self::Label(label) => return Some(*label),
+            Self::Rest(point) => point,
+        };
+        let place = known.iter().position(|it| it.rests_at(coordinates, point));
+        place.map(Label::Attractor)
+    }
 }
 
 /// One turn of a stable orbit from one of its places.

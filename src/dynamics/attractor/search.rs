@@ -1,4 +1,4 @@
-//! What a motion settles on that approaches no attractor known so far.
+//! The search for the attractor of a motion that approaches none of those known so far.
 
 use super::cells::CellSet;
 use super::coordinates::Coordinates;
@@ -13,7 +13,7 @@ use super::thresholds::{
 use super::trap_search::traps;
 use super::{AttractorKind, ERRORS, POINTS};
 
-/// What a motion has settled on.
+/// The outcome of a search for the attractor of a motion.
 pub(crate) enum Settled<C: Coordinates> {
     /// The motion leads to a known attractor, escapes or ends, or it is not known where it leads.
     Label(Label),
@@ -45,11 +45,11 @@ pub(crate) struct AttractorSearch<'a, M: Motions> {
     pub limits: SearchLimits,
 }
 
-/// What was found, if anything was; or that the motion does not go on.
+/// The finding, if there is one; or the end of the motion.
 type Found<M, T> = Result<Option<T>, StopOf<M>>;
 
 impl<M: Motions> AttractorSearch<'_, M> {
-    /// What a motion settles on; none where that does not show so early. The `last` look takes
+    /// The outcome of the search; none where it does not show so early. The `last` look takes
     /// orbits of long periods too.
     pub fn identified(&self, from: &M::Place, last: bool) -> Option<Settled<M::Coordinates>> {
         self.looked_at(from, last).unwrap_or_else(|stop| match self.stopped(stop) {
@@ -58,16 +58,11 @@ impl<M: Motions> AttractorSearch<'_, M> {
         })
     }
 
-    /// What a motion has settled on that leads to no further return.
+    /// The outcome of a motion that leads to no further return.
     pub fn stopped(&self, stop: StopOf<M>) -> Settled<M::Coordinates> {
-        let point = match stop {
-            Stop::Label(label) => return Settled::Label(label),
-            Stop::Rest(point) => point,
-        };
-        let coordinates = self.motions.coordinates();
-        match self.known.iter().position(|it| it.rests_at(coordinates, &point)) {
-            Some(place) => Settled::Label(Label::Attractor(place)),
-            None => {
+        match (stop.label(self.motions.coordinates(), self.known), stop) {
+            (Some(label), _) | (None, Stop::Label(label)) => Settled::Label(label),
+            (None, Stop::Rest(point)) => {
                 let rest = M::of_run(AttractorKind::Equilibrium, &[point], &RunMeans::UNKNOWN);
                 Settled::new(rest, Evidence::Rest)
             }
@@ -139,11 +134,9 @@ impl<M: Motions> AttractorSearch<'_, M> {
         known: &[KnownAttractor<M::Coordinates>],
         returns: u64,
     ) -> Found<M, usize> {
-        let mut recognizer = Recognizer::new(self.motions.coordinates(), known);
-        let found = self
-            .motions
-            .follow(from, returns, &mut |n, _, spot| recognizer.see(n, spot).map(Label::Attractor));
-        match found {
+        // Of a motion whose start is a return, that is one of so many.
+        let further = returns - u64::from(M::FIRST_RETURN_IS_START);
+        match self.motions.recognised(known, from, further) {
             Ok(_) => Ok(None),
             Err(Stop::Label(Label::Attractor(place))) => Ok(Some(place)),
             Err(stop) => Err(stop),
@@ -183,7 +176,7 @@ impl<M: Motions> AttractorSearch<'_, M> {
     }
 }
 
-/// What a motion that is on no orbit known as stable is, by its exponents.
+/// The kind of the attractor of a motion that is on no orbit known as stable, by its exponents.
 fn kind_of(means: &RunMeans, repeats: bool) -> AttractorKind {
     let [exponent, error] = means.largest_exponent;
     if exponent > ERRORS * error && exponent > NEUTRAL {

@@ -122,7 +122,7 @@ fn compute(arguments: &RunArguments, threads: Option<u16>) -> Result<u8> {
         ),
         None => index::of_task(&plan, |name| std::env::var(name).ok())?,
     };
-    // Of an MPI job the first process alone speaks of the work of all.
+    // The first process of an MPI job alone reports the progress of all.
     let rank = index::rank(|name| std::env::var(name).ok());
     let progress = SweepProgress { bar: (rank == 0).then(|| long_work::bar(0, "tiles")) };
     long_work::pool(threads)?.install(|| {
