@@ -124,7 +124,7 @@ class Dynamics:
         >>> ball.poincare(returns=3, section="impact").state[:, 1]
         array([0.75  , 0.375 , 0.1875])
         """
-        cut = section_of(name_of("section", section), every, max_time)
+        cut = _section(section, every, max_time)
         counts = whole("transient", transient), whole("returns", returns)
         with telling(progress, "returns") as told:
             found = _percuss.system_poincare(self._native, cut, *counts, told)
@@ -156,7 +156,7 @@ class Dynamics:
         ValueError
             A motion that does not return as often, and what :meth:`poincare` does not accept.
         """
-        cut = section_of(name_of("section", section), every, max_time)
+        cut = _section(section, every, max_time)
         counts = whole("transient", transient), whole("returns", returns)
         with telling(progress, "returns") as told:
             return ReturnExponents(_percuss.system_lyapunov(self._native, cut, *counts, told))
@@ -186,7 +186,7 @@ class Dynamics:
         ValueError
             Where no orbit is reached, with the reason.
         """
-        cut = section_of(name_of("section", section), every, max_time)
+        cut = _section(section, every, max_time)
         before, number = whole("transient", transient), whole("period", period, 0, _MOST)
         found = _percuss.system_orbit(self._native, cut, before, number)
         return ReturnOrbit(found, self.modes, self.states)
@@ -217,7 +217,7 @@ class Dynamics:
         section, every, max_time, progress
             As all :class:`Dynamics` take them.
         """
-        cut = section_of(name_of("section", section), every, max_time)
+        cut = _section(section, every, max_time)
         _, places = self._axes(axes)
         with telling(progress, "starts") as told:
             found = _percuss.system_orbits(
@@ -264,7 +264,7 @@ class Dynamics:
         ValueError
             Where there is no orbit to begin with, and a value that the system does not accept.
         """
-        cut = section_of(name_of("section", section), every, max_time)
+        cut = _section(section, every, max_time)
         ends = real("from_", from_), real("to", to)
         counts = whole("transient", transient), whole("period", period, 0, _MOST)
         name = name_of("parameter", parameter)
@@ -300,7 +300,7 @@ class Dynamics:
         section, every, max_time, progress
             As all :class:`Dynamics` take them.
         """
-        cut = section_of(name_of("section", section), every, max_time)
+        cut = _section(section, every, max_time)
         first, last, count = steps_of(values)
         with telling(progress, "values") as told:
             found = _percuss.system_bifurcation(
@@ -347,7 +347,7 @@ class Dynamics:
         section, every, max_time, progress
             As all :class:`Dynamics` take them.
         """
-        cut = section_of(name_of("section", section), every, max_time)
+        cut = _section(section, every, max_time)
         names, places = self._axes(axes)
         with telling(progress, "starts") as told:
             found = _percuss.system_basins(
@@ -380,8 +380,11 @@ class Dynamics:
         return (names[0], names[1]), (states.index(names[0]), states.index(names[1]))
 
 
-def section_of(section: str | None, every: int, max_time: float | None) -> _percuss.Section:
-    """Make a section of what it is written as, or the usual one."""
+def _section(section: str, every: int, max_time: float | None) -> _percuss.Section:
+    return section_of(name_of("section", section), every, max_time)
+
+
+def section_of(text: str | None, every: int, max_time: float | None) -> _percuss.Section:
+    """Make a section of what it is written as, or that of the start's forcing angle."""
     longest = None if max_time is None else real("max_time", max_time)
-    text = None if section is None else name_of("section", section)
     return _percuss.Section(text, whole("every", every, 1, 1_000_000_000), longest)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from percuss import _percuss
-from percuss._dynamics import Dynamics, section_of
+from percuss._dynamics import Dynamics, name_of, section_of
 from percuss._run import Run, Stream, real, whole
 from percuss._sweep import Swept, SweptSystem
 
@@ -287,7 +287,8 @@ class System(Dynamics, Swept):
         """
         left_out = whole("transient", transient)
         wanted = None if returns is None else whole("returns", returns, 1)
-        cut = section_of(section, every, max_time)
+        text = None if section is None else name_of("section", section)
+        cut = section_of(text, every, max_time)
         until, count, most = self._length(until, count, max_events, wanted)
         if wanted is None and left_out == 0:
             flags = {"section": section, "every": None if every == 1 else every}
