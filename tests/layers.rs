@@ -13,7 +13,7 @@ struct Package {
 }
 
 /// All packages, in the order in which they are compiled.
-const PACKAGES: [Package; 8] = [
+const PACKAGES: [Package; 10] = [
     Package {
         sources: "src",
         rooms: &[
@@ -51,6 +51,7 @@ const PACKAGES: [Package; 8] = [
     Package {
         sources: "validation/pictures/src",
         rooms: &[
+            "arrays",
             "colour",
             "palette",
             "look",
@@ -91,16 +92,57 @@ const PACKAGES: [Package; 8] = [
     },
     Package {
         sources: "validation/harness/src",
+        rooms: &["provenance", "truth", "gradients", "score", "suite", "power"],
+    },
+    Package {
+        sources: "validation/bench/src",
         rooms: &[
-            "arrays",
-            "provenance",
-            "truth",
-            "gradients",
-            "score",
-            "suite",
-            "power",
-            "bench",
-            "reproduce",
+            "timed_case",
+            "cases",
+            "history",
+            "clock",
+            "equal_accuracy",
+            "instructions",
+            "rounds",
+            "length",
+            "timed",
+            "workload",
+            "library_part",
+            "floor",
+            "compare",
+            "contestant",
+            "contest",
+            "lanes",
+            "damping",
+            "report",
+            "competitor",
+            "pictures",
+            "summary",
+            "table",
+        ],
+    },
+    Package {
+        sources: "validation/paper/src",
+        rooms: &[
+            "paper",
+            "curve",
+            "claim",
+            "item_work",
+            "continued",
+            "attractors",
+            "integrated",
+            "brute",
+            "branches",
+            "fractal",
+            "progression_rate",
+            "figure2",
+            "table1",
+            "figure5",
+            "figure6",
+            "figure7",
+            "figures8_9",
+            "bifurcations",
+            "figure10",
         ],
     },
     Package {

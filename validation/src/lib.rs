@@ -12,7 +12,10 @@ pub mod sweep;
 pub mod typed;
 mod unfinished;
 
+pub use percuss_bench as bench;
 pub use percuss_engines::case::systems;
 pub use percuss_engines::{case, engine, integration, integrators, number, system};
-pub use percuss_harness::{arrays, bench, gradients, power, reproduce, score, suite, truth};
+pub use percuss_harness::{gradients, power, score, suite, truth};
+pub use percuss_paper as reproduce;
 pub use percuss_pictures as picture;
+pub use percuss_pictures::arrays;

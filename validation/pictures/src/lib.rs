@@ -1,6 +1,7 @@
 //! Pictures, drawn by the program itself: PNG, and SVG where it stays small. Plotters draws the
-//! SVG, and resvg renders the PNG from it.
+//! SVG, and resvg renders the PNG from it. Their data are arrays for NumPy ([`arrays`]).
 
+pub mod arrays;
 mod axes;
 mod axis_unit;
 mod basin_map;

@@ -52,8 +52,7 @@ pub use rule::{Beside, ErrorRule};
 pub use scored::{Checked, ScoredRun, Verdict};
 pub use scored_horizon::ScoredBy;
 pub use starts::{far_apart, on_attractor};
-pub(crate) use statistics::worst;
-pub use statistics::{Spread, nearest_rank};
+pub use statistics::{Spread, nearest_rank, worst};
 pub use valid_horizon::HorizonTest;
 pub use verdict::{Expected, RowJudgement, Subject, judge};
 

@@ -34,7 +34,8 @@ pub fn nearest_rank(sorted: &[f64], share: f64) -> f64 {
 }
 
 /// The largest error, at least 0; a NaN among them is the largest.
-pub(crate) fn worst(errors: impl Iterator<Item = f64>) -> f64 {
+#[must_use]
+pub fn worst(errors: impl Iterator<Item = f64>) -> f64 {
     errors
         .fold(0.0, |worst: f64, error| if error > worst || error.is_nan() { error } else { worst })
 }

@@ -2,8 +2,8 @@
 
 use super::contestants;
 use super::report::{Bench, BenchRow, CaseEntry, Damped, net};
-use crate::bench::history::{History, HistoryRecord};
 use crate::engine::REFERENCE;
+use crate::history::{History, HistoryRecord};
 use crate::picture::{
     Axis, AxisScale, Curve, Curves, DrawError, INK, Marker, Picture, Stroke, basin_colours, looks,
     png, svg,

@@ -5,7 +5,7 @@ use percuss::Parameters;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-const FILE: &str = include_str!("../../paper.toml");
+const FILE: &str = include_str!("../paper.toml");
 
 /// A row of Table 1 as printed.
 #[derive(Clone, Debug, Deserialize)]

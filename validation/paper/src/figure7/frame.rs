@@ -1,12 +1,12 @@
 //! One frame: its attractors and the label of every start.
 
 use crate::arrays::Npz;
+use crate::attractors::{TRANSIENT, WINDOW, described, grid, map};
 use crate::engine::Failure;
+use crate::integrated::strobes;
+use crate::item_work::ItemWork;
 use crate::picture::Colour;
 use crate::picture::{Layer, Plot, Raster, basin_colours};
-use crate::reproduce::attractors::{TRANSIENT, WINDOW, described, grid, map};
-use crate::reproduce::integrated::strobes;
-use crate::reproduce::item_work::ItemWork;
 use percuss::dynamics::attractor::{Attractor, Basins, Label};
 use percuss::dynamics::orbit::Orbit;
 use serde::{Deserialize, Serialize};

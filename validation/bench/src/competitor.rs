@@ -132,7 +132,7 @@ mod tests {
         let bench = bench(50.0, 20);
         assert_eq!(bench.events[0].ns_per_event, Some(160.0));
         assert_eq!(bench.events[0].floors_per_event, Some(4.0));
-        let table = crate::bench::summary(&bench);
+        let table = crate::summary(&bench);
         let line = table.lines().find(|line| line.starts_with(CASE)).unwrap_or_default();
         let cells: Vec<_> = line.split_whitespace().collect();
         assert_eq!(cells[..4], [CASE, "20", "160", "4.0"], "{table}");

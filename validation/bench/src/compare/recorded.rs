@@ -6,7 +6,7 @@
 //! Where instructions are counted they decide, and times only warn.
 
 use super::verdict::{FAIL, WARN, WorkloadVerdict};
-use crate::bench::history::HistoryRecord;
+use crate::history::HistoryRecord;
 
 /// A workload of both versions.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,7 +84,7 @@ fn repeatable(quotient: f64) -> WorkloadVerdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::history::Figures;
+    use crate::history::Figures;
     use crate::provenance::Build;
 
     fn record(

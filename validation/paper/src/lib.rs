@@ -4,6 +4,12 @@
 //! What the paper says stands in `paper.toml` and is only ever compared with; nothing is tuned to
 //! agree.
 
+// Modules here name those of the packages below as if they were their own.
+use percuss_engines::{case, engine, integrators, number};
+use percuss_harness::score;
+use percuss_pictures as picture;
+use percuss_pictures::arrays;
+
 mod attractors;
 mod bifurcations;
 mod branches;

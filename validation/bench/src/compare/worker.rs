@@ -13,9 +13,9 @@
 //! It ends with its input. The process stays alive, so that two of them can take turns within
 //! milliseconds.
 
-use crate::bench::clock::Stopwatch;
-use crate::bench::workload::Workload;
+use crate::clock::Stopwatch;
 use crate::provenance::Build;
+use crate::workload::Workload;
 use std::io::{self, BufRead, Write};
 
 /// The protocol's name and number, first words of the greeting.

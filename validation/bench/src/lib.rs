@@ -5,6 +5,11 @@
 //! answer that was right ([`timed_case`]). Who is timed is a [`contestant`]; what versions are
 //! compared by, a [`workload`].
 
+// Modules here name those of the packages below as if they were their own.
+use percuss_engines::{case, engine, integration, integrators, number, system};
+use percuss_harness::{provenance, score, truth};
+use percuss_pictures as picture;
+
 pub mod cases;
 pub mod clock;
 pub mod compare;
@@ -33,7 +38,6 @@ pub use report::Bench;
 pub use summary::summary;
 pub use table::table;
 
-use crate::integrators;
 use contestant::{Contestant, EnteredEngine};
 use lanes::ExactLanes;
 

@@ -6,9 +6,9 @@
 //! that come first.
 
 use super::frame::{ColourPlace, Frame};
+use crate::attractors::start;
 use crate::engine::Failure;
-use crate::reproduce::attractors::start;
-use crate::reproduce::paper::attractors_model;
+use crate::paper::attractors_model;
 use percuss::Parameter;
 use percuss::dynamics::diagram::{Diagram, Follow};
 
