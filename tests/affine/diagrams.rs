@@ -134,6 +134,27 @@ fn a_motion_that_escapes_has_no_points() {
     assert_eq!(why, [None, Some(LeftOut::Escapes), None]);
 }
 
+/// A state counts by its scale, and a drift, which an orbit's goes on for ever, not at all: x grows
+/// by 4e8 a period, and the last of the 46 returns, the first of which is the start, is at 1.8e10.
+#[test]
+fn what_is_far_counts_in_scales_and_without_drifts() {
+    let left_out = |line: &str| {
+        let text = format!(
+            "schema = 1\nname = \"far\"\nstates = [\"x\", \"y\"]\n{line}\n\
+             forcing = {{ omega = 1, phi = 0.0 }}\n[parameters]\nrate = 1\n\
+             [[mode]]\nname = \"on\"\nequations = [\"x' = rate\", \"y' = cos - y\"]\n\
+             [start]\nmode = \"on\"\nx = 0\ny = 0\n"
+        );
+        let diagram = plan(Section::strobe(0.0), Follow::Reset);
+        steps(&diagram, &text, "rate", &[4e8 / std::f64::consts::TAU])[0].left_out
+    };
+    assert_eq!(left_out("drift = []"), Some(LeftOut::Escapes));
+    assert_eq!(left_out("drift = []\nscales = [17, 1]"), Some(LeftOut::Escapes));
+    assert_eq!(left_out("drift = []\nscales = [19, 1]"), None);
+    assert_eq!(left_out("drift = [\"x\"]"), None);
+    assert_eq!(left_out(""), None, "a state on which nothing depends is a drift unless told");
+}
+
 #[test]
 fn a_value_without_a_system_is_named() {
     let diagram = plan(Section::strobe(0.0), Follow::Carry);

@@ -14,7 +14,6 @@ use crate::dynamics::attractor::motions::{Motions, Observer, RunMeans, Stop, Sto
 use crate::dynamics::attractor::thresholds::DIRECTIONS;
 use crate::dynamics::attractor::trap_search::metric;
 use crate::dynamics::attractor::{AttractorKind, Label};
-use crate::dynamics::diagram::FARTHEST;
 use crate::dynamics::linear::product;
 
 /// Returns in which small changes find their directions before exponents are taken.
@@ -121,10 +120,10 @@ impl Motions for SectionMotions<'_> {
                 Some(Err(NoReturn::Ended(_))) => return Err(Stop::Label(Label::Ended)),
                 Some(Err(NoReturn::AmidEvents | NoReturn::PastAccumulation)) | None => break,
             };
-            let spot = self.coordinates.spot(&point);
-            if spot.at.iter().any(|it| it.is_nan() || it.abs() > FARTHEST) {
+            if self.map.has_escaped(&point.state) {
                 return Err(Stop::Label(Label::Escaping));
             }
+            let spot = self.coordinates.spot(&point);
             if let Some(label) = see(n + 1, &point, &spot) {
                 return Err(Stop::Label(label));
             }

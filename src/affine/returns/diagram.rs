@@ -1,8 +1,9 @@
 //! Brute-force diagrams of a system's returns: the points of a section after a transient, value by
 //! value of a parameter.
 //!
-//! A motion escapes whose state passes [`FARTHEST`] at a return, and it may end before it has
-//! returned as often as was asked. It has no points then, and no value starts from where it went.
+//! A motion escapes of which a state that is no drift passes 1e9 of its scales at a return, and it
+//! may end before it has returned as often as was asked. It has no points then, and no value starts
+//! from where it went.
 
 use super::map::{Carried, SectionMap};
 use super::section::Section;
@@ -11,7 +12,7 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::system::System;
 use crate::affine::run::place::Place;
 use crate::affine::solver::Solver;
-use crate::dynamics::diagram::{FARTHEST, Follow};
+use crate::dynamics::diagram::Follow;
 use crate::dynamics::parallel;
 use std::fmt;
 
@@ -46,7 +47,7 @@ pub struct ReturnDiagramStep {
 /// The reason for which a diagram has no points at a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
-    /// A state passes [`FARTHEST`].
+    /// A state that is no drift passes 1e9 of its scales.
     Escapes,
     /// The motion does not return as often.
     NoReturn(NoReturn),
@@ -55,7 +56,7 @@ pub enum LeftOut {
 impl fmt::Display for LeftOut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Escapes => f.write_str("its state passes 1e9"),
+            Self::Escapes => f.write_str("a state passes 1e9 of its scales"),
             Self::NoReturn(why) => why.fmt(f),
         }
     }
@@ -188,7 +189,7 @@ impl ReturnDiagram {
         let all = self.transient + u64::from(self.returns);
         for (n, point) in (0..all).zip(returns.by_ref()) {
             left_out = match &point {
-                Ok(point) if is_far(point) => Some(LeftOut::Escapes),
+                Ok(point) if map.has_escaped(&point.state) => Some(LeftOut::Escapes),
                 Ok(_) => None,
                 Err(why) => Some(LeftOut::NoReturn(*why)),
             };
@@ -204,9 +205,4 @@ impl ReturnDiagram {
         let place = if left_out.is_none() { returns.place().ok() } else { None };
         (ReturnDiagramStep { value, points, left_out, undecidable }, place)
     }
-}
-
-/// Whether a state has gone farther than any start.
-fn is_far(point: &Return<f64>) -> bool {
-    point.state.iter().any(|it| it.is_nan() || it.abs() > FARTHEST)
 }

@@ -7,6 +7,7 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::system::{Forcing, System};
 use crate::affine::run::place::Place;
 use crate::affine::solver::Solver;
+use crate::dynamics::diagram::FARTHEST;
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::number::Number;
 
@@ -73,6 +74,14 @@ impl<'a, T: Number> SectionMap<'a, T> {
     #[must_use]
     pub fn is_drift(&self, state: usize) -> bool {
         self.drifts.contains(&state)
+    }
+
+    /// Whether a motion has escaped that returns with these states: one that is no drift is no
+    /// number, or is larger than [`FARTHEST`] of its scales. A drift of an orbit grows for ever.
+    pub(in crate::affine) fn has_escaped(&self, state: &[T]) -> bool {
+        let states = state.iter().map(|it| it.to_f64()).zip(&self.system().scales);
+        let mut counted = states.enumerate().filter(|(n, _)| !self.is_drift(*n));
+        counted.any(|(_, (state, scale))| state.is_nan() || state.abs() > FARTHEST * scale)
     }
 
     /// The [drifts](System::drifts) of a state, in their order.
