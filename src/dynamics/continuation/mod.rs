@@ -15,7 +15,6 @@
 //! corner, with multipliers that jump, or turns back there, a non-smooth fold, in the same way. A
 //! corner at which the phases of the whole orbit change is a `grazing`; an event that only passes
 //! the strobe changes their cyclic order alone, and is none.
-
 //!
 //! # What is not to be expected
 //!

@@ -43,10 +43,8 @@ Words:
                past
   spurious     a record of an event that the exact continuation does not
                have
-  checked      events of the table before an error of one tolerance has
-               grown to 1e-3; errors since the start are over these
-  found        a checked event that the engine has, in order and within
-               0.05 forcing periods
+  judged       records of an engine, and events that it missed, each held
+               against the exact continuation of the record before it
   right        a case at a setting that passes or is undecidable, with
                its sampled states judged; what was not run is not right
   rank         one more than the number of engines that are better: by
