@@ -2,9 +2,10 @@
 
 use std::fmt;
 
-/// Below this size, or from [`LARGE`] on, a number is written with an exponent.
-const SMALL: f64 = 1e-5;
-const LARGE: f64 = 1e16;
+/// The smallest size that is written without an exponent.
+const MIN_PLAIN_SIZE: f64 = 1e-5;
+/// The size from which on a number is written with an exponent.
+const MAX_PLAIN_SIZE: f64 = 1e16;
 
 /// The shortest text that reads back to `value`; not finite: `nan`, `inf`, `-inf`.
 #[must_use]
@@ -22,7 +23,7 @@ impl fmt::Display for Shortest {
             f.write_str("nan")
         } else if value.is_infinite() {
             f.write_str(if value > 0.0 { "inf" } else { "-inf" })
-        } else if size != 0.0 && !(SMALL..LARGE).contains(&size) {
+        } else if size != 0.0 && !(MIN_PLAIN_SIZE..MAX_PLAIN_SIZE).contains(&size) {
             write!(f, "{value:e}")
         } else {
             write!(f, "{value}")

@@ -4,7 +4,7 @@
 use super::table::wrapped;
 use super::{FaultRow, Order, Report, ReportEvidence, ReportRow, orders};
 use crate::engine::REFERENCE;
-use crate::integration::ELSEWHERE;
+use crate::integration::NOT_THE_OSCILLATOR;
 use crate::score::Verdict;
 use std::collections::BTreeMap;
 
@@ -25,9 +25,12 @@ pub(super) fn notes(report: &Report, evidence: &ReportEvidence) -> String {
 fn not_run(rows: &[ReportRow]) -> String {
     let mut reasons: BTreeMap<&str, BTreeMap<&str, usize>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.verdict == Verdict::NotRun) {
-        let of_the_oscillator = row.why == ELSEWHERE;
-        let why =
-            if of_the_oscillator { ELSEWHERE } else { "beyond the budget of right-hand sides" };
+        let of_the_oscillator = row.why == NOT_THE_OSCILLATOR;
+        let why = if of_the_oscillator {
+            NOT_THE_OSCILLATOR
+        } else {
+            "beyond the budget of right-hand sides"
+        };
         *reasons.entry(why).or_default().entry(row.engine).or_default() += 1;
     }
     let paragraph = |(why, engines): (&str, BTreeMap<&str, usize>)| {

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 /// The longest run from which a valid horizon is read, in forcing periods.
-const LONGEST: i64 = 1000;
+const MAX_HORIZON_PERIODS: i64 = 1000;
 
 /// The tests on a case beyond its own run; the exact solver always takes all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl FileText<'_> {
         let accepted = |it: &Spanned<i64>| {
             let periods = u32::try_from(*it.get_ref()).ok();
             periods
-                .filter(|_| (1..=LONGEST).contains(it.get_ref()))
+                .filter(|_| (1..=MAX_HORIZON_PERIODS).contains(it.get_ref()))
                 .ok_or_else(|| self.refused("valid_within", it))
         };
         let valid_within = table.valid_within.as_ref().map(accepted).transpose()?;

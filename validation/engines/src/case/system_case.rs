@@ -10,9 +10,10 @@ use serde::de::IgnoredAny;
 use std::path::Path;
 use toml::Spanned;
 
-/// At how many instants a state is tabulated where a case does not say it, and at most.
-const SAMPLES: i64 = 100;
-const MOST_SAMPLES: i64 = 100_000;
+/// Samples of the state in a case that names no number of them.
+const DEFAULT_SAMPLES: i64 = 100;
+/// The most samples of the state that a case may ask for.
+const MAX_SAMPLES: i64 = 100_000;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the tables of a case of a system")]
@@ -158,9 +159,9 @@ impl FileText<'_> {
     }
 
     fn samples(&self, samples: Option<Spanned<i64>>) -> Result<u32, FileError> {
-        let Some(samples) = samples else { return Ok(SAMPLES as u32) };
+        let Some(samples) = samples else { return Ok(DEFAULT_SAMPLES as u32) };
         let count = u32::try_from(*samples.get_ref()).ok();
-        let count = count.filter(|_| (1..=MOST_SAMPLES).contains(samples.get_ref()));
+        let count = count.filter(|_| (1..=MAX_SAMPLES).contains(samples.get_ref()));
         count.ok_or_else(|| self.refused("samples", &samples))
     }
 }

@@ -82,13 +82,13 @@ mod tests {
     use crate::integrators::exact;
     use crate::system::Values;
 
-    const COUNT: usize = 100;
+    const SAMPLES: usize = 100;
 
     fn task() -> Task {
         let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == "small-b");
         let Some(case) = case else { unreachable!("small-b is embedded") };
         let Some(own) = &case.oscillator else { unreachable!("it is of the oscillator") };
-        let task = OscillatorTask::of(own, SampleGrid { per_period: 8, count: COUNT });
+        let task = OscillatorTask::of(own, SampleGrid { per_period: 8, count: SAMPLES });
         let Ok(task) = Task::of_oscillator(&task) else { unreachable!("it is a system") };
         task
     }
@@ -105,8 +105,8 @@ mod tests {
         assert_eq!(complete(&outcome, &task), Ok(()));
         outcome.samples.push(Values::of(&[0.0; 4]));
         let refused = |outcome: &Outcome| complete(outcome, &task).map_err(|it| it.reason);
-        let said = |count| Err(format!("gave {count} samples where {COUNT} were asked for"));
-        assert_eq!(refused(&outcome), said(COUNT + 1));
+        let said = |count| Err(format!("gave {count} samples where {SAMPLES} were asked for"));
+        assert_eq!(refused(&outcome), said(SAMPLES + 1));
         outcome.samples.truncate(2);
         assert_eq!(refused(&outcome), said(2));
     }

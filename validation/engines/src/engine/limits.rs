@@ -28,14 +28,15 @@ pub(crate) fn stop(failure: Failure) -> ! {
 }
 
 thread_local! {
-    static CONTAINED: Cell<bool> = const { Cell::new(false) };
+    /// Whether a panic on this thread is turned into a failure, and so is not printed.
+    static IS_CONTAINED: Cell<bool> = const { Cell::new(false) };
 }
 
 /// Keeps the standard panic message quiet for panics that [`contain`] turns into rows.
 pub fn hush_contained_panics() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
-        if !CONTAINED.get() {
+        if !IS_CONTAINED.get() {
             usual(info);
         }
     }));
@@ -46,9 +47,9 @@ pub fn hush_contained_panics() {
 /// # Errors
 /// The run's own failure, the limit it passed, or the panic's message.
 pub fn contain<T>(run: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
-    CONTAINED.set(true);
+    IS_CONTAINED.set(true);
     let result = catch_unwind(AssertUnwindSafe(run));
-    CONTAINED.set(false);
+    IS_CONTAINED.set(false);
     result.unwrap_or_else(|payload| {
         Err(match payload.downcast::<Failure>() {
             Ok(failure) => *failure,

@@ -9,10 +9,10 @@ use std::sync::Arc;
 
 /// p, y, q and v.
 const STATES: usize = 4;
-/// The place of the coefficient of cos theta in a row.
-const COS: usize = STATES;
-/// The place of the constant term in a row.
-const ONE: usize = STATES + 2;
+/// The column of the coefficient of cos theta in a row.
+const COS_COLUMN: usize = STATES;
+/// The column of the constant term in a row.
+const CONSTANT_COLUMN: usize = STATES + 2;
 
 /// The oscillator as a system; `angle` is omega tau + phi at the start.
 ///
@@ -23,15 +23,17 @@ pub fn percussive(parameters: &Parameters, angle: f64) -> System {
     let Parameters { xi, omega, g, .. } = *parameters;
     let two_xi = 2.0 * xi;
     // sign (f - level), with the trial force f.
-    let trial = |sign: f64, level: f64| row(&[(1, sign * two_xi), (2, sign), (ONE, -sign * level)]);
+    let trial = |sign: f64, level: f64| {
+        row(&[(1, sign * two_xi), (2, sign), (CONSTANT_COLUMN, -sign * level)])
+    };
     // p = q + g, and q such that f is what is imposed.
     let surface = |imposed: f64| {
-        let q = [(1, -two_xi), (ONE, imposed)];
-        let p = [(1, -two_xi), (ONE, imposed + g)];
+        let q = [(1, -two_xi), (CONSTANT_COLUMN, imposed)];
+        let p = [(1, -two_xi), (CONSTANT_COLUMN, imposed + g)];
         Some(vec![row(&p), state(1), row(&q), state(3)])
     };
-    let meets = Some(vec![row(&[(2, 1.0), (ONE, g)]), state(1), state(2), state(3)]);
-    let gap = row(&[(0, 1.0), (2, -1.0), (ONE, -g)]);
+    let meets = Some(vec![row(&[(2, 1.0), (CONSTANT_COLUMN, g)]), state(1), state(2), state(3)]);
+    let gap = row(&[(0, 1.0), (2, -1.0), (CONSTANT_COLUMN, -g)]);
     let impact = until("impact", gap, meets, vec![(Some(trial(1.0, 1.0)), 2), (None, 1)]);
     let yields = until("give-way", trial(1.0, 1.0), surface(1.0), vec![(None, 2)]);
     let leaves = until("separation", trial(-1.0, 0.0), surface(0.0), vec![(None, 0)]);
@@ -58,16 +60,17 @@ fn rates(parameters: &Parameters) -> [[Row; STATES]; 3] {
     let Parameters { a, b, xi, .. } = *parameters;
     let two_xi = 2.0 * xi;
     let rate = 1.0 / two_xi;
-    let force = |extra: &[(usize, f64)]| row(&[&[(COS, a), (ONE, b)], extra].concat());
+    let force =
+        |extra: &[(usize, f64)]| row(&[&[(COS_COLUMN, a), (CONSTANT_COLUMN, b)], extra].concat());
     // sign (1 - q)/(2 xi).
-    let closing = |sign: f64| [(2, -sign * rate), (ONE, sign * rate)];
+    let closing = |sign: f64| [(2, -sign * rate), (CONSTANT_COLUMN, sign * rate)];
     let still = || row(&[]);
     [
         [state(1), force(&[]), row(&[(2, -rate)]), still()],
         [state(1), force(&[(1, -two_xi), (2, -1.0)]), state(1), still()],
         [
             row(&closing(1.0)),
-            force(&[(ONE, -1.0)]),
+            force(&[(CONSTANT_COLUMN, -1.0)]),
             row(&closing(1.0)),
             row(&[&[(1, 1.0)], closing(-1.0).as_slice()].concat()),
         ],

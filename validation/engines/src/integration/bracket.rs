@@ -4,11 +4,12 @@ use super::guard_values::GuardValues;
 use crate::equations::Numbers;
 
 /// A root is narrowed down to this many roundings of its time.
-const ROUNDINGS: f64 = 4.0;
-/// Roundings of time within which the next look goes farther past the root than the last.
-const CLOSE: f64 = 64.0;
-/// Three looks have to narrow a bracket down to this share of it, or the next is in its middle.
-const SLOW: f64 = 0.125;
+const ROOT_ROUNDINGS: f64 = 4.0;
+/// Roundings of time to the estimated root within which the next evaluation is made beyond it.
+const MAX_OVERSTEP_ROUNDINGS: f64 = 64.0;
+/// Three evaluations have to narrow a bracket down to this share of its width, or the next one
+/// halves it.
+const MAX_WIDTH_RATIO: f64 = 0.125;
 
 /// Two looks between which a guard rises to zero.
 pub(super) struct Bracket<G> {
@@ -39,14 +40,14 @@ impl<G: Numbers> Bracket<G> {
         let Self { guard, inside, outside, .. } = *self;
         let (begin, end) = (inside.t, outside.t);
         let middle = begin + 0.5 * (end - begin);
-        let nearest = self.roundings(ROUNDINGS);
+        let nearest = self.roundings(ROOT_ROUNDINGS);
         let is_zero = outside.value(guard) <= nearest * outside.rate(guard);
         let is_narrow = end - begin <= nearest || middle <= begin || middle >= end;
         if outside.value(guard) == 0.0 || is_zero || is_narrow {
             return None;
         }
         self.looks += 1;
-        let slow = self.looks.is_multiple_of(3) && end - begin > SLOW * self.width;
+        let slow = self.looks.is_multiple_of(3) && end - begin > MAX_WIDTH_RATIO * self.width;
         if self.looks.is_multiple_of(3) {
             self.width = end - begin;
         }
@@ -63,7 +64,7 @@ impl<G: Numbers> Bracket<G> {
 
     pub(super) fn take(&mut self, look: GuardValues<G>) {
         let [value, rate] = [look.value(self.guard), look.rate(self.guard)].map(f64::abs);
-        let close = value <= self.roundings(CLOSE) * rate;
+        let close = value <= self.roundings(MAX_OVERSTEP_ROUNDINGS) * rate;
         let side = if look.value(self.guard) < 0.0 { &mut self.inside } else { &mut self.outside };
         *side = look;
         self.past = if close { 2.0 * self.past } else { 1.0 };

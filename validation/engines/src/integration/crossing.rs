@@ -6,8 +6,8 @@ use super::location::{GuardSearch, StateAt};
 use crate::equations::Equations;
 use crate::failure::Failure;
 
-/// Looks after which a bracket has shrunk as far as it will.
-const MOST_LOOKS: u32 = 200;
+/// Evaluations after which a bracket has shrunk as far as it will.
+const MAX_EVALUATIONS: u32 = 200;
 
 /// The peak of a guard, or its valley where `sign` is -1, and which values are beyond zero.
 #[derive(Clone, Copy)]
@@ -117,7 +117,7 @@ impl<E: Equations> GuardSearch<'_, E> {
         state_at: &mut StateAt<'_, E::State>,
     ) -> Result<Option<GuardValues<E::Guards>>, Failure> {
         let (mut before, mut past) = (*left, *right);
-        for looks in 1..=MOST_LOOKS {
+        for looks in 1..=MAX_EVALUATIONS {
             let cubic = before.cubic_to(&past, guard);
             let cubic = if sign < 0.0 { cubic.mirrored() } else { cubic };
             let middle = before.t + 0.5 * (past.t - before.t);
@@ -188,7 +188,7 @@ impl<E: Equations> GuardSearch<'_, E> {
         state_at: &mut StateAt<'_, E::State>,
     ) -> Result<GuardValues<E::Guards>, Failure> {
         let mut bracket = Bracket::new(guard, left, right);
-        for _ in 0..MOST_LOOKS {
+        for _ in 0..MAX_EVALUATIONS {
             let Some(t) = bracket.next() else { break };
             bracket.take(self.look_at(t, state_at)?);
         }

@@ -15,8 +15,8 @@ use percuss::{Parameters, Phase};
 pub const GUARDS: usize = 2;
 
 /// The distance from its surface at which rounding may put the beginning of a phase, relative to
-/// displacements.
-const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+/// displacements: 64 roundings.
+const SURFACE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
 
 /// The oscillator in some co-ordinates.
 pub(crate) trait Coordinates: Equations<State = [f64; 4], Guards = [f64; GUARDS]> {
@@ -51,7 +51,7 @@ pub(crate) fn count(phase: Phase) -> usize {
 /// A phase begins on a surface, but for the rounding of its displacements. Separation begins on a
 /// double zero, and a gap of some roundings that seems to close is none.
 pub(crate) fn settle(u: &[f64], guards: &mut [f64; GUARDS]) {
-    let rounding = ROUNDINGS * u.iter().fold(1.0, |a: f64, b| a.max(b.abs()));
+    let rounding = SURFACE_TOLERANCE * u.iter().fold(1.0, |a: f64, b| a.max(b.abs()));
     for guard in guards.iter_mut().filter(|guard| guard.abs() <= rounding) {
         *guard = 0.0;
     }

@@ -16,21 +16,22 @@ pub(super) struct GuardPoint {
     pub(super) rate: f64,
 }
 
-/// What makes a room of a share of the departure from the chord: s^2 (1 - s)^2 is a sixteenth in
-/// the middle, and the departure there at most an eighth of both ends' together.
-const WHOLE: f64 = 16.0 / 8.0;
-/// The room between two looks inside.
-const WIDE_ROOM: f64 = 0.5 * WHOLE;
-/// The room elsewhere.
-const ROOM: f64 = 0.25 * WHOLE;
-/// The largest values of s (1 - s)^2, for the cubic, and of the room above it.
-const HIGHEST: f64 = 4.0 / 27.0 + WIDE_ROOM / 16.0;
+/// The factor that turns a share of the departure from the chord into an allowance: s^2 (1 - s)^2
+/// is a sixteenth in the middle, and the departure there at most an eighth of both ends' together.
+const ALLOWANCE_SCALE: f64 = 16.0 / 8.0;
+/// The allowance between two evaluations inside.
+const WIDE_ALLOWANCE: f64 = 0.5 * ALLOWANCE_SCALE;
+/// The allowance elsewhere.
+const ALLOWANCE: f64 = 0.25 * ALLOWANCE_SCALE;
+/// The largest rise above both ends, over the departure: s (1 - s)^2 of the cubic, and the
+/// allowance above it.
+const MAX_RISE: f64 = 4.0 / 27.0 + WIDE_ALLOWANCE / 16.0;
 /// Intervals whose ends are tried.
-const PARTS: u32 = 8;
-/// A division is no closer to a look than this share of the interval.
-const CLOSEST: f64 = 1.0 / 64.0;
-/// Newton's iterations in the search for the cubic's own root.
-const MOST_ITERATIONS: u32 = 40;
+const TRIAL_INTERVALS: u32 = 8;
+/// A division is no closer to an end than this share of the interval.
+const MIN_DIVISION_SHARE: f64 = 1.0 / 64.0;
+/// The most steps of Newton's method in the search for the cubic's own root.
+const MAX_NEWTON_STEPS: u32 = 40;
 
 /// The cubic; s runs from 0 to 1.
 #[derive(Clone, Copy, Debug)]
@@ -64,11 +65,11 @@ impl GuardCubic {
     }
 
     fn could_be_outside(&self, s: f64) -> bool {
-        self.at(s) + self.room(s, ROOM) >= 0.0
+        self.at(s) + self.room(s, ALLOWANCE) >= 0.0
     }
 
     fn could_be_inside(&self, s: f64) -> bool {
-        self.at(s) - self.room(s, ROOM) < 0.0
+        self.at(s) - self.room(s, ALLOWANCE) < 0.0
     }
 
     /// Whether the guard is surely negative all along.
@@ -79,10 +80,10 @@ impl GuardCubic {
     /// Whether a guard could rise to zero between two looks at which it is negative.
     pub(super) fn could_reach(&self) -> bool {
         let highest = self.left.value.max(self.right.value);
-        if highest + HIGHEST * self.departure() < 0.0 {
+        if highest + MAX_RISE * self.departure() < 0.0 {
             return false;
         }
-        let reaches = |s: f64| self.at(s) + self.room(s, WIDE_ROOM) >= 0.0;
+        let reaches = |s: f64| self.at(s) + self.room(s, WIDE_ALLOWANCE) >= 0.0;
         self.turn(1.0).is_some_and(reaches) || parts().any(reaches)
     }
 
@@ -124,7 +125,7 @@ impl GuardCubic {
             (false, false) => self.turn(-1.0),
             _ => None,
         };
-        let s = turn.unwrap_or(0.5).clamp(CLOSEST, 1.0 - CLOSEST);
+        let s = turn.unwrap_or(0.5).clamp(MIN_DIVISION_SHARE, 1.0 - MIN_DIVISION_SHARE);
         self.left.t + s * (self.right.t - self.left.t)
     }
 
@@ -168,7 +169,7 @@ impl GuardCubic {
 
 /// The ends of the parts, without those of the interval.
 fn parts() -> impl Iterator<Item = f64> {
-    (1..PARTS).map(|k| f64::from(k) / f64::from(PARTS))
+    (1..TRIAL_INTERVALS).map(|k| f64::from(k) / f64::from(TRIAL_INTERVALS))
 }
 
 /// Whether the one may hold and later the other.
@@ -187,7 +188,7 @@ fn root_from([value, slope, bend, twist]: [f64; 4]) -> f64 {
     let negative_first = value < 0.0;
     let (mut low, mut high) = (0.0, 1.0);
     let mut s = -value / slope;
-    for _ in 0..MOST_ITERATIONS {
+    for _ in 0..MAX_NEWTON_STEPS {
         if !(s > low && s < high) {
             s = 0.5 * (low + high);
         }

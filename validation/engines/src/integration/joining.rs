@@ -127,9 +127,9 @@ pub(crate) enum StretchEnd<S> {
     Inside { t: f64, state: S },
 }
 
-/// Less than this share of the whole run is no step for any library; the state does not change in
-/// it.
-const SHORTEST: f64 = 16.0 * f64::EPSILON;
+/// A remainder below this share of the whole run is no step for any library; the state does not
+/// change in it.
+const MIN_STEP_SHARE: f64 = 16.0 * f64::EPSILON;
 
 /// Runs an integration by stretches of one mode, each from the moment given to an event or to some
 /// later time in the same mode, the end of the integration at the latest.
@@ -145,7 +145,8 @@ pub(crate) fn join<E: Equations>(
     let mut now = Moment::start(equations, integration.mode, integration.state);
     let mut instant = SimultaneousEvents::default();
     sampler.take(0.0, |_| Ok::<_, Failure>(now.state))?;
-    let goes_on = |now: &Moment<E>| now.entered.fires.is_some() || span - now.t > SHORTEST * span;
+    let goes_on =
+        |now: &Moment<E>| now.entered.fires.is_some() || span - now.t > MIN_STEP_SHARE * span;
     while goes_on(&now) && !meter.has_seen_enough(now.t) {
         let ended = match now.entered.fires {
             Some(guard) => StretchEnd::Event { t: now.t, guard, state: now.state },
@@ -223,9 +224,9 @@ fn record_counted<E: Equations>(
 }
 
 /// The number of events in one instant that ends a run.
-const MOST_AT_ONCE: u32 = 64;
+const MAX_SIMULTANEOUS_EVENTS: u32 = 64;
 /// Events that are no further apart than this, relative to their time, lie in one instant.
-const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
+const INSTANT_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
 /// A count of the events that lie in one instant.
 #[derive(Default)]
@@ -237,8 +238,8 @@ struct SimultaneousEvents {
 impl SimultaneousEvents {
     /// Counts an event and returns whether too many events lie in its instant.
     fn is_crowded(&mut self, t: f64) -> bool {
-        self.count = if t - self.last <= ONE_INSTANT * t { self.count + 1 } else { 1 };
+        self.count = if t - self.last <= INSTANT_TOLERANCE * t { self.count + 1 } else { 1 };
         self.last = t;
-        self.count >= MOST_AT_ONCE
+        self.count >= MAX_SIMULTANEOUS_EVENTS
     }
 }

@@ -15,12 +15,12 @@ use super::script::{GuardRise, ScriptLine, ToldCrossings};
 use crate::equations::{Entered, Equations, NO_GUARD, Numbers};
 use crate::failure::Failure;
 
-/// How often a step is divided where the looks so far may hide something.
-const MOST_DIVISIONS: u32 = 3;
+/// The most times that a step is halved where its evaluations so far may hide something.
+const MAX_DIVISIONS: u32 = 3;
 
 /// Roots of two guards that are no further apart than this, relative to their time, are one
 /// instant: the guard that comes first ends the mode.
-const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
+const INSTANT_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
 /// A dense output: the state at an instant.
 pub(super) type StateAt<'a, S> = dyn FnMut(f64) -> Result<S, Failure> + 'a;
@@ -57,7 +57,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         if (0..guards).all(|guard| left.cubic_to(right, guard).stays_inside()) {
             return Ok(None);
         }
-        self.divided(left, right, MOST_DIVISIONS, state_at, counted)
+        self.divided(left, right, MAX_DIVISIONS, state_at, counted)
     }
 
     /// What a run that was made before has found in this step.
@@ -121,7 +121,8 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         let guards = self.equations.count(self.mode);
         for guard in (0..guards).filter(|guard| self.equations.ends(self.mode, *guard)) {
             let found = self.of_ending_guard(guard, left, right, state_at)?;
-            let earlier = |t: &f64| first.is_none_or(|first| *t < first.t * (1.0 - ONE_INSTANT));
+            let earlier =
+                |t: &f64| first.is_none_or(|first| *t < first.t * (1.0 - INSTANT_TOLERANCE));
             if let Some(t) = found.filter(earlier) {
                 first = Some(GuardRise { t, guard });
             }
@@ -129,7 +130,8 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         let known = counted.len();
         for guard in (0..guards).filter(|guard| !self.equations.ends(self.mode, *guard)) {
             let found = self.of_watched_guard(guard, left, right, state_at)?;
-            let before = |t: &f64| first.is_none_or(|first| *t <= first.t * (1.0 + ONE_INSTANT));
+            let before =
+                |t: &f64| first.is_none_or(|first| *t <= first.t * (1.0 + INSTANT_TOLERANCE));
             if let Some(t) = found.filter(before) {
                 let t = first.map_or(t, |first| t.min(first.t));
                 counted.push(CountedCrossing { t, guard, state: state_at(t)? });

@@ -27,7 +27,7 @@ pub(crate) struct Meter {
 }
 
 /// The number of calls between two readings of the clock.
-const CLOCK_EVERY: u64 = 4096;
+const CALLS_PER_CLOCK_READING: u64 = 4096;
 
 impl Meter {
     pub(crate) fn new(limits: &Limits) -> Self {
@@ -83,7 +83,8 @@ impl Meter {
         if calls > self.limits.calls {
             stop(Failure::new(format!("gave up after {} calls", self.limits.calls)));
         }
-        if calls.is_multiple_of(CLOCK_EVERY) && self.began.elapsed() > self.limits.wall {
+        if calls.is_multiple_of(CALLS_PER_CLOCK_READING) && self.began.elapsed() > self.limits.wall
+        {
             stop(Failure::new(format!("gave up after {} s", self.limits.wall.as_secs())));
         }
     }

@@ -26,7 +26,7 @@ pub use field::{GUARDS, Oscillator, event_between};
 pub(crate) use joining::{Integration, Moment, StretchEnd, Times, join};
 pub(crate) use location::GuardSearch;
 pub(crate) use meter::Meter;
-pub use original::ELSEWHERE;
+pub use original::NOT_THE_OSCILLATOR;
 pub(crate) use original::OriginalOscillator;
 pub(crate) use sampler::{CountedCrossing, Sampler};
 pub(crate) use script::GuardRise;

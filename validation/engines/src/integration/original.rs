@@ -10,8 +10,8 @@ use crate::engine::{Task, place};
 use crate::equations::{Entered, Equations, NO_GUARD};
 use percuss::{Parameters, Phase};
 
-/// Why an engine with the oscillator's own co-ordinates does not run another system.
-pub const ELSEWHERE: &str = "its co-ordinates are the oscillator's";
+/// The reason why an engine with the oscillator's own co-ordinates does not run another system.
+pub const NOT_THE_OSCILLATOR: &str = "its co-ordinates are the oscillator's";
 
 /// The model in the original co-ordinates.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +38,7 @@ impl OriginalOscillator {
 impl Coordinates for OriginalOscillator {
     fn describe(task: &Task) -> Result<(), &'static str> {
         let is_oscillator = task.oscillator.is_some();
-        if is_oscillator { Ok(()) } else { Err(ELSEWHERE) }
+        if is_oscillator { Ok(()) } else { Err(NOT_THE_OSCILLATOR) }
     }
 
     fn of(parameters: &Parameters, angle: f64) -> Self {

@@ -3,8 +3,8 @@
 use crate::engine::{GuardSample, Outcome, Trace, Watched};
 use std::cell::RefCell;
 
-/// More records than this are not kept: a search that hangs would fill the memory.
-const MOST: usize = 20_000;
+/// The most records that are kept: a search that hangs would fill the memory.
+const MAX_RECORDS: usize = 20_000;
 
 /// Records inside a window.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ impl Recorder {
     pub(crate) fn step(&self, end: f64) {
         self.back_to(end);
         let steps = &mut self.trace.borrow_mut().steps;
-        if self.holds(end) && steps.len() < MOST {
+        if self.holds(end) && steps.len() < MAX_RECORDS {
             steps.push(end);
         }
     }
@@ -42,7 +42,7 @@ impl Recorder {
     /// Records one evaluation of a guard.
     pub(crate) fn look(&self, look: GuardSample) {
         let looks = &mut self.trace.borrow_mut().looks;
-        if self.holds(look.t) && looks.len() < MOST {
+        if self.holds(look.t) && looks.len() < MAX_RECORDS {
             looks.push(look);
         }
     }
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn the_memory_is_bounded() {
         let recorder = Recorder::new(&Watched { window: [0.0, 1.0], instants: Vec::new() });
-        (0..=MOST).for_each(|_| recorder.step(0.5));
-        assert_eq!(recorder.trace.take().steps.len(), MOST);
+        (0..=MAX_RECORDS).for_each(|_| recorder.step(0.5));
+        assert_eq!(recorder.trace.take().steps.len(), MAX_RECORDS);
     }
 }

@@ -13,7 +13,7 @@ use std::rc::Rc;
 thread_local! {
     static SCRIPT: RefCell<Option<Script>> = const { RefCell::new(None) };
     /// What the run on this thread locates, where that is noted.
-    static NOTED: RefCell<Option<Vec<ScriptLine>>> = const { RefCell::new(None) };
+    static NOTED_LINES: RefCell<Option<Vec<ScriptLine>>> = const { RefCell::new(None) };
 }
 
 /// A guard that has risen to zero.
@@ -46,9 +46,9 @@ struct AnswerLines {
 impl Script {
     /// Makes a run, and notes the crossings that its search finds.
     pub fn of_run<T>(run: impl FnOnce() -> T) -> (T, Self) {
-        NOTED.set(Some(Vec::new()));
+        NOTED_LINES.set(Some(Vec::new()));
         let done = run();
-        let crossings = NOTED.take().unwrap_or_default();
+        let crossings = NOTED_LINES.take().unwrap_or_default();
         (done, Self(Rc::new(AnswerLines { crossings, read: Cell::new(false) })))
     }
 
@@ -69,7 +69,7 @@ impl Script {
 
 /// Notes a crossing of the run on this thread, where that is wanted.
 pub(crate) fn note(rise: GuardRise, ends: bool) {
-    NOTED.with_borrow_mut(|noted| {
+    NOTED_LINES.with_borrow_mut(|noted| {
         if let Some(lines) = noted {
             lines.push(ScriptLine { rise, ends });
         }

@@ -16,15 +16,15 @@ use crate::failure::Failure;
 
 /// The longest step, in forcing periods; for a method whose states inside a step are computed anew,
 /// also in turns of the elastic contact.
-const LONGEST_STEP: f64 = 0.125;
+const MAX_STEP_PERIODS: f64 = 0.125;
 
 /// A state that a method computes anew is moved on from the last look where that is closer than
 /// this share of the step: the third power of it is far below rounding.
-const CLOSE: f64 = 1e-8;
+const MAX_ADVANCE_SHARE: f64 = 1e-8;
 
 /// The longest step on a motion of the given period.
 pub(crate) const fn longest_of_period(period: f64) -> f64 {
-    LONGEST_STEP * period
+    MAX_STEP_PERIODS * period
 }
 
 /// The longest step of a method whose states inside a step are computed anew.
@@ -63,7 +63,7 @@ impl<'a, E: Equations> StepEnds<'a, E> {
     ) -> Result<Option<StretchEnd<E::State>>, Failure> {
         let left = self.at;
         let look = self.search.look(right.0, &right.1);
-        let close = if self.anew { CLOSE * (right.0 - left.0) } else { 0.0 };
+        let close = if self.anew { MAX_ADVANCE_SHARE * (right.0 - left.0) } else { 0.0 };
         let mut known = KnownStates { looks: Vec::new(), close };
         let mut look_state = |t: f64| match t {
             t if t <= left.0 => Ok(left.1),
@@ -185,7 +185,7 @@ mod tests {
     /// Over 47 cases at 1e-6, 1e-9 and 1e-12 one library takes 1.05 to 1.44 times the right-hand
     /// sides of the other, because their step controls differ. Evaluating guards inside every step
     /// made it 4.5 to 6.7 times in the mean.
-    const SAME_WORK: f64 = 2.0;
+    const MAX_WORK_RATIO: f64 = 2.0;
 
     #[test]
     fn one_method_costs_and_finds_the_same_in_two_libraries() {
@@ -196,7 +196,10 @@ mod tests {
                 |it: &Outcome| it.events.iter().map(|event| event.mode).collect::<Vec<_>>();
             assert!(one.events.len() >= 6 && phases(&one) == phases(&other));
             let [one, other] = [one, other].map(|it| it.work.rhs_evaluations as f64);
-            assert!(one.max(other) <= SAME_WORK * one.min(other), "{tolerance}: {one}, {other}");
+            assert!(
+                one.max(other) <= MAX_WORK_RATIO * one.min(other),
+                "{tolerance}: {one}, {other}"
+            );
         }
     }
 }

@@ -12,8 +12,8 @@ mod wrong;
 pub use exact::{end_of_exact_run, run_in_lanes};
 pub use registry::{add, all, exact, select};
 pub use wrong::{
-    CONTROL, COOLDOWN, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, SOUND, Way, WrongEngine,
-    faulty, wrong,
+    CONTROL, COOLDOWN_TIME, CORRECT_ENGINE, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way,
+    WrongEngine, faulty, wrong,
 };
 
 #[cfg(test)]

@@ -7,7 +7,8 @@ use crate::failure::Failure;
 use regex::Regex;
 use std::sync::OnceLock;
 
-static ENGINES: &[&dyn Engine] = &[
+/// The engines that are compiled in.
+static BUILT_IN_ENGINES: &[&dyn Engine] = &[
     &Exact,
     &diffsol::BDF,
     &diffsol::TR_BDF2,
@@ -29,12 +30,12 @@ static ENGINES: &[&dyn Engine] = &[
 ];
 
 /// The engines of this program, with those that were added.
-static EVERY: OnceLock<Vec<&'static dyn Engine>> = OnceLock::new();
+static ALL_ENGINES: OnceLock<Vec<&'static dyn Engine>> = OnceLock::new();
 
 /// Every engine, the exact solver first.
 #[must_use]
 pub fn all() -> &'static [&'static dyn Engine] {
-    EVERY.get_or_init(|| ENGINES.to_vec())
+    ALL_ENGINES.get_or_init(|| BUILT_IN_ENGINES.to_vec())
 }
 
 /// Adds engines of another crate to those of this program, until it ends.
@@ -43,7 +44,7 @@ pub fn all() -> &'static [&'static dyn Engine] {
 /// A name that is taken or begins with [`REFERENCE`]; or engines that are
 /// added after any was asked for.
 pub fn add(own: &[&'static dyn Engine]) -> Result<(), Failure> {
-    let mut every = ENGINES.to_vec();
+    let mut every = BUILT_IN_ENGINES.to_vec();
     for engine in own {
         let name = engine.declaration().name;
         if name.starts_with(REFERENCE) || every.iter().any(|it| it.declaration().name == name) {
@@ -53,7 +54,7 @@ pub fn add(own: &[&'static dyn Engine]) -> Result<(), Failure> {
         }
         every.push(*engine);
     }
-    EVERY
+    ALL_ENGINES
         .set(every)
         .map_err(|_| Failure::new("engines can be added once, before any engine is asked for"))
 }

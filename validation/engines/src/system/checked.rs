@@ -3,7 +3,7 @@
 
 use super::derivative_rows::{AugmentedRow, DerivativeRows, ModeMatrix, value};
 use super::spectrum::{Rates, spectrum};
-use super::{Direction, MOST_GUARDS, MOST_STATES, Mode, Row, System, Until};
+use super::{Direction, MAX_GUARDS, MAX_STATES, Mode, Row, System, Until};
 use crate::failure::Failure;
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
@@ -84,9 +84,9 @@ impl CheckedSystem {
         };
         let modes: Vec<CheckedMode> = system.modes.iter().zip(&guards).map(checked).collect();
         let most_guards = guards.iter().map(Vec::len).max().unwrap_or_default();
-        if most_guards > MOST_GUARDS {
+        if most_guards > MAX_GUARDS {
             return Err(Failure::new(format!(
-                "a mode has {most_guards} guards, and at most {MOST_GUARDS} are accepted"
+                "a mode has {most_guards} guards, and at most {MAX_GUARDS} are accepted"
             )));
         }
         Ok(Self { system, backward: false, modes, most_guards, rates: OnceLock::new() })
@@ -247,8 +247,8 @@ fn passage(until: &Until, motions: &[ModeMatrix], guards: &[Vec<Guard>]) -> Mode
 fn check(system: &System) -> Result<(), Failure> {
     let size = system.states.len();
     let wrong = |what: String| Err(Failure::new(format!("system {}: {what}", system.name)));
-    if !(1..=MOST_STATES).contains(&size) {
-        return wrong(format!("{size} states, accepted are 1 to {MOST_STATES}"));
+    if !(1..=MAX_STATES).contains(&size) {
+        return wrong(format!("{size} states, accepted are 1 to {MAX_STATES}"));
     }
     if system.scales.len() != size || !system.scales.iter().all(|it| it.is_finite() && *it > 0.0) {
         return wrong("each state needs a positive scale".to_owned());

@@ -4,15 +4,15 @@
 //! model's own zeros are told from the event by which the motion has come: the guard of that event
 //! is zero there, and so is, after its reset, every row that is a multiple of it before.
 
-use super::MOST_STATES;
+use super::MAX_STATES;
 
 /// A row over (x, cos theta, sin theta, 1).
-pub(super) type AugmentedRow = [f64; MOST_STATES + 3];
+pub(super) type AugmentedRow = [f64; MAX_STATES + 3];
 
 /// The distance from zero to which rounding may take a sum, relative to its terms.
-const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+const SUM_TOLERANCE: f64 = 64.0 * f64::EPSILON;
 /// The error of an event time by rounding, relative to the time.
-const TIME_ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+const TIME_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 
 /// The matrix M of z' = M z, with z = (x, cos theta, sin theta, 1).
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ pub(super) fn multiplied(
     matrix: &[AugmentedRow],
     width: usize,
 ) -> AugmentedRow {
-    let mut product = [0.0; MOST_STATES + 3];
+    let mut product = [0.0; MAX_STATES + 3];
     for (factor, line) in row.iter().zip(matrix) {
         for (entry, value) in product.iter_mut().zip(line).take(width) {
             *entry += factor * value;
@@ -97,7 +97,7 @@ impl DerivativeRows {
         let counts = |k: &usize| {
             let (value, terms) = values[*k];
             let rate = values.get(k + 1).map_or(0.0, |next| next.0.abs());
-            let rounding = ROUNDINGS * terms + TIME_ROUNDINGS * t.abs() * rate;
+            let rounding = SUM_TOLERANCE * terms + TIME_TOLERANCE * t.abs() * rate;
             zeros & 1 << k == 0 && value.abs() > rounding
         };
         let order = (0..values.len()).find(counts)?;
@@ -120,7 +120,7 @@ fn is_multiple(
     let factor = if squared > 0.0 { common / squared } else { 0.0 };
     (0..width).all(|j| {
         let part = factor * guard[j];
-        (before[j] - part).abs() <= ROUNDINGS * (terms[j] + part.abs())
+        (before[j] - part).abs() <= SUM_TOLERANCE * (terms[j] + part.abs())
     })
 }
 

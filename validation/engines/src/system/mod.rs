@@ -17,7 +17,7 @@ mod spectrum;
 
 pub use affine::Affine;
 pub use checked::CheckedSystem;
-pub use numbers::{MOST_GUARDS, MOST_STATES, Values};
+pub use numbers::{MAX_GUARDS, MAX_STATES, Values};
 pub use problem::SystemProblem;
 pub use rates::Rates;
 

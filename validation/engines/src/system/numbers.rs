@@ -5,10 +5,10 @@ use crate::equations::Numbers;
 use std::ops::{Deref, DerefMut};
 
 /// The most states of a system.
-pub const MOST_STATES: usize = 11;
+pub const MAX_STATES: usize = 11;
 /// The most guards of a mode; a guard that is watched in both directions is two. The format accepts
 /// more: here they are copied with every look at them.
-pub const MOST_GUARDS: usize = 24;
+pub const MAX_GUARDS: usize = 24;
 
 /// A list of at most `MOST` numbers, without an allocation.
 #[derive(Clone, Copy, PartialEq)]
@@ -19,10 +19,10 @@ pub struct Inline<const MOST: usize> {
 }
 
 /// The states of a system.
-pub type Values = Inline<MOST_STATES>;
+pub type Values = Inline<MAX_STATES>;
 
 /// The guards of a mode.
-pub type Guards = Inline<MOST_GUARDS>;
+pub type Guards = Inline<MAX_GUARDS>;
 
 impl<const MOST: usize> Numbers for Inline<MOST> {
     /// These numbers, of which those past the most are left out.

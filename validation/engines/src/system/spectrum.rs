@@ -16,10 +16,10 @@ pub(super) struct Rates {
     pub(super) decay: f64,
 }
 
-/// Imaginary parts below this share of the modulus may be what rounding makes of a multiple root.
-const REAL: f64 = 1e-3;
-/// Roots below this share of the matrix may be zero.
-const ZERO: f64 = 1e-9;
+/// The imaginary part, as a share of the modulus, that rounding may make of a multiple real root.
+const IMAGINARY_TOLERANCE: f64 = 1e-3;
+/// The modulus of a root, as a share of the matrix, that rounding may make of zero.
+const ZERO_TOLERANCE: f64 = 1e-9;
 
 /// The spectrum of a square matrix.
 pub(super) fn spectrum(matrix: &[Vec<f64>]) -> Rates {
@@ -34,7 +34,7 @@ pub(super) fn spectrum(matrix: &[Vec<f64>]) -> Rates {
         let modulus = root.norm();
         found.fastest = found.fastest.max(size * modulus);
         found.decay = found.decay.max(-size * root.re);
-        if root.im.abs() > REAL * modulus && modulus > ZERO {
+        if root.im.abs() > IMAGINARY_TOLERANCE * modulus && modulus > ZERO_TOLERANCE {
             found.turning = found.turning.max(size * root.im.abs());
         }
     }

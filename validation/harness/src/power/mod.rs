@@ -15,7 +15,7 @@ pub use ways::is_run;
 
 use crate::case::{Case, ClassBounds, Defaults, Quantity};
 use crate::engine::{Accuracy, Limits, REFERENCE};
-use crate::integrators::{self, SOUND, Way, WrongEngine, faulty, wrong};
+use crate::integrators::{self, CORRECT_ENGINE, Way, WrongEngine, faulty, wrong};
 use crate::number::brief;
 use crate::score::{Checked, Subject, Verdict};
 use crate::suite::{Extent, PreparedCase, class_of};
@@ -196,7 +196,7 @@ impl Standard {
     #[must_use]
     pub fn of_faulty() -> [Self; 2] {
         FAULTY_AT.map(|tolerance| Self {
-            engine: SOUND,
+            engine: CORRECT_ENGINE,
             accuracy: Accuracy::Tolerance(tolerance),
             unit: tolerance,
         })

@@ -2,7 +2,7 @@
 //! way, and to do no harm where none is.
 
 use crate::engine::Equations;
-use crate::integrators::{COOLDOWN, Way};
+use crate::integrators::{COOLDOWN_TIME, Way};
 use crate::suite::PreparedCase;
 use crate::system::{Affine, Direction, System, Until};
 
@@ -38,7 +38,7 @@ pub fn is_run(case: &PreparedCase, way: Way) -> bool {
         }
         Way::Simultaneous => times.windows(2).any(|pair| pair[0] == pair[1]),
         Way::CloseEvents => {
-            let close = ROOM * COOLDOWN * system.time_scale;
+            let close = ROOM * COOLDOWN_TIME * system.time_scale;
             times.windows(2).any(|pair| pair[1] - pair[0] <= close)
         }
     }

@@ -2,7 +2,7 @@
 //! answer takes no more memory than its line.
 
 use percuss_engines::engine::Numbers;
-use percuss_engines::system::{MOST_STATES, Values};
+use percuss_engines::system::{MAX_STATES, Values};
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
@@ -62,7 +62,7 @@ pub(crate) struct StateReply(pub(crate) Values);
 
 impl<'de> Deserialize<'de> for StateReply {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let list = BoundedList::<f64, MOST_STATES>::deserialize(deserializer)?;
+        let list = BoundedList::<f64, MAX_STATES>::deserialize(deserializer)?;
         Ok(Self(Values::of(&list.0)))
     }
 }

@@ -18,12 +18,13 @@ use differential_equations::solution::Solution;
 use differential_equations::stats::Evals;
 use differential_equations::traits::State;
 
-/// More steps, or rejections of one, than the meter lets pass.
-const ENOUGH: usize = usize::MAX;
-/// To what Newton iterations of a method converge that does not relate it to displacements. The
-/// model is linear in each phase: the first iteration is exact, and this has only to be above the
-/// rounding of the largest displacements.
-const NEWTON: f64 = 1e-11;
+/// The value in place of the library's limits of steps and of rejections: the meter's is the one
+/// that counts.
+const NO_LIMIT: usize = usize::MAX;
+/// The size to which Newton iterations of a method converge that does not relate it to
+/// displacements. The model is linear in each phase: the first iteration is exact, and this has
+/// only to be above the rounding of the largest displacements.
+const NEWTON_TOLERANCE: f64 = 1e-11;
 
 /// The ratio of two steps that Radau5 may take one after the other.
 const STEP_RATIO: f64 = 1.25;
@@ -32,11 +33,11 @@ const STEP_RATIO: f64 = 1.25;
 /// where a step could grow by less than a fifth, and does not make them anew when the next step
 /// changes: with ratios above 1.2 it never keeps them.
 fn power_of_ratio(h: f64) -> f64 {
-    STEP_RATIO.powf((h.ln() / STEP_RATIO.ln() + RATIO_ROUNDING).floor())
+    STEP_RATIO.powf((h.ln() / STEP_RATIO.ln() + EXPONENT_TOLERANCE).floor())
 }
 
 /// The distance from a power of the ratio, in powers, that counts as rounding.
-const RATIO_ROUNDING: f64 = 1e-9;
+const EXPONENT_TOLERANCE: f64 = 1e-9;
 
 /// The source of states inside a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,7 +135,7 @@ macro_rules! methods {
                 $first: f64,
             ) -> impl OrdinaryNumericalMethod<f64, S> + Interpolation<f64, S> {
                 let method = $new.rtol(vec![tolerance; size]).atol(vec![tolerance; size]);
-                method.h0($first).h_min(0.0).h_max(longest).max_steps(ENOUGH)$(.$setting($value))*
+                method.h0($first).h_min(0.0).h_max(longest).max_steps(NO_LIMIT)$(.$setting($value))*
             }
         }
     )*};
@@ -144,24 +145,24 @@ methods! {
     /// Verner's robust pair of order 6.
     Rkv655e: Explicit "Verner 6(5)", Some(6), Interpolant,
         |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv655e(),
-        max_rejects(ENOUGH);
+        max_rejects(NO_LIMIT);
     /// Verner's efficient pair of order 7.
     Rkv767e: Explicit "Verner 7(6)", Some(7), Interpolant,
         |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv767e(),
-        max_rejects(ENOUGH);
+        max_rejects(NO_LIMIT);
     /// Dormand and Prince's method of order 8.
     Dop853: Explicit "Dormand-Prince 8(5,3)", Some(8), Again,
         |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::dop853(),
-        max_rejects(ENOUGH);
+        max_rejects(NO_LIMIT);
     /// Collocation at Radau's points.
     Radau5: Implicit "Radau IIA, order 5", Some(5), Again,
         |first| ImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::radau5(),
-        newton_tol(0.0), max_rejects(ENOUGH),
+        newton_tol(0.0), max_rejects(NO_LIMIT),
         filter(if first == 0.0 { power_of_ratio } else { std::convert::identity });
     /// Kvaerno's method of order 5.
     Kvaerno745: Implicit "Kvaerno ESDIRK 5(4)", Some(5), Again,
         |first| DiagonallyImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::kvaerno745(),
-        newton_tol(NEWTON), max_rejects(ENOUGH);
+        newton_tol(NEWTON_TOLERANCE), max_rejects(NO_LIMIT);
     /// Backward differentiation.
     Bdf: Multistep "BDF, orders 1 to 5", None, Cubic,
         |first| BackwardDifferentiationFormula::<Ordinary, _, _>::adaptive(),

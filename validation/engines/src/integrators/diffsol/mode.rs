@@ -30,7 +30,7 @@ impl<E: Equations> DiffsolRun<'_, E> {
         from: &Moment<E>,
         sampler: &mut Sampler<E::State>,
     ) -> Result<StretchEnd<E::State>, Failure> {
-        if self.span - from.t <= RESOLUTION * self.span {
+        if self.span - from.t <= ROOT_TOLERANCE * self.span {
             // The library refuses a stop that is as near as that.
             return Ok(StretchEnd::Inside { t: self.span, state: from.state });
         }
@@ -103,7 +103,7 @@ impl<E: Equations> DiffsolRun<'_, E> {
             return Ok(None);
         }
         sampler.take(t, state_at)?;
-        if self.span - t <= RESOLUTION * self.span {
+        if self.span - t <= ROOT_TOLERANCE * self.span {
             // The step with the root ends at the stop, from where no step goes on.
             return Ok(Some(StretchEnd::Inside { t: self.span, state: end }));
         }
@@ -122,7 +122,7 @@ impl<E: Equations> DiffsolRun<'_, E> {
         let rates = self.equations.rates(mode, t, state.as_ref());
         let rises = |other: &usize| {
             let (value, rate) = (values.as_ref()[*other], rates.as_ref()[*other]);
-            rate > 0.0 && (*other == guard || value.abs() <= RESOLUTION * t * rate)
+            rate > 0.0 && (*other == guard || value.abs() <= ROOT_TOLERANCE * t * rate)
         };
         (0..self.equations.count(mode)).filter(rises).collect()
     }
@@ -175,9 +175,9 @@ fn first_step<M: DiffsolMethod, P: DiffsolProblem>(
     }
 }
 
-/// How far apart one root may be found twice, relative to its time: ten times the resolution of the
-/// library's root finder.
-const RESOLUTION: f64 = 1e3 * f64::EPSILON;
+/// The distance, relative to its time, within which one root may be found twice: ten times the
+/// resolution of the library's root finder.
+const ROOT_TOLERANCE: f64 = 1e3 * f64::EPSILON;
 
 /// Whether a crossing is one that was counted already, before the step was taken back to its root,
 /// or that of a guard which is zero at its mode's entry.
@@ -187,7 +187,7 @@ fn is_known<E: Equations>(
     guard: usize,
     sampler: &Sampler<E::State>,
 ) -> bool {
-    let near = |t: f64| root - t <= RESOLUTION * root;
+    let near = |t: f64| root - t <= ROOT_TOLERANCE * root;
     let counted = sampler.counted.iter().rev().find(|it| it.guard == guard);
     counted.is_some_and(|it| near(it.t)) || (from.entered.is_zero(guard) && near(from.began))
 }

@@ -54,7 +54,7 @@ impl Engine for Exact {
 
 /// Runs a task of the oscillator by the oscillator's own closed forms.
 fn run(task: &OscillatorTask, limits: &Limits) -> Result<Outcome, Failure> {
-    let events = Vec::with_capacity(USUAL);
+    let events = Vec::with_capacity(RESERVED_EVENTS);
     let mut outcome = Outcome { events, ended_at: task.span, ..Outcome::default() };
     let mut run = task.problem.model.trajectory(task.problem.entry).until(task.horizon);
     let mut elapsed = TwoWord::ZERO;
@@ -89,7 +89,7 @@ fn run(task: &OscillatorTask, limits: &Limits) -> Result<Outcome, Failure> {
 }
 
 /// The number of events for which a run reserves memory at first.
-const USUAL: usize = 128;
+const RESERVED_EVENTS: usize = 128;
 
 /// A phase, passed.
 enum PassedPhase {

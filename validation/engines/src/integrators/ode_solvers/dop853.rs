@@ -9,7 +9,10 @@
 //! - Steps are at most an eighth of a turn of the elastic contact too: guards are looked at at
 //!   their ends, where their rates show a peak inside.
 
-use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, on_vectors_of, packed, plain};
+use super::{
+    COLOURS, LIBRARY, MAX_LIBRARY_STEPS, NO_STIFFNESS_TEST, TimedField, on_vectors_of, packed,
+    plain,
+};
 use crate::accuracy::{Accuracy, Stepping};
 use crate::engine::{Class, Declaration, Engine, Limits, Location, Outcome, Role, Task};
 use crate::equations::{Equations, Numbers};
@@ -25,15 +28,16 @@ use nalgebra::allocator::Allocator;
 use nalgebra::{DefaultAllocator, Dim, U4, U5};
 use std::marker::PhantomData;
 
-const STAGES: f64 = 12.0;
+/// Evaluations of the right-hand side in a step.
+const STAGES_PER_STEP: f64 = 12.0;
 /// The least multiple in [`Engine::least_work`].
-const FIRST_ORDER: f64 = 8e-4;
-/// The library keeps a stretch's steps in memory.
-const MOST_STEPS: f64 = 4096.0;
+const MIN_ERROR_MULTIPLE: f64 = 8e-4;
+/// The most steps of one stretch, which the library keeps in memory.
+const MAX_STRETCH_STEPS: f64 = 4096.0;
 /// A piece of a step shorter than this share of it is covered by one step of Euler, whose error
 /// there is below rounding in the oscillator; the library would call it an underflow. Where impacts
 /// accumulate whole flights are as short: other systems have Heun's step.
-const TINY: f64 = 1e-10;
+const MIN_PIECE_SHARE: f64 = 1e-10;
 
 /// ode_solvers' `Dop853`.
 pub(in super::super) struct Dop853 {
@@ -80,7 +84,9 @@ impl Engine for Dop853 {
             sizes.map(|([cos, sin], scale)| cos.hypot(*sin) / scale).fold(0.0, f64::max)
         };
         let least = system.modes.iter().map(forcing).fold(f64::INFINITY, f64::min);
-        STAGES * task.span * (FIRST_ORDER * least * system.omega.abs() / tolerance).sqrt()
+        STAGES_PER_STEP
+            * task.span
+            * (MIN_ERROR_MULTIPLE * least * system.omega.abs() / tolerance).sqrt()
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
@@ -146,10 +152,12 @@ where
         sampler: &mut Sampler<E::State>,
     ) -> Result<StretchEnd<E::State>, Failure> {
         let longest = self.longest;
-        let ahead = self.integration.times.period.min(MOST_STEPS * longest);
+        let ahead = self.integration.times.period.min(MAX_STRETCH_STEPS * longest);
         let until = (from.t + ahead).min(self.integration.span);
         let mut points = self.integrate(from.mode, (from.t, from.state), until, longest, 0.0)?;
-        if let Some(last) = points.last_mut().filter(|last| last.0 > until - TINY * longest) {
+        if let Some(last) =
+            points.last_mut().filter(|last| last.0 > until - MIN_PIECE_SHARE * longest)
+        {
             // It is the end but for rounding.
             last.0 = until;
         }
@@ -163,7 +171,7 @@ where
     fn again(&self, mode: usize, left: &CubicEnd<E::State>, t: f64) -> Result<E::State, Failure> {
         let (begin, state) = *left;
         let length = t - begin;
-        if length <= TINY * self.longest {
+        if length <= MIN_PIECE_SHARE * self.longest {
             let rates = self.rates(mode, begin, &state);
             let there = moved(&state, &rates, length);
             if !self.heun {
@@ -209,8 +217,8 @@ where
             6.0,
             longest,
             first,
-            STEPS,
-            NEVER_STIFF,
+            MAX_LIBRARY_STEPS,
+            NO_STIFFNESS_TEST,
             OutputType::Sparse,
         );
         let stats = solver.integrate().map_err(Failure::new)?;

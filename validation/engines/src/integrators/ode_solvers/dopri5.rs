@@ -3,7 +3,10 @@
 //! It is run with `integrate_with_continuous_output_model`: in continuous mode `solout` gets the
 //! right state; in dense mode it does not.
 
-use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, on_vectors_of, packed, plain};
+use super::{
+    COLOURS, LIBRARY, MAX_LIBRARY_STEPS, NO_STIFFNESS_TEST, TimedField, on_vectors_of, packed,
+    plain,
+};
 use crate::accuracy::{Accuracy, Stepping};
 use crate::engine::{Class, Declaration, Engine, Limits, Location, Outcome, Role, Task};
 use crate::equations::Equations;
@@ -177,8 +180,8 @@ where
             10.0,
             longest,
             self.step.min(until - from.t),
-            STEPS,
-            NEVER_STIFF,
+            MAX_LIBRARY_STEPS,
+            NO_STIFFNESS_TEST,
             OutputType::Continuous,
         );
         let mut output = ContinuousOutputModel::new();

@@ -38,10 +38,11 @@ pub(super) static DOP853_TIME: Dop853 =
 const LIBRARY: &str = "ode_solvers";
 /// Red to orange.
 const COLOURS: Colours = Colours::Hues(8.0, 42.0);
-/// Instead of the library's limit of steps: the meter's is the one that counts.
-const STEPS: u32 = u32::MAX - 1;
+/// The value of the library's limit of steps, which it never reaches: the meter's is the one that
+/// counts.
+const MAX_LIBRARY_STEPS: u32 = u32::MAX - 1;
 /// The value that turns the library's stiffness detection off.
-const NEVER_STIFF: u32 = u32::MAX;
+const NO_STIFFNESS_TEST: u32 = u32::MAX;
 
 /// Calls a function of an integration's vectors with those of so many states. The library allocates
 /// each dynamic vector anew: a step of `Dop853` takes ten times as long on them.

@@ -23,9 +23,10 @@ use std::marker::PhantomData;
 pub(in super::super) struct Rk4;
 
 const ORDER: i32 = 4;
-const STAGES: f64 = 4.0;
-/// The library keeps every step of a stretch in memory.
-const MOST_STEPS: f64 = 16384.0;
+/// Evaluations of the right-hand side in a step.
+const STAGES_PER_STEP: f64 = 4.0;
+/// The most steps of one stretch, which the library keeps in memory.
+const MAX_STRETCH_STEPS: f64 = 16384.0;
 
 impl Engine for Rk4 {
     fn declaration(&self) -> Declaration {
@@ -46,7 +47,7 @@ impl Engine for Rk4 {
 
     fn least_work(&self, task: &Task, accuracy: Accuracy) -> f64 {
         let step = |step: f64| step * task.shortest_time();
-        accuracy.step().map_or(0.0, |it| STAGES * task.span / step(it))
+        accuracy.step().map_or(0.0, |it| STAGES_PER_STEP * task.span / step(it))
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
@@ -92,10 +93,10 @@ where
         sampler: &mut Sampler<E::State>,
     ) -> Result<StretchEnd<E::State>, Failure> {
         let Integration { equations, span, times, .. } = self.integration;
-        let longest = times.period.min(MOST_STEPS * self.step);
+        let longest = times.period.min(MAX_STRETCH_STEPS * self.step);
         let length = longest.min(span - from.t);
         let count = (length / self.step).ceil().max(1.0);
-        self.meter.affords(STAGES * count)?;
+        self.meter.affords(STAGES_PER_STEP * count)?;
         let step = length / count;
         let (mode, state) = (from.mode, from.state);
         let field =

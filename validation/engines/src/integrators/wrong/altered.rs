@@ -45,7 +45,7 @@ impl Engine for Altered {
         other.problem = Problem { model, start, entry };
         // The same number of forcing periods: the sample stays the one that is compared.
         let (whole, part) = periods(task);
-        other.horizon = entry.instant.after_periods(whole, 1).after_periods(part, PARTS);
+        other.horizon = entry.instant.after_periods(whole, 1).after_periods(part, PARTS_PER_PERIOD);
         Exact.run(&Task::of_oscillator(&other)?, accuracy, limits)
     }
 }
@@ -75,11 +75,11 @@ fn exact_start(task: &OscillatorTask) -> Start {
     Start { p, y, q: Some(q), v, phase, ..task.problem.start }
 }
 
-const PARTS: u64 = 1 << 32;
+const PARTS_PER_PERIOD: u64 = 1 << 32;
 
 fn periods(task: &OscillatorTask) -> (u64, u64) {
     let periods = task.span / task.problem.model.period();
-    (periods.floor() as u64, (periods.fract() * PARTS as f64).round() as u64)
+    (periods.floor() as u64, (periods.fract() * PARTS_PER_PERIOD as f64).round() as u64)
 }
 
 /// The right motion with the drift of Eq. (20) as printed: at the start of each progression v jumps

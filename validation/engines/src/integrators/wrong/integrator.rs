@@ -42,9 +42,9 @@ pub(super) enum IntegratorFault {
 }
 
 /// The delay of a late event, in tolerances.
-const LATE: f64 = 30.0;
+const DELAY_TOLERANCES: f64 = 30.0;
 /// The relative error of wrong parameters.
-const OFF: f64 = 1e-4;
+const PARAMETER_ERROR: f64 = 1e-4;
 /// Halvings that narrow a bracket down to rounding.
 const HALVINGS: u32 = 80;
 
@@ -103,7 +103,11 @@ impl Faulty {
         if self.slip != IntegratorFault::Parameters {
             return task.parameters;
         }
-        Parameters { b: (1.0 + OFF) * b, xi: (1.0 + OFF) * xi, ..task.parameters }
+        Parameters {
+            b: (1.0 + PARAMETER_ERROR) * b,
+            xi: (1.0 + PARAMETER_ERROR) * xi,
+            ..task.parameters
+        }
     }
 }
 
@@ -161,7 +165,7 @@ impl FaultyDetection {
     }
 
     fn late(&self, stretch: &OscillatorStretch, crossing: GuardRise) -> GuardRise {
-        let t = (crossing.t + LATE * self.tolerance).min(stretch.last());
+        let t = (crossing.t + DELAY_TOLERANCES * self.tolerance).min(stretch.last());
         GuardRise { t, ..crossing }
     }
 

@@ -23,7 +23,7 @@ pub use closed::Closed;
 use integrator::{Faulty, IntegratorFault};
 use misled::SystemFault;
 use stepper::{ClosedFormStepper, StepperFault};
-pub use systems::COOLDOWN;
+pub use systems::COOLDOWN_TIME;
 use systems::FaultyOnSystems;
 use ties::LastFirst;
 
@@ -43,14 +43,14 @@ pub struct WrongEngine {
 pub static CONTROL: &dyn Engine =
     &ClosedFormStepper { name: "stepper-control", fault: StepperFault::None };
 
-/// The number of events of which one is dropped.
-pub const DROPPED: [u64; 2] = [100, 1000];
+/// The numbers of events of which the walking solver drops one.
+pub const EVENTS_PER_DROPPED: [u64; 2] = [100, 1000];
 
 static WRONG: [WrongEngine; 10] = [
     WrongEngine {
         engine: &ClosedFormStepper {
             name: "wrong-dropped-100",
-            fault: StepperFault::Dropped(DROPPED[0]),
+            fault: StepperFault::Dropped(EVENTS_PER_DROPPED[0]),
         },
         fault: "every hundredth event is dropped",
         way: None,
@@ -58,7 +58,7 @@ static WRONG: [WrongEngine; 10] = [
     WrongEngine {
         engine: &ClosedFormStepper {
             name: "wrong-dropped-1000",
-            fault: StepperFault::Dropped(DROPPED[1]),
+            fault: StepperFault::Dropped(EVENTS_PER_DROPPED[1]),
         },
         fault: "every thousandth event is dropped",
         way: None,
@@ -116,7 +116,7 @@ pub static FAULTY_CONTROL: &dyn Engine =
     &Faulty { name: "dopri5-control", slip: IntegratorFault::None };
 
 /// The number of events, or runs, of which an integrator drops, or gives up, one.
-const SELDOM: u64 = 20;
+const CASES_PER_FAULT: u64 = 20;
 
 macro_rules! faulty {
     ($name:literal, $slip:expr, $fault:literal) => {
@@ -137,7 +137,7 @@ macro_rules! faulty_on_systems {
 static FAULTY: [WrongEngine; 19] = [
     faulty!(
         "dopri5-drops",
-        IntegratorFault::Dropped(SELDOM),
+        IntegratorFault::Dropped(CASES_PER_FAULT),
         "every twentieth event is not noticed"
     ),
     faulty!("dopri5-at-step-end", IntegratorFault::AtStepEnd, "an event is put at its step's end"),
@@ -169,7 +169,7 @@ static FAULTY: [WrongEngine; 19] = [
     ),
     faulty!(
         "dopri5-gives-up",
-        IntegratorFault::GivesUp(SELDOM),
+        IntegratorFault::GivesUp(CASES_PER_FAULT),
         "some restarts end without a result"
     ),
     faulty_on_systems!(
@@ -234,14 +234,15 @@ static FAULTY: [WrongEngine; 19] = [
     ),
 ];
 
-/// Integrators with one fault each, held to the bounds of the engine without it, [`SOUND`].
+/// Integrators with one fault each, held to the bounds of the engine without it,
+/// [`CORRECT_ENGINE`].
 #[must_use]
 pub fn faulty() -> &'static [WrongEngine] {
     &FAULTY
 }
 
 /// The engine whose bounds [`faulty`] integrators are held to.
-pub const SOUND: &str = "ode_solvers-dopri5";
+pub const CORRECT_ENGINE: &str = "ode_solvers-dopri5";
 
 /// A way of running a case of a system, as far as the case itself tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

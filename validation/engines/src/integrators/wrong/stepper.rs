@@ -36,9 +36,9 @@ pub(super) struct ClosedFormStepper {
 }
 
 /// The number of steps per forcing period without that fault.
-const FINE: f64 = 512.0;
+const FINE_STEPS_PER_PERIOD: f64 = 512.0;
 /// The number of steps per forcing period, as coarse as an integrator's longest steps.
-const COARSE: f64 = 24.0;
+const COARSE_STEPS_PER_PERIOD: f64 = 24.0;
 
 impl Engine for ClosedFormStepper {
     fn declaration(&self) -> Declaration {
@@ -58,7 +58,11 @@ impl Engine for ClosedFormStepper {
             fault: self.fault,
             oscillator: Oscillator::of(&task.parameters, task.forcing_angle),
             step: task.problem.model.period()
-                / if self.fault == StepperFault::SignChange { COARSE } else { FINE },
+                / if self.fault == StepperFault::SignChange {
+                    COARSE_STEPS_PER_PERIOD
+                } else {
+                    FINE_STEPS_PER_PERIOD
+                },
             events: task.events_before,
             evaluations: 0,
         };

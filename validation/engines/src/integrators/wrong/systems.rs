@@ -20,7 +20,7 @@ use nalgebra::Dyn;
 use std::sync::Arc;
 
 /// The time after an event in which no other is noticed, in units of the system's time.
-pub const COOLDOWN: f64 = 1e-2;
+pub const COOLDOWN_TIME: f64 = 1e-2;
 
 pub(super) struct FaultyOnSystems {
     pub(super) name: &'static str,
@@ -144,7 +144,7 @@ impl FaultySystemDetection<'_> {
     fn is_cool(&self, from: &Moment<Misled<'_>>, found: &GuardRise) -> bool {
         let unit = self.task.system.system().time_scale;
         let since = found.t - from.began;
-        self.slip == SystemFault::Cooldown && from.began > 0.0 && since < COOLDOWN * unit
+        self.slip == SystemFault::Cooldown && from.began > 0.0 && since < COOLDOWN_TIME * unit
     }
 
     /// Counts watched guards that are zero at the start.

@@ -1,7 +1,7 @@
 //! Systems whose events are known: rational times, limit cycles, published instants.
 
 use super::models::{bouncing_ball, relay, rigid_oscillator, spheres, two_state_switching};
-use super::{AskedRun, BUILT_IN, FIRST_ORDER, SAMPLES, check, every};
+use super::{AskedRun, FIRST_ORDER_ENGINE, LOOSE_ROOTS_ENGINE, SAMPLES, check, every};
 
 /// Times of impact are 2 (1 + e + e^2 + ...), and halfway between them the ball is highest.
 #[test]
@@ -15,7 +15,7 @@ fn the_bouncing_ball_is_a_geometric_series() {
         dwell *= 0.5;
     }
     let asked = AskedRun { system: &system, mode: 0, state: &[0.0, 1.0], span: t + 0.25 * dwell };
-    check(&asked, &truth, 20.0, &[BUILT_IN]);
+    check(&asked, &truth, 20.0, &[LOOSE_ROOTS_ENGINE]);
 }
 
 /// Samples are taken where events cut steps short too, and lie on the parabola of their flight.
@@ -23,7 +23,7 @@ fn the_bouncing_ball_is_a_geometric_series() {
 fn samples_lie_on_their_flights() {
     let system = bouncing_ball(0.5);
     let asked = AskedRun { system: &system, mode: 0, state: &[0.0, 1.0], span: 3.9 };
-    for (name, unit, outcome) in every(&asked).into_iter().filter(|it| it.0 != BUILT_IN) {
+    for (name, unit, outcome) in every(&asked).into_iter().filter(|it| it.0 != LOOSE_ROOTS_ENGINE) {
         let samples = outcome.unwrap_or_default().samples;
         assert_eq!(samples.len(), SAMPLES as usize + 1, "{name}");
         for (k, sample) in samples.iter().enumerate() {
@@ -65,7 +65,9 @@ fn the_relay_settles_to_its_limit_cycle() {
         assert!((period - known).abs() < 1e-6, "{period}");
         let system = relay(delta);
         let asked = AskedRun { system: &system, mode: 0, state: &[0.0, 0.0, 0.0], span: 40.0 };
-        for (name, unit, outcome) in every(&asked).into_iter().filter(|it| it.0 != BUILT_IN) {
+        for (name, unit, outcome) in
+            every(&asked).into_iter().filter(|it| it.0 != LOOSE_ROOTS_ENGINE)
+        {
             let events = outcome.map(|it| it.events).unwrap_or_default();
             let times: Vec<f64> = events.iter().map(|event| event.elapsed).collect();
             let last = times.windows(2).last().map_or(0.0, |pair| pair[1] - pair[0]);
@@ -96,11 +98,11 @@ fn two_state_switching_is_as_published() {
     let stiff = [
         "diffsol-tsit45",
         "ode_solvers-dopri5",
-        FIRST_ORDER,
+        FIRST_ORDER_ENGINE,
         "ode_solvers-dop853-time",
         "ode_solvers-rk4",
         "differential-equations-rkv655e",
-        BUILT_IN,
+        LOOSE_ROOTS_ENGINE,
         "differential-equations-rkv767e",
         "differential-equations-dop853",
     ];
@@ -114,5 +116,5 @@ fn the_rigid_oscillator_follows_its_closed_form() {
     let asked = AskedRun { system: &system, mode: 0, state: &[0.3, 0.1], span: 30.0 };
     let truth = asked.truth(1e-2);
     assert!(truth.len() > 20, "{truth:?}");
-    check(&asked, &truth, 20.0, &[FIRST_ORDER, BUILT_IN]);
+    check(&asked, &truth, 20.0, &[FIRST_ORDER_ENGINE, LOOSE_ROOTS_ENGINE]);
 }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// The tolerance that every integrator is asked for.
 const TOLERANCE: f64 = 1e-8;
 /// Fixed steps whose own error is about the tolerance: step^4/120.
-const STEP: f64 = 1.0 / 32.0;
+const FIXED_STEP: f64 = 1.0 / 32.0;
 
 /// A run that is asked for.
 pub(super) struct AskedRun<'a> {
@@ -58,7 +58,7 @@ fn accuracy(engine: &dyn Engine) -> Option<Accuracy> {
     match declaration.stepping {
         _ if declaration.name.ends_with("-original") => None,
         Stepping::Exact => None,
-        Stepping::Fixed { .. } => Some(Accuracy::Step(STEP)),
+        Stepping::Fixed { .. } => Some(Accuracy::Step(FIXED_STEP)),
         _ => Some(Accuracy::Tolerance(TOLERANCE)),
     }
 }
@@ -105,9 +105,9 @@ fn departure(
 
 /// This engine's library stops its search for roots after a few evaluations: times are off by up
 /// to a twentieth.
-const BUILT_IN: &str = "differential-equations-rkv655e-events";
+const LOOSE_ROOTS_ENGINE: &str = "differential-equations-rkv655e-events";
 /// This engine is of first order where the system is forced, as its library ships it.
-const FIRST_ORDER: &str = "ode_solvers-dop853";
+const FIRST_ORDER_ENGINE: &str = "ode_solvers-dop853";
 
 /// Checks every integrator against the truth, but for those that are `excused`: these depart, each
 /// for the reason that its name here says.
