@@ -8,7 +8,7 @@ use percuss_validation::integrators::{
     CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, WrongEngine, faulty, wrong,
 };
 use percuss_validation::power::{
-    AS_EXACT, Finding, Gate, Standard, Tally, Variant, all, examine, is_run, tallies, trials,
+    EXACT_STANDARD, Finding, Gate, Standard, Tally, Variant, all, examine, is_run, tallies, trials,
 };
 use percuss_validation::suite::{PreparedCase, Suite, prepare};
 use percuss_validation::truth::Library;
@@ -70,7 +70,7 @@ fn findings(wrong: &[WrongEngine], cases: &[PreparedCase], standard: Standard) -
 fn every_fault_is_caught_and_every_gate_catches_one() {
     let cases = prepared();
     assert_eq!(cases.len(), CASES.len());
-    let found = findings(&anywhere(wrong()), &cases, AS_EXACT);
+    let found = findings(&anywhere(wrong()), &cases, EXACT_STANDARD);
     for finding in &found {
         println!("{} ({}): {:?}", finding.engine, finding.fault, finding.gates);
         assert!(finding.gates.values().any(|trip| trip.failed > 0), "{} passes", finding.engine);
@@ -188,7 +188,7 @@ fn events_of_one_instant_are_a_set_where_their_order_is_free() {
     let cases = all_systems();
     let defaults = defaults().expect("the bounds are read");
     let [last_first] = in_ways(wrong())[..] else { panic!("one of them turns the order") };
-    let finding = examine(&last_first, &cases, AS_EXACT, &defaults);
+    let finding = examine(&last_first, &cases, EXACT_STANDARD, &defaults);
     let tied: Vec<_> = cases.iter().filter(|it| is_run(it, Way::Simultaneous)).collect();
     let [matters, free] = [true, false].map(|ordered| {
         let alike = tied.iter().filter(|it| it.truth.ordered == ordered);

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 /// The columns before those of the states.
-const FIRST: usize = 6;
+const LEADING_COLUMNS: usize = 6;
 
 /// A case of derivatives through events.
 #[derive(Clone, Debug)]
@@ -112,8 +112,10 @@ fn rows(file: &str, lines: &[&str]) -> Result<(Vec<String>, Vec<GradientRow>), F
     for line in lines.iter().skip(1) {
         let refused = || FileError::of(file, format!("the line {line:?} is none of a table"));
         let cells: Vec<&str> = line.split(',').collect();
-        let [n, event, mode, wrt, side] =
-            *cells.get(..FIRST - 1).and_then(|it| it.first_chunk::<5>()).ok_or_else(refused)?;
+        let [n, event, mode, wrt, side] = *cells
+            .get(..LEADING_COLUMNS - 1)
+            .and_then(|it| it.first_chunk::<5>())
+            .ok_or_else(refused)?;
         let n: usize = n.parse().map_err(|_| refused())?;
         if !side.is_empty() || n > rows.len() {
             return Err(refused());
@@ -125,7 +127,8 @@ fn rows(file: &str, lines: &[&str]) -> Result<(Vec<String>, Vec<GradientRow>), F
             let (event, mode) = (event.to_owned(), mode.to_owned());
             rows.push(GradientRow { event, mode, cells: Vec::new() });
         }
-        let numbers: Result<Vec<f64>, _> = cells[FIRST - 1..].iter().map(|it| it.parse()).collect();
+        let numbers: Result<Vec<f64>, _> =
+            cells[LEADING_COLUMNS - 1..].iter().map(|it| it.parse()).collect();
         rows[n].cells.push(numbers.map_err(|_| refused())?);
     }
     if rows.is_empty() || rows.iter().any(|it| it.cells.len() != names.len()) {

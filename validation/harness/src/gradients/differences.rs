@@ -6,12 +6,12 @@ use super::walk::{Along, Rows};
 use nalgebra::DVector;
 
 /// The most steps of Newton's method to an event.
-const MOST_STEPS: usize = 50;
+const MAX_NEWTON_STEPS: usize = 50;
 /// An event's time is found where a step is smaller than this share of the stretch.
-const FOUND: f64 = 1e-15;
+const TIME_TOLERANCE: f64 = 1e-15;
 /// The step by which second and third derivatives are taken, as a share of the name's value: the
 /// rounding of a third derivative is then some 1e-16/1e-9.
-const SHARE: f64 = 1e-3;
+const RELATIVE_STEP: f64 = 1e-3;
 
 /// Runs for other values of a name. The system is followed to first order in its coefficients, as
 /// `export` gives it.
@@ -45,7 +45,7 @@ impl<'a> Quotients<'a> {
         error: &Weighed,
         weigh: impl Fn(&Rows) -> Weighed,
     ) -> Option<(f64, bool)> {
-        let h = SHARE * self.size;
+        let h = RELATIVE_STEP * self.size;
         let [above, at, below] = [self.values(h)?, self.values(0.0)?, self.values(-h)?];
         let second =
             combined(&[(1.0 / (h * h), &above), (-2.0 / (h * h), &at), (1.0 / (h * h), &below)]);
@@ -115,7 +115,7 @@ fn crossing(linear: &Linear, stretch: &Stretch, guard: usize, z: &DVector<f64>) 
     let mode = &linear.modes[stretch.mode];
     let guard = &mode.guards[guard];
     let mut elapsed = stretch.elapsed;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_NEWTON_STEPS {
         let there = (&mode.matrix * elapsed).exp() * z;
         let rate = guard.dot(&(&mode.matrix * &there).transpose());
         let step = guard.dot(&there.transpose()) / rate;
@@ -123,7 +123,7 @@ fn crossing(linear: &Linear, stretch: &Stretch, guard: usize, z: &DVector<f64>) 
             return None;
         }
         elapsed -= step;
-        if step.abs() <= FOUND * stretch.elapsed.abs() {
+        if step.abs() <= TIME_TOLERANCE * stretch.elapsed.abs() {
             break;
         }
     }

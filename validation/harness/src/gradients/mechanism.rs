@@ -31,7 +31,7 @@ pub(super) struct Rule {
     pub row_moves: bool,
 }
 
-pub(super) const RIGHT: Rule = Rule {
+pub(super) const RIGHT_RULE: Rule = Rule {
     time: Term::Own,
     before: Term::Own,
     after: Term::Own,
@@ -93,28 +93,28 @@ impl Mechanism {
     /// The rules at events that this may mean; none of what no rule at events makes.
     pub(super) fn rules(self) -> Vec<Rule> {
         use Term::{Negated, None, Other, Own};
-        let fields = |before, after| Rule { before, after, ..RIGHT };
+        let fields = |before, after| Rule { before, after, ..RIGHT_RULE };
         match self {
             Self::NoSaltation => {
                 let by_reset = fields(None, None);
                 vec![by_reset, Rule { reset_applies: false, ..by_reset }]
             }
             Self::NoTimeDerivative => {
-                let by_reset = Rule { time: None, ..RIGHT };
+                let by_reset = Rule { time: None, ..RIGHT_RULE };
                 vec![by_reset, Rule { reset_applies: false, ..by_reset }]
             }
-            Self::ResetNotDifferentiated => vec![Rule { reset_moves: false, ..RIGHT }],
-            Self::GuardParameterForgotten => vec![Rule { guard_moves: false, ..RIGHT }],
+            Self::ResetNotDifferentiated => vec![Rule { reset_moves: false, ..RIGHT_RULE }],
+            Self::GuardParameterForgotten => vec![Rule { guard_moves: false, ..RIGHT_RULE }],
             Self::WrongSideField => vec![
-                Rule { time: Other, ..RIGHT },
+                Rule { time: Other, ..RIGHT_RULE },
                 fields(Own, None),
                 fields(None, Own),
                 fields(Other, Own),
                 fields(Own, Other),
                 Rule { time: Other, ..fields(Other, Own) },
             ],
-            Self::Sign => vec![Rule { time: Negated, ..RIGHT }, fields(Negated, Negated)],
-            Self::FixedTime => vec![Rule { row_moves: false, ..RIGHT }],
+            Self::Sign => vec![Rule { time: Negated, ..RIGHT_RULE }, fields(Negated, Negated)],
+            Self::FixedTime => vec![Rule { row_moves: false, ..RIGHT_RULE }],
             Self::CoarseDifferences => Vec::new(),
         }
     }

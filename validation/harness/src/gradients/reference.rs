@@ -3,7 +3,7 @@
 use super::case::GradientCase;
 use super::differences::Quotients;
 use super::linear::Linear;
-use super::mechanism::{Mechanism, RIGHT};
+use super::mechanism::{Mechanism, RIGHT_RULE};
 use super::path::{Flow, Stop, Stretch, flows, path};
 use super::unit::units;
 use super::walk::{Along, Rows, walk};
@@ -75,7 +75,7 @@ impl Reference {
     /// The derivatives in f64 by the right rule.
     #[must_use]
     pub fn walked(&self, name: usize) -> Vec<Vec<f64>> {
-        walk(&self.along(name), RIGHT)
+        walk(&self.along(name), RIGHT_RULE)
     }
 
     /// What the derivatives would be by the rules at events that a mechanism may mean.

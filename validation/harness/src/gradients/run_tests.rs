@@ -131,10 +131,10 @@ fn what_no_answer_is_says_whose_it_is() {
 /// An engine without a tolerance answers the same at every one.
 #[test]
 fn an_exact_engine_is_asked_once() {
-    static ASKED: AtomicUsize = AtomicUsize::new(0);
+    static ASKED_RUNS: AtomicUsize = AtomicUsize::new(0);
     let rows = judged(|_, _| {
-        ASKED.fetch_add(1, Ordering::Relaxed);
+        ASKED_RUNS.fetch_add(1, Ordering::Relaxed);
     });
     let names = case("ball-first-impacts").case.by.len();
-    assert_eq!((ASKED.load(Ordering::Relaxed), rows.len()), (1, names * TOLERANCES.len()));
+    assert_eq!((ASKED_RUNS.load(Ordering::Relaxed), rows.len()), (1, names * TOLERANCES.len()));
 }

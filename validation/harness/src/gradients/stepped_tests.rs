@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// The terms of a step's Taylor series; the next one is its error.
-const TERMS: i32 = 4;
+const TAYLOR_TERMS: i32 = 4;
 
 /// A motion and its derivative in a mode, of one name.
 struct Stepper {
@@ -46,11 +46,11 @@ impl Stepper {
 
     fn step(&self, at: &DVector<f64>, step: f64) -> (DVector<f64>, f64) {
         let (mut sum, mut term) = (at.clone(), at.clone());
-        for k in 1..=TERMS {
+        for k in 1..=TAYLOR_TERMS {
             term = &self.both * term * (step / f64::from(k));
             sum += &term;
         }
-        (sum, (&self.both * term * (step / f64::from(TERMS + 1))).amax())
+        (sum, (&self.both * term * (step / f64::from(TAYLOR_TERMS + 1))).amax())
     }
 }
 

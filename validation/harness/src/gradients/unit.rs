@@ -8,7 +8,7 @@
 //! derivatives of the flow through the events too. The unit of a cell is the sum over errors that
 //! begin at both ends of every stretch, and 1: what is exactly known may be off by the tolerance.
 
-use super::mechanism::RIGHT;
+use super::mechanism::RIGHT_RULE;
 use super::path::{Stop, Stretch};
 use super::walk::{Along, EventTerms};
 use nalgebra::DVector;
@@ -45,9 +45,9 @@ pub(super) fn units(along: &Along<'_>, time_scale: f64) -> Vec<Vec<f64>> {
         }
         let event = EventTerms::of(along, stretch);
         if !stretch.at_entry {
-            time = event.time(&there, RIGHT);
+            time = event.time(&there, RIGHT_RULE);
         }
-        let moved = event.moved(&there, time, RIGHT);
+        let moved = event.moved(&there, time, RIGHT_RULE);
         slope = &moved - &event.after * time;
         let at = At { event, stretch, there: &there, slope: &slope, time };
         let mut sums = vec![1.0; 1 + along.states];

@@ -21,7 +21,7 @@ use crate::score::{Checked, Subject, Verdict};
 use crate::suite::{Extent, PreparedCase, class_of};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use ways::{MOST_CALLS, is_affordable};
+use ways::{MAX_CALLS, is_affordable};
 
 /// A group of bounds that test the same property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -184,18 +184,18 @@ pub struct Standard {
 }
 
 /// The standard to which the exact solver is held.
-pub const AS_EXACT: Standard =
+pub const EXACT_STANDARD: Standard =
     Standard { engine: REFERENCE, accuracy: Accuracy::Exact, unit: f64::EPSILON };
 
 /// The tolerances at which integrators with a fault are run.
-const FAULTY_AT: [f64; 2] = [1e-6, 1e-9];
+const FAULTY_TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 
 impl Standard {
     /// The standards to which the integrator is held of which faulty ones are made, at each of
     /// their tolerances.
     #[must_use]
     pub fn of_faulty() -> [Self; 2] {
-        FAULTY_AT.map(|tolerance| Self {
+        FAULTY_TOLERANCES.map(|tolerance| Self {
             engine: CORRECT_ENGINE,
             accuracy: Accuracy::Tolerance(tolerance),
             unit: tolerance,
@@ -232,7 +232,8 @@ impl Standard {
 pub fn all() -> Vec<(WrongEngine, Standard)> {
     let integrators = Standard::of_faulty().into_iter();
     let integrators = integrators.flat_map(|held| faulty().iter().map(move |it| (*it, held)));
-    let mut all: Vec<_> = wrong().iter().map(|it| (*it, AS_EXACT)).chain(integrators).collect();
+    let mut all: Vec<_> =
+        wrong().iter().map(|it| (*it, EXACT_STANDARD)).chain(integrators).collect();
     all.sort_by_key(|(it, _)| it.way.is_some());
     all
 }
@@ -272,7 +273,7 @@ fn held(
     let Standard { engine, accuracy, unit } = standard;
     let mut limits = Limits::default();
     if wrong.way.is_some() {
-        limits.calls = MOST_CALLS;
+        limits.calls = MAX_CALLS;
     }
     let extent = |_| standard.extent(&case.case);
     let mut measured = case.measured(wrong.engine, (accuracy, unit), &limits, extent).ok()?;

@@ -51,7 +51,7 @@ pub struct Tally {
 }
 
 /// Cases that are younger than the limits, and so set none.
-const YOUNGER: [&str; 2] = ["belt-side-by-side", "percussive-on-slider"];
+const YOUNGER_CASES: [&str; 2] = ["belt-side-by-side", "percussive-on-slider"];
 
 /// Whether each of all cases is one that limits were set from: every second of those that were
 /// there then.
@@ -59,7 +59,7 @@ const YOUNGER: [&str; 2] = ["belt-side-by-side", "percussive-on-slider"];
 pub fn set_limits(cases: &[PreparedCase]) -> Vec<bool> {
     let mut sets = false;
     let each = cases.iter().map(|it| {
-        let is_younger = YOUNGER.contains(&it.case.name.as_str());
+        let is_younger = YOUNGER_CASES.contains(&it.case.name.as_str());
         sets ^= !is_younger;
         sets && !is_younger
     });

@@ -8,15 +8,15 @@ use crate::system::{Affine, Direction, System, Until};
 
 /// The longest step of the integrators with a fault, in forcing periods: a step that an event cuts
 /// short reaches no further beyond it.
-const LONGEST_STEP: f64 = 0.125;
+const MAX_STEP_PERIODS: f64 = 0.125;
 /// Room for an integrator's errors where a time is compared with a limit.
-const ROOM: f64 = 1.1;
+const ERROR_MARGIN_FACTOR: f64 = 1.1;
 
 /// The longest run that engines with a fault are asked for, in the shortest times in which the
 /// system changes: explicit methods cannot step over these.
-const MOST_TIMES: f64 = 1e5;
+const MAX_SHORTEST_TIMES: f64 = 1e5;
 /// Calls after which an engine that is wrong on purpose is given up.
-pub(super) const MOST_CALLS: u64 = 1_000_000;
+pub(super) const MAX_CALLS: u64 = 1_000_000;
 
 /// Whether a case is run in a way.
 #[must_use]
@@ -32,13 +32,13 @@ pub fn is_run(case: &PreparedCase, way: Way) -> bool {
         Way::StartOnGuard => starts_on_guard(case),
         Way::OutputAtEvents => resets(case).next().is_some(),
         Way::OutputBetweenEvents => {
-            let reach = LONGEST_STEP * case.period();
+            let reach = MAX_STEP_PERIODS * case.period();
             let mut samples = case.truth.samples.iter().map(|it| it.elapsed.value());
             samples.any(|at| times.iter().any(|event| (*event..=event + reach).contains(&at)))
         }
         Way::Simultaneous => times.windows(2).any(|pair| pair[0] == pair[1]),
         Way::CloseEvents => {
-            let close = ROOM * COOLDOWN_TIME * system.time_scale;
+            let close = ERROR_MARGIN_FACTOR * COOLDOWN_TIME * system.time_scale;
             times.windows(2).any(|pair| pair[1] - pair[0] <= close)
         }
     }
@@ -70,5 +70,5 @@ fn changes(until: &Until, states: usize) -> bool {
 
 /// Whether an explicit integrator gets through a case at a cost that a fault is worth.
 pub(super) fn is_affordable(case: &PreparedCase) -> bool {
-    case.truth.span <= MOST_TIMES * case.task.system.shortest_time()
+    case.truth.span <= MAX_SHORTEST_TIMES * case.task.system.shortest_time()
 }

@@ -9,18 +9,19 @@ use crate::truth::{Truth, TruthRow};
 use percuss::affine::{Event, Time, What};
 
 /// Margins above this part of a guard's size are no grazes.
-const WIDEST: f64 = 1e-2;
+const MAX_MARGIN_SHARE: f64 = 1e-2;
 /// Instants at which a guard's rate is looked at, in one period of the forcing or of the system's
 /// fastest oscillation.
-const LOOKS: f64 = 128.0;
-/// Looks at a segment at the least.
-const FEWEST_LOOKS: f64 = 16.0;
-/// Looks at a segment at the most.
-const MOST_LOOKS: f64 = 1e5;
+const EVALUATIONS_PER_PERIOD: f64 = 128.0;
+/// The fewest evaluations of a guard's rate in a segment.
+const MIN_EVALUATIONS: f64 = 16.0;
+/// The most evaluations of a guard's rate in a segment.
+const MAX_EVALUATIONS: f64 = 1e5;
 /// A guard this close to zero at a segment's entry, over its size, began on it.
-const ON_GUARD: f64 = 1e-12;
-/// A mode is entered again soon within so many times the time to the turn of its guard.
-const SOON: f64 = 4.0;
+const ZERO_TOLERANCE: f64 = 1e-12;
+/// The largest time after which a mode that is entered again counts as entered soon, in times to
+/// the turn of its guard.
+const MAX_REENTRY_RATIO: f64 = 4.0;
 /// Halvings of a bracket, after which an extremum is known to rounding.
 const HALVINGS: u32 = 60;
 
@@ -150,7 +151,8 @@ impl ScannedSegment<'_> {
     fn grazes(&self, n: usize, guard: &ScannedGuard<'_>, length: f64) -> Vec<Graze> {
         let size = self.size(guard.row);
         let turn = self.scan.problem.turn();
-        let looks = (length / turn * LOOKS).clamp(FEWEST_LOOKS, MOST_LOOKS);
+        let looks =
+            (length / turn * EVALUATIONS_PER_PERIOD).clamp(MIN_EVALUATIONS, MAX_EVALUATIONS);
         let mut step = length / looks;
         // The crossing that ends the segment may turn back soon after it. An event that is only
         // watched may be the extremum itself, and rounding puts that on either side of it.
@@ -165,14 +167,14 @@ impl ScannedSegment<'_> {
             return Vec::new();
         }
         let mut from = 0.0;
-        if self.value(guard.row, 0.0).abs() <= ON_GUARD * size {
+        if self.value(guard.row, 0.0).abs() <= ZERO_TOLERANCE * size {
             from = step;
         }
         let mut found = Vec::new();
         let mut rate = self.rate(guard.row, from);
         while from < length + beyond {
             if from >= length {
-                step = step.max(turn / LOOKS);
+                step = step.max(turn / EVALUATIONS_PER_PERIOD);
             }
             let next = self.rate(guard.row, from + step);
             if (rate > 0.0) != (next > 0.0) {
@@ -210,7 +212,7 @@ impl ScannedSegment<'_> {
         let value = self.value(guard.row, at);
         let margin = if maximum { value } else { -value };
         let until = guard.direction.is_none();
-        let counts = margin.abs() <= WIDEST * size && (maximum || !until);
+        let counts = margin.abs() <= MAX_MARGIN_SHARE * size && (maximum || !until);
         // A guard that ends its mode cannot have passed zero before the segment's end.
         let inside = !until || (margin < 0.0) == (at < length);
         if !counts || !inside {
@@ -223,7 +225,7 @@ impl ScannedSegment<'_> {
         let crossed =
             if margin < 0.0 { None } else { self.crossed(n, guard, makes, (at, maximum)) };
         // What touches zero exactly crosses nothing.
-        let touches = margin <= ON_GUARD * size;
+        let touches = margin <= ZERO_TOLERANCE * size;
         let events = crossed.or_else(|| touches.then(Vec::new))?;
         let event = scan.names.telling(self.mode, guard.event);
         Some(Graze { elapsed, margin, growth, events, mode: self.mode, event, ends: until, makes })
@@ -244,7 +246,8 @@ impl ScannedSegment<'_> {
             let own = events.get(n).is_some_and(|it| it.event == guard.event);
             let last = events.get(n + makes - 1).filter(|_| own)?;
             let length = events[n].elapsed.value() - self.began;
-            let soon = last.elapsed.value() - self.began - length <= SOON * (at - length);
+            let soon =
+                last.elapsed.value() - self.began - length <= MAX_REENTRY_RATIO * (at - length);
             let returns = makes == 1 || (last.mode == self.mode && soon);
             return Some(if returns { (n..n + makes).collect() } else { vec![n] });
         };
@@ -266,7 +269,7 @@ impl ScannedSegment<'_> {
         at: f64,
         mut candidates: impl Iterator<Item = usize>,
     ) -> Option<usize> {
-        const LOOKS_BETWEEN: u32 = 16;
+        const EVALUATIONS_BETWEEN: u32 = 16;
         let events = &self.scan.truth.events;
         let is_own = |k: &usize| events[*k].event == guard.event && events[*k].mode == self.mode;
         let mut open = true;
@@ -276,9 +279,9 @@ impl ScannedSegment<'_> {
         });
         let own = found.filter(|_| open)?;
         let from = events[own].elapsed.value() - self.began;
-        let share = |k: u32| f64::from(k) / f64::from(LOOKS_BETWEEN);
-        let mut rates =
-            (0..LOOKS_BETWEEN).map(|k| self.rate(guard.row, from + share(k) * (at - from)) > 0.0);
+        let share = |k: u32| f64::from(k) / f64::from(EVALUATIONS_BETWEEN);
+        let mut rates = (0..EVALUATIONS_BETWEEN)
+            .map(|k| self.rate(guard.row, from + share(k) * (at - from)) > 0.0);
         let first = rates.next()?;
         rates.all(|it| it == first).then_some(own)
     }

@@ -74,13 +74,13 @@ fn only_what_is_allowed_anyway_is_undecidable() {
 /// other, before any event and once more after six; on `resonance` in two half oscillations.
 #[test]
 fn all_near_misses_of_a_segment_are_found() {
-    const NARROW: f64 = 1e-2;
+    const MAX_MARGIN: f64 = 1e-2;
     let between = |name: &str, event: usize| -> Vec<f64> {
         let Followed { problem, truth, told } = followed(name);
         let begin = event.checked_sub(1).map_or(0.0, |n| truth.events[n].elapsed.value());
         let segment = begin..truth.events.get(event).unwrap_or(&truth.end).elapsed.value();
         let misses = grazes(&problem, &truth, (&told.0, &told.1)).into_iter();
-        let misses = misses.filter(|it| it.events.is_empty() && it.margin >= -NARROW);
+        let misses = misses.filter(|it| it.events.is_empty() && it.margin >= -MAX_MARGIN);
         misses.map(|it| it.elapsed).filter(|it| segment.contains(it)).collect()
     };
     let period = std::f64::consts::TAU / 1.4;

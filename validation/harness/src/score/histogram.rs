@@ -9,8 +9,8 @@ pub struct Histogram {
     pub counts: Vec<usize>,
 }
 
-/// The lowest bin, which begins at a thousandth of a unit.
-const LOWEST: i32 = -10;
+/// The exponent of two, in units, at which the lowest bin begins: a thousandth of a unit.
+const LOWEST_BIN: i32 = -10;
 /// Up to 2^53 units: no digit is right.
 const BINS: usize = 64;
 
@@ -22,7 +22,7 @@ impl Histogram {
         for error in errors {
             counts[bin(*error)] += 1;
         }
-        Self { lowest: LOWEST, counts }
+        Self { lowest: LOWEST_BIN, counts }
     }
 }
 
@@ -31,7 +31,7 @@ fn bin(error: f64) -> usize {
         return BINS - 1;
     }
     // As integers the logarithms of zero and of infinity saturate.
-    let place = (error.log2().floor() as i64).saturating_sub(i64::from(LOWEST));
+    let place = (error.log2().floor() as i64).saturating_sub(i64::from(LOWEST_BIN));
     usize::try_from(place).unwrap_or(0).min(BINS - 1)
 }
 

@@ -43,7 +43,7 @@ pub use measure::{MeasuredBy, measure, sample_errors};
 pub use measures::Measures;
 pub use mismatch::{Excused, Mismatch};
 pub use occurrence::Occurrence;
-pub use on_attractor::MOST_PERIODS;
+pub use on_attractor::MAX_HORIZON_PERIODS;
 pub use order::order;
 pub use probed::ProbeResults;
 pub use restart::{RestartRun, RestartTest};

@@ -16,8 +16,8 @@ use percuss::{Instant, Phase};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// A run ends at the latest at this strobe.
-pub const MOST_PERIODS: u64 = 8;
+/// The most forcing periods of a run, which ends at the latest at this strobe.
+pub const MAX_HORIZON_PERIODS: u64 = 8;
 
 impl RestartTest {
     /// Makes `count` runs from states on the attractor that a case's run reaches.
@@ -54,13 +54,13 @@ impl RestartRun {
         };
         let after = |event: &TruthRow| {
             let instant = problem.entry.instant.after(event.elapsed, parameters.omega);
-            u64::try_from(instant.cycle() + 1).unwrap_or(1).min(MOST_PERIODS)
+            u64::try_from(instant.cycle() + 1).unwrap_or(1).min(MAX_HORIZON_PERIODS)
         };
         // The truth is followed to the last strobe, then cut at its own.
-        let whole = replayed(MOST_PERIODS)?;
+        let whole = replayed(MAX_HORIZON_PERIODS)?;
         let (impact, separation) = passage(&whole);
-        let periods = separation.as_ref().map_or(MOST_PERIODS, after);
-        let mut truth = if periods == MOST_PERIODS { whole } else { replayed(periods)? };
+        let periods = separation.as_ref().map_or(MAX_HORIZON_PERIODS, after);
+        let mut truth = if periods == MAX_HORIZON_PERIODS { whole } else { replayed(periods)? };
         growth.from(problem.start.tau).fill(&mut truth);
         let task = Task::of_oscillator(&task(problem, strobe(periods))).ok()?;
         Some(Self { task, truth, impact, grazes: Vec::new(), decisions: Vec::new() })
@@ -69,15 +69,15 @@ impl RestartRun {
 
 /// Whether a run has an impact, and the separation that follows it.
 fn passage(truth: &Truth) -> (bool, Option<TruthRow>) {
-    const FLIGHT: usize = place(Phase::NoContact);
+    const NO_CONTACT_MODE: usize = place(Phase::NoContact);
     let mut before = truth.start.mode;
     let mut impact = false;
     for event in &truth.events {
-        if event.mode == FLIGHT {
+        if event.mode == NO_CONTACT_MODE {
             if impact {
                 return (true, Some(event.clone()));
             }
-        } else if before == FLIGHT {
+        } else if before == NO_CONTACT_MODE {
             impact = true;
         }
         before = event.mode;

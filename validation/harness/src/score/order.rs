@@ -8,17 +8,20 @@
 /// The number of steps and the error of a run at one setting.
 pub type OrderPoint = (f64, f64);
 
-/// Errors below this are rounding, above [`LARGEST`] no convergence yet.
-const SMALLEST: f64 = 1e-12;
-const LARGEST: f64 = 1e-2;
-/// Fewer settings say nothing, nor do settings over less than this factor in steps.
-const FEWEST: usize = 3;
-const SPAN: f64 = 1.5;
+/// The error below which rounding shows, and no convergence.
+const MIN_ERROR: f64 = 1e-12;
+/// The error from which on nothing converges yet.
+const MAX_ERROR: f64 = 1e-2;
+/// The fewest settings from which an order is taken.
+const MIN_SETTINGS: usize = 3;
+/// The smallest ratio of the steps of the settings from which an order is taken.
+const MIN_STEP_RATIO: f64 = 1.5;
 
 /// The slope by least squares; `None` where there are too few settings for one.
 #[must_use]
 pub fn order(points: &[OrderPoint]) -> Option<f64> {
-    let usable = |(steps, error): &&OrderPoint| *steps > 0.0 && (SMALLEST..LARGEST).contains(error);
+    let usable =
+        |(steps, error): &&OrderPoint| *steps > 0.0 && (MIN_ERROR..MAX_ERROR).contains(error);
     let logarithms: Vec<_> =
         points.iter().filter(usable).map(|(steps, error)| (steps.ln(), error.ln())).collect();
     let count = logarithms.len() as f64;
@@ -27,7 +30,7 @@ pub fn order(points: &[OrderPoint]) -> Option<f64> {
     let square: f64 = logarithms.iter().map(|it| (it.0 - x).powi(2)).sum();
     let product: f64 = logarithms.iter().map(|it| (it.0 - x) * (it.1 - y)).sum();
     let widest = logarithms.iter().map(|it| (it.0 - x).abs()).fold(0.0, f64::max);
-    let enough = logarithms.len() >= FEWEST && 2.0 * widest >= SPAN.ln();
+    let enough = logarithms.len() >= MIN_SETTINGS && 2.0 * widest >= MIN_STEP_RATIO.ln();
     enough.then(|| -product / square)
 }
 

@@ -11,7 +11,7 @@ use super::graze::Graze;
 use super::grazes::grazes;
 use super::restart_figures::{Restart, RestartError, RestartResult};
 use super::rule::{Beside, ErrorRule, off};
-use super::scored_horizon::{MOST_UNITS, ScoredBy};
+use super::scored_horizon::{MAX_ERROR_UNITS, ScoredBy};
 use super::statistics::worst;
 use crate::case::Case;
 use crate::engine::{Accuracy, Failure, Outcome, Task};
@@ -24,11 +24,11 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Instants with events through which a run goes.
-const INSTANTS: usize = 2;
+const EVENT_INSTANTS: usize = 2;
 /// A guard that is zero by the model is below this share of its terms in 106 bits.
-const BY_MODEL: f64 = 1e-24;
+const ZERO_TOLERANCE: f64 = 1e-24;
 /// Events that are closer together than this, over the system's unit of time, are passed as one.
-const CLOSE: f64 = 1e-5;
+const SEPARATION_TOLERANCE: f64 = 1e-5;
 
 /// A run with its truth.
 pub struct RestartRun {
@@ -127,7 +127,7 @@ impl RestartTest {
 impl Restarts<'_> {
     /// The length of the run from a sample; none if too few events follow.
     fn span(&self, row: &TruthRow) -> Option<f64> {
-        let close = CLOSE * self.case.system.time_scale;
+        let close = SEPARATION_TOLERANCE * self.case.system.time_scale;
         let begin = row.elapsed.value();
         let mut instants = vec![begin];
         for event in &self.truth.events {
@@ -136,7 +136,7 @@ impl Restarts<'_> {
                 continue;
             }
             let last = instants[instants.len() - 1];
-            if instants.len() > INSTANTS && ahead - last > 2.0 * close {
+            if instants.len() > EVENT_INSTANTS && ahead - last > 2.0 * close {
                 return Some(0.5 * (last + ahead) - begin);
             }
             if ahead - last > close {
@@ -212,8 +212,8 @@ impl RestartRun {
             problem.exact.modes[row.mode].until.iter().zip(rounded).all(|(exact, rounded)| {
                 let [value, size] = at_entry(&exact.guard, &row.state);
                 let growth = rule.guard_growth(&rounded.guard, row, &row.rounded());
-                let allowed = MOST_UNITS * unit * growth;
-                value <= BY_MODEL * size || value > allowed
+                let allowed = MAX_ERROR_UNITS * unit * growth;
+                value <= ZERO_TOLERANCE * size || value > allowed
             })
         })
     }
@@ -225,7 +225,7 @@ impl RestartRun {
         self.truth.events.windows(2).all(|pair| {
             let apart = pair[1].elapsed.minus(pair[0].elapsed).value();
             let size = pair[1].size_of_time(scale);
-            apart == 0.0 || apart > MOST_UNITS * unit * scale * size * pair[1].growth_time
+            apart == 0.0 || apart > MAX_ERROR_UNITS * unit * scale * size * pair[1].growth_time
         })
     }
 }

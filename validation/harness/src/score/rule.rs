@@ -113,16 +113,17 @@ impl ErrorRule {
     }
 }
 
-/// A step's error adds up over a segment, which is no matter up to as many time scales.
-const SHORT: f64 = 10.0;
+/// The time scales of the longest segment that needs no factor: a step's error adds up over a
+/// segment, which is no matter up to so many.
+const MAX_SHORT_TIME_SCALES: f64 = 10.0;
 
 /// The largest factor of long segments: three times that of the longest one, of 279 time scales, on
 /// which right engines need a factor.
-const LONG: f64 = 100.0;
+const MAX_LENGTH_FACTOR: f64 = 100.0;
 
 /// The factor of long segments, along which the errors of many steps add up.
 pub(super) fn of_length(length: f64, system: &System) -> f64 {
-    (length / (SHORT * system.time_scale)).clamp(1.0, LONG)
+    (length / (MAX_SHORT_TIME_SCALES * system.time_scale)).clamp(1.0, MAX_LENGTH_FACTOR)
 }
 
 /// The distance of a value from the truth.

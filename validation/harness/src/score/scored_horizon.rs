@@ -10,7 +10,7 @@ use crate::truth::{Truth, TruthRow};
 
 /// The largest error of a method in units of its error: the widest bound on the constants of a
 /// class of methods.
-pub(super) const MOST_UNITS: f64 = 20.0;
+pub(super) const MAX_ERROR_UNITS: f64 = 20.0;
 
 /// The figures that decide how far a run is scored.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +91,7 @@ impl ErrorRule {
 /// The instants from which on the mode is in doubt: an event whose successor hangs by less than the
 /// errors that are allowed, or a graze that ends its mode or does not by as little.
 fn in_doubt(times: &[f64], by: ScoredBy<'_>) -> impl Iterator<Item = f64> {
-    let allowed = MOST_UNITS * by.unit;
+    let allowed = MAX_ERROR_UNITS * by.unit;
     let grazes = by.grazes.iter().filter(move |it| it.ends && it.is_undecidable(allowed));
     let grazed = grazes.map(|it| it.events.first().map_or(it.elapsed, |n| times[*n]));
     let decisions = by.decisions.iter().filter(move |it| it.margin <= allowed * it.growth);

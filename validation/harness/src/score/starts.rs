@@ -9,10 +9,10 @@ use crate::case::Problem;
 use percuss::{Segment, Start};
 
 /// Forcing periods after which a run counts as on its attractor.
-const TRANSIENT: u64 = 300;
+const TRANSIENT_PERIODS: u64 = 300;
 /// The golden number of periods, in units of a period's 2^32nd part.
-const STEP: u64 = 6_949_403_065;
-const PARTS: u64 = 1 << 32;
+const STEP_PARTS: u64 = 6_949_403_065;
+const PARTS_PER_PERIOD: u64 = 1 << 32;
 
 /// `count` states on the attractor that a run from `problem` reaches, each in the first forcing
 /// cycle and without drift. Fewer if the run leaves the range of starts.
@@ -25,10 +25,12 @@ pub fn on_attractor(problem: &Problem, count: usize) -> Vec<Problem> {
 /// neighbouring states would pass through the same stretch of the orbit and say the same.
 #[must_use]
 pub fn far_apart(problem: &Problem, count: usize, periods: u64) -> Vec<Problem> {
-    let step = STEP + periods * PARTS;
+    let step = STEP_PARTS + periods * PARTS_PER_PERIOD;
     let model = problem.model;
     let begin = problem.entry.instant;
-    let instant = |k: u64| begin.after_periods(TRANSIENT * PARTS + k * step, PARTS);
+    let instant = |k: u64| {
+        begin.after_periods(TRANSIENT_PERIODS * PARTS_PER_PERIOD + k * step, PARTS_PER_PERIOD)
+    };
     // A state that rounding puts on another phase's side of an event is passed over: a few in 1e15.
     let last = 2 * count as u64;
     let mut segments = model.trajectory(problem.entry).until(instant(last));

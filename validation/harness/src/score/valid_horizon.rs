@@ -21,9 +21,9 @@ use rayon::prelude::*;
 /// One that is still right then is a thousand times better than its unit, as one run in some
 /// hundreds is whose errors happen to lie where they shrink; it is made again for as long as the
 /// truth lasts.
-const BEYOND: f64 = 1e3;
+const ERROR_MARGIN_FACTOR: f64 = 1e3;
 /// The truth counts while its own error is below this.
-const TRUSTED: f64 = SCORED_ERROR / 100.0;
+const MAX_TRUTH_ERROR: f64 = SCORED_ERROR / 100.0;
 
 /// A run with its truth, once per forcing period.
 struct HorizonRun {
@@ -149,12 +149,12 @@ impl HorizonRun {
 
     /// The period at which an engine's run ends.
     fn last(&self, unit: f64) -> u32 {
-        self.grows_to(BEYOND * SCORED_ERROR / unit).min(self.trusted())
+        self.grows_to(ERROR_MARGIN_FACTOR * SCORED_ERROR / unit).min(self.trusted())
     }
 
     /// The period up to which the truth can score.
     fn trusted(&self) -> u32 {
-        self.grows_to(TRUSTED / DoubleDouble::UNIT)
+        self.grows_to(MAX_TRUTH_ERROR / DoubleDouble::UNIT)
     }
 
     fn horizon(

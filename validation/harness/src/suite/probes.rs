@@ -9,15 +9,16 @@ use crate::score::{HorizonTest, ProbeResults, RestartTest};
 use crate::system::SystemProblem;
 use crate::truth::Truth;
 
-/// The tolerance at which integrators are probed in the quick suite, and those of the full one.
-const TOLERANCE: f64 = 1e-9;
-const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
+/// The tolerance at which integrators are probed in the quick suite.
+const QUICK_TOLERANCE: f64 = 1e-9;
+/// The tolerances at which integrators are probed in the full suite.
+const FULL_TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
 /// Whether a row is shown where all would be too many: one engine a library, as accurate as one
 /// that is asked for everything.
 #[must_use]
 pub fn is_shown(role: Role, accuracy: Accuracy) -> bool {
-    let among = |it: f64| TOLERANCES.contains(&it);
+    let among = |it: f64| FULL_TOLERANCES.contains(&it);
     role == Role::Representative && accuracy.tolerance().is_none_or(among)
 }
 
@@ -33,8 +34,8 @@ impl Suite {
     /// The tolerances at which integrators are probed.
     fn probed_tolerances(self) -> &'static [f64] {
         match self {
-            Self::Quick => &[TOLERANCE],
-            Self::Full => &TOLERANCES,
+            Self::Quick => &[QUICK_TOLERANCE],
+            Self::Full => &FULL_TOLERANCES,
         }
     }
 }
@@ -142,18 +143,20 @@ impl Probes {
         work_a_period: f64,
     ) -> Extent {
         if accuracy == Accuracy::Exact {
-            return Extent { restarts: restarts(suite), horizons: HORIZONS, attractor: true };
+            return Extent { restarts: restarts(suite), horizons: HORIZON_RUNS, attractor: true };
         }
         let budget = suite.budget() / work_a_period.max(1.0);
         let affordable = Extent {
-            restarts: restarts(suite).min((budget / PERIODS_PER_RESTART) as usize).max(FEWEST),
+            restarts: restarts(suite)
+                .min((budget / PERIODS_PER_RESTART) as usize)
+                .max(MIN_RESTARTS),
             horizons: 0,
             attractor: self.long_run() <= budget,
         };
         let asked = if probed.integrators { affordable } else { Extent::default() };
         let lasting = self.horizons.as_ref().is_some_and(|it| it.length(unit) as f64 <= budget);
         let followed = suite == Suite::Full && role == Role::Representative && lasting;
-        let horizons = if followed { HORIZONS } else { 0 };
+        let horizons = if followed { HORIZON_RUNS } else { 0 };
         Extent { horizons, ..asked }
     }
 }
@@ -182,33 +185,33 @@ impl Extent {
     pub fn of_wrong(case: &Case) -> Self {
         let listed = case.oscillator.as_ref().is_some_and(|it| it.probed.integrators);
         let restarts = if listed { restarts(Suite::Quick) } else { 0 };
-        Self { restarts, horizons: HORIZONS_OF_WRONG, attractor: listed }
+        Self { restarts, horizons: WRONG_HORIZON_RUNS, attractor: listed }
     }
 
     /// The tests of an integrator with a fault: those of a wrong engine, with fewer restarts.
     #[must_use]
     pub fn of_faulty(case: &Case) -> Self {
         let wrong = Self::of_wrong(case);
-        Self { restarts: wrong.restarts.min(FEWEST), ..wrong }
+        Self { restarts: wrong.restarts.min(MIN_RESTARTS), ..wrong }
     }
 }
 
 /// Runs from which a valid horizon is taken: as many as a median needs to be good to a period or
 /// two.
-const HORIZONS: usize = 200;
+const HORIZON_RUNS: usize = 200;
 /// Runs for the valid horizon of a wrong engine, which is off by far more than a period or two.
-const HORIZONS_OF_WRONG: usize = 40;
+const WRONG_HORIZON_RUNS: usize = 40;
 
 /// The test of valid horizons, where a case asks for it.
 fn horizons(case: &Case, own: &OscillatorCase) -> Result<Option<HorizonTest>, FileError> {
     let Some(periods) = own.probed.valid_within else { return Ok(None) };
-    let test = HorizonTest::new(case, HORIZONS, periods)?;
+    let test = HorizonTest::new(case, HORIZON_RUNS, periods)?;
     if test.decides(f64::EPSILON) {
         return Ok(Some(test));
     }
     Err(FileError(format!(
         "{}: valid_within = {periods} is not accepted: forcing periods within which errors grow from eps \
-         to 1e-3 in each of {HORIZONS} runs on the case's attractor",
+         to 1e-3 in each of {HORIZON_RUNS} runs on the case's attractor",
         case.file
     )))
 }
@@ -224,7 +227,7 @@ const fn restarts_along(suite: Suite) -> usize {
 /// A restart takes about this many forcing periods.
 const PERIODS_PER_RESTART: f64 = 4.0;
 /// Restarts that are made whatever they cost.
-const FEWEST: usize = 100;
+const MIN_RESTARTS: usize = 100;
 
 const fn restarts(suite: Suite) -> usize {
     match suite {

@@ -16,13 +16,13 @@ use percuss::insides::series::Series;
 
 /// Rounding an entry to f64 moves the guard by a unit or two of its largest term; its own rounding
 /// is within the four that the search sets aside. Sixteen times those four leaves a factor of ten.
-const CAUTION: f64 = 16.0;
+const ROUNDING_FACTOR: f64 = 16.0;
 
 struct Cautious<'a, G>(&'a G);
 
 impl<G: Guarded> Cautious<'_, G> {
     fn cautious(mut point: Point<f64>) -> Point<f64> {
-        point.guard.largest_term *= CAUTION;
+        point.guard.largest_term *= ROUNDING_FACTOR;
         point
     }
 }

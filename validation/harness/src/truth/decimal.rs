@@ -3,9 +3,9 @@
 use percuss::TwoWord;
 
 /// 10^22 is the largest power of ten that is an f64.
-const LARGEST_EXACT_POWER: i32 = 22;
+const MAX_EXACT_POWER: i32 = 22;
 /// 36 digits are fewer than `u128` holds, and more than the tables have.
-const MOST_DIGITS: usize = 36;
+const MAX_DIGITS: usize = 36;
 
 /// The decimal's value to about 100 bits; `None` if the text is no plain decimal.
 pub(super) fn parse(text: &str) -> Option<TwoWord> {
@@ -21,7 +21,7 @@ pub(super) fn parse(text: &str) -> Option<TwoWord> {
     let digits = format!("{whole}{fraction}");
     let significant = digits.trim_start_matches('0');
     if digits.is_empty()
-        || significant.len() > MOST_DIGITS
+        || significant.len() > MAX_DIGITS
         || !digits.bytes().all(|byte| byte.is_ascii_digit())
     {
         return None;
@@ -45,7 +45,7 @@ fn two_word(integer: u128) -> TwoWord {
 
 fn scale(mut value: TwoWord, mut exponent: i32) -> TwoWord {
     while exponent != 0 {
-        let part = exponent.clamp(-LARGEST_EXACT_POWER, LARGEST_EXACT_POWER);
+        let part = exponent.clamp(-MAX_EXACT_POWER, MAX_EXACT_POWER);
         let power = 10_f64.powi(part.abs());
         value = if part > 0 { value.times(power) } else { value.over(power) };
         if value.high == 0.0 {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 /// A rate that is smaller than this part of what it is summed from is none: the event comes with
 /// the one before it.
-const NO_RATE: f64 = 1e-12;
+const RATE_TOLERANCE: f64 = 1e-12;
 
 /// Perturbations that began just before one of the events, side by side: what they have become.
 struct Perturbations {
@@ -193,7 +193,7 @@ impl GrowthMatrices {
         let (width, count) = (self.width(), grown.state.ncols());
         let state = beside(&(flow * &grown.state), &self.source());
         let lifted = self.lift(&before) * &state;
-        grown.time = if rate.abs() > NO_RATE * summed {
+        grown.time = if rate.abs() > RATE_TOLERANCE * summed {
             -(guard * &lifted) / rate
         } else {
             beside(&grown.time, &RowDVector::zeros(width))
@@ -253,12 +253,14 @@ where
 /// The exponential of a matrix; that of the oscillator's size is several times as fast where its
 /// size is known beforehand, and long runs take many.
 fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    const OSCILLATOR: usize = 7;
-    if matrix.nrows() != OSCILLATOR {
+    const OSCILLATOR_DIMENSION: usize = 7;
+    if matrix.nrows() != OSCILLATOR_DIMENSION {
         return matrix.exp();
     }
-    let known = SMatrix::<f64, OSCILLATOR, OSCILLATOR>::from_iterator(matrix.iter().copied());
-    DMatrix::from_iterator(OSCILLATOR, OSCILLATOR, known.exp().iter().copied())
+    let known = SMatrix::<f64, OSCILLATOR_DIMENSION, OSCILLATOR_DIMENSION>::from_iterator(
+        matrix.iter().copied(),
+    );
+    DMatrix::from_iterator(OSCILLATOR_DIMENSION, OSCILLATOR_DIMENSION, known.exp().iter().copied())
 }
 
 #[cfg(test)]
@@ -268,7 +270,7 @@ mod tests {
     use crate::truth::Library;
 
     /// The tables have four digits, and f64 loses some to stiff exponentials.
-    const AGREES: f64 = 2e-3;
+    const AGREEMENT_TOLERANCE: f64 = 2e-3;
 
     /// Growth along a table is what the table says, which another program found in another
     /// arithmetic. Where several events share an instant the tables follow their other orders too.
@@ -294,7 +296,7 @@ mod tests {
                 let pairs = own.growth.iter().zip(&proved.growth);
                 for (own, proved) in pairs.chain([(&own.growth_time, &proved.growth_time)]) {
                     let off = (own / proved - 1.0).abs();
-                    assert!(off <= AGREES, "{} {n}: {own} {proved}", case.name);
+                    assert!(off <= AGREEMENT_TOLERANCE, "{} {n}: {own} {proved}", case.name);
                     compared += 1;
                 }
             }

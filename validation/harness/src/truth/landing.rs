@@ -9,7 +9,7 @@ use percuss::{Entry, Phase, State};
 /// A decision closer than this, in units of the terms it is made from, is not taken. A million
 /// times the unit of 106 bits times the growth of a long run is below it, and that a run meets it
 /// by chance has a probability of about 1e-18 an event.
-pub(super) const UNDECIDED: f64 = 1e-18;
+pub(super) const DECISION_TOLERANCE: f64 = 1e-18;
 
 /// The rule of the f64 starts: within four units in the last place counts as on the surface or on a
 /// threshold, and is then imposed exactly.
@@ -69,7 +69,7 @@ impl TruthForms {
                 let State { y, q, .. } = at.state;
                 let f = two_xi * at.guard.orders[1];
                 let excess = f - one;
-                if excess.to_f64().abs() <= UNDECIDED {
+                if excess.to_f64().abs() <= DECISION_TOLERANCE {
                     return None;
                 }
                 let mode = if excess > zero {

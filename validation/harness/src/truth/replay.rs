@@ -8,7 +8,7 @@
 use super::DoubleDouble;
 use super::cautious::crossing;
 use super::forms::{TruthEntry, TruthForms, TruthMotion};
-use super::landing::UNDECIDED;
+use super::landing::DECISION_TOLERANCE;
 use percuss::insides::crossing::{Crossing, Root};
 use percuss::insides::flow::Point;
 use percuss::number::Number;
@@ -168,9 +168,11 @@ fn begin(
 fn refine(motion: &TruthMotion<DoubleDouble>, root: &Root) -> Option<Point<DoubleDouble>> {
     // From 1e-16 two steps do; next to a graze the root of a square root is found, and takes a few
     // more.
-    const STEPS: usize = 12;
+    const MAX_NEWTON_STEPS: usize = 12;
     // A root that f64 has misplaced by more is none.
-    const ASTRAY: f64 = 1e-5;
+    /// The largest relative error of a root in f64 that is made exact: one that is farther off is
+    /// another.
+    const MAX_ROOT_ERROR: f64 = 1e-5;
     let threshold = match motion {
         TruthMotion::Contact(contact) if root.rises() => DoubleDouble::one() - contact.reference,
         TruthMotion::Contact(contact) => -contact.reference,
@@ -179,20 +181,20 @@ fn refine(motion: &TruthMotion<DoubleDouble>, root: &Root) -> Option<Point<Doubl
     let first = root.elapsed();
     let mut elapsed = DoubleDouble::from(first);
     let mut last = f64::INFINITY;
-    for _ in 0..STEPS {
+    for _ in 0..MAX_NEWTON_STEPS {
         let point = motion.at(elapsed);
         let [guard, slope, bend, _] = point.guard.orders;
         let newton = -((guard - threshold) / slope);
         // The parabola's root, to first order in the bend.
         let step = newton * (DoubleDouble::one() - bend * newton / (slope + slope));
         let size = step.to_f64().abs();
-        let resolved = size <= RESOLUTION * elapsed.to_f64();
+        let resolved = size <= TIME_TOLERANCE * elapsed.to_f64();
         // Where rounding of the guard keeps the steps from falling further, the root is as good as
         // it gets.
-        let settled = size >= 0.5 * last && size <= UNDECIDED * (1.0 + elapsed.to_f64());
+        let settled = size >= 0.5 * last && size <= DECISION_TOLERANCE * (1.0 + elapsed.to_f64());
         if resolved || settled {
             let outward = slope.to_f64() * if leaves_upwards(motion, root) { 1.0 } else { -1.0 };
-            let strayed = (elapsed - first.into()).to_f64().abs() > ASTRAY * first.value();
+            let strayed = (elapsed - first.into()).to_f64().abs() > MAX_ROOT_ERROR * first.value();
             return (outward > 0.0 && !strayed).then_some(point);
         }
         elapsed = elapsed + step;
@@ -202,7 +204,7 @@ fn refine(motion: &TruthMotion<DoubleDouble>, root: &Root) -> Option<Point<Doubl
 }
 
 /// The time of an event to 2^-104 of itself.
-const RESOLUTION: f64 = f64::EPSILON * f64::EPSILON;
+const TIME_TOLERANCE: f64 = f64::EPSILON * f64::EPSILON;
 
 fn leaves_upwards(motion: &TruthMotion<DoubleDouble>, root: &Root) -> bool {
     match motion {

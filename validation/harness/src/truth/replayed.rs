@@ -10,9 +10,9 @@ use percuss::Ending;
 use percuss::{Entry, Instant, Parameters, Phase, TwoWord};
 
 /// The longest case without tables, in forcing periods: what is longer is not to be had in seconds.
-const PERIODS: f64 = 1000.0;
+const MAX_PERIODS: f64 = 1000.0;
 /// The most events that a replayed run may have.
-const EVENTS: usize = 1_000_000;
+const MAX_EVENTS: usize = 1_000_000;
 
 impl Truth {
     /// The truth of a case of which there are no tables. It shares its closed forms with the exact
@@ -21,7 +21,7 @@ impl Truth {
         let period = own.problem.model.period();
         let grid = SampleGrid { per_period: SAMPLES_PER_PERIOD, count: 0 };
         let task = OscillatorTask::of(own, grid);
-        if task.span > PERIODS * period {
+        if task.span > MAX_PERIODS * period {
             let what = "a horizon of more than 1000 forcing periods needs tables (reference_data/)";
             return Err(FileError(format!("{}: {what}", case.file)));
         }
@@ -91,7 +91,7 @@ impl Truth {
                     ordered,
                 });
             }
-            if rows.len() > EVENTS {
+            if rows.len() > MAX_EVENTS {
                 break;
             }
         }

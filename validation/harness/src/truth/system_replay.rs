@@ -13,14 +13,15 @@ use percuss::number::Number;
 
 /// The most events that a run without tables may have: how errors grow is followed from each of
 /// them to every later one.
-const MOST_EVENTS: usize = 3000;
+const MAX_EVENTS: usize = 3000;
 
-/// No event is nearer than so many units of the system's time to a horizon or to a sample.
-const NEAREST: f64 = 1e-6;
+/// The distance that every event keeps from a horizon and from a sample, in the system's unit of
+/// time.
+const MIN_DISTANCE: f64 = 1e-6;
 /// Numbers of samples that are tried to name one that is accepted.
-const MOST_TRIED: u32 = 1000;
+const MAX_SAMPLE_TRIALS: u32 = 1000;
 /// States that differ by no more than this, over their scales, are those of one motion.
-const ALIKE: f64 = 1e-9;
+const STATE_TOLERANCE: f64 = 1e-9;
 
 /// A run in 106 bits with what it is asked for.
 struct SystemReplay<'a> {
@@ -90,8 +91,8 @@ impl SystemReplay<'_> {
         let mut events = vec![run.start()];
         for event in run.by_ref() {
             events.push(event);
-            if events.len() > MOST_EVENTS {
-                return Err(format!("has more than {MOST_EVENTS} events; it needs tables"));
+            if events.len() > MAX_EVENTS {
+                return Err(format!("has more than {MAX_EVENTS} events; it needs tables"));
             }
         }
         if let Some(What::Until(mode, until)) = run.beyond() {
@@ -115,7 +116,7 @@ impl SystemReplay<'_> {
     /// The least distance of an event from the horizon and from instants at which the state is
     /// tabulated.
     fn nearest(&self) -> f64 {
-        NEAREST * self.case.system.time_scale
+        MIN_DISTANCE * self.case.system.time_scale
     }
 
     /// Refuses a horizon, and samples, beside an event: which of the two comes first is a matter of
@@ -145,7 +146,7 @@ impl SystemReplay<'_> {
         };
         let count = self.case.samples;
         let Some(time) = close(count) else { return Ok(()) };
-        let other = (count + 1..count + MOST_TRIED).find(|count| close(*count).is_none());
+        let other = (count + 1..count + MAX_SAMPLE_TRIALS).find(|count| close(*count).is_none());
         let other = other.map_or("another number".to_owned(), |count| format!("samples = {count}"));
         Err(format!(
             "samples = {count} is not accepted: one of them and the event {time:?} after the start are \
@@ -203,7 +204,7 @@ impl SystemReplay<'_> {
         let alike = |(own, other): (&Event<DoubleDouble>, &Event<DoubleDouble>)| {
             let pairs = own.state.iter().zip(&other.state).zip(&self.case.system.scales);
             let near = |((a, b), scale): ((&DoubleDouble, &DoubleDouble), &f64)| {
-                (*a - *b).to_f64().abs() <= ALIKE * (scale + a.to_f64().abs())
+                (*a - *b).to_f64().abs() <= STATE_TOLERANCE * (scale + a.to_f64().abs())
             };
             own.mode == other.mode && pairs.into_iter().all(near)
         };

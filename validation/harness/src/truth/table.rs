@@ -11,7 +11,7 @@ use percuss::affine::{System, Until};
 use std::collections::BTreeMap;
 
 /// A state that stays below this part of the largest is called faint.
-const FAINT: f64 = 1e-3;
+const MAX_FAINT_SHARE: f64 = 1e-3;
 
 /// A row of a table.
 #[derive(Clone, Debug)]
@@ -151,7 +151,8 @@ impl Truth {
         let extent = |n: usize| {
             rows().fold(0.0, |most: f64, row| most.max(row.state[n].value().abs() / scales[n]))
         };
-        let is_faint = |n: &usize| (f64::MIN_POSITIVE..FAINT * largest).contains(&extent(*n));
+        let is_faint =
+            |n: &usize| (f64::MIN_POSITIVE..MAX_FAINT_SHARE * largest).contains(&extent(*n));
         (0..scales.len()).filter(is_faint).collect()
     }
 

@@ -4,10 +4,18 @@
 /// more, or as few or fewer, have a probability below 2.5 %.
 #[must_use]
 pub fn interval(hits: u32, runs: u32) -> [f64; 2] {
-    const TAIL: f64 = 0.025;
-    let low =
-        if hits == 0 { 0.0 } else { crossing(|share| 1.0 - at_most(hits - 1, runs, share) > TAIL) };
-    let high = if hits >= runs { 1.0 } else { crossing(|share| at_most(hits, runs, share) < TAIL) };
+    /// The probability outside each end of the interval, whose level is 95 %.
+    const TAIL_PROBABILITY: f64 = 0.025;
+    let low = if hits == 0 {
+        0.0
+    } else {
+        crossing(|share| 1.0 - at_most(hits - 1, runs, share) > TAIL_PROBABILITY)
+    };
+    let high = if hits >= runs {
+        1.0
+    } else {
+        crossing(|share| at_most(hits, runs, share) < TAIL_PROBABILITY)
+    };
     [low, high]
 }
 

@@ -22,11 +22,12 @@ use std::collections::BTreeMap;
 /// Runs from which the limits of a case are taken.
 pub const NULL_RUNS: u32 = 20_000;
 
-/// The least scale of a distance. Where reference runs agree exactly, as where nothing drifts, an
-/// integrator need not: a length below a tenth of the error up to which runs are scored, or this
-/// many periods, do not count.
-const SMALLEST: f64 = 1e-4;
-const ODD_PERIODS: f64 = 5.0;
+/// The least scale of a distance that is a length. Where reference runs agree exactly, as where
+/// nothing drifts, an integrator need not: a length below a tenth of the error up to which runs are
+/// scored does not count.
+const MIN_LENGTH_SCALE: f64 = 1e-4;
+/// The least scale of a distance that is a share of a run, in periods, for the same reason.
+const MIN_SHARE_PERIODS: f64 = 5.0;
 
 /// Limits, and how they were found.
 #[derive(Clone, Debug)]
@@ -99,7 +100,8 @@ impl DistanceScale {
     fn of(name: &'static str, plan: &ComparisonPlan, nulls: &[Null]) -> Self {
         let is_signed = nulls.iter().any(|null| null.signed.contains_key(name));
         let is_share = name.starts_with("ks") || name.ends_with("share") || name == "phase_words";
-        let floor = if is_share { ODD_PERIODS / f64::from(plan.periods) } else { SMALLEST };
+        let floor =
+            if is_share { MIN_SHARE_PERIODS / f64::from(plan.periods) } else { MIN_LENGTH_SCALE };
         let (mean, deviation) = moments(nulls.iter().map(|null| null.value(name)));
         Self { name, is_signed, mean, deviation, floor }
     }
@@ -194,7 +196,7 @@ mod tests {
         let values = [1e-3_f64, 2e-3, 3e-3];
         let coarse = ComparisonPlan { periods: 100, ..PLAN };
         let scale = DistanceScale::of("ks_p", &coarse, &nulls("ks_p", &values, false));
-        assert_eq!(scale.floor, ODD_PERIODS / 100.0);
+        assert_eq!(scale.floor, MIN_SHARE_PERIODS / 100.0);
         assert_eq!(scale.standardized(&nulls("ks_p", &[scale.floor], false)[0]), 0.0);
         assert_eq!(scale.limit(0.0), scale.floor);
     }

@@ -100,14 +100,14 @@ fn area(a: &[f64], b: &[f64]) -> f64 {
 /// Values nearer than this count as equal for Kolmogorov-Smirnov. Some series have atoms: in a
 /// period of free flight y grows by exactly b T, and an integrator's error, however small, moves
 /// all of it.
-const EQUAL: f64 = SCORED_ERROR;
+const EQUAL_VALUES_TOLERANCE: f64 = SCORED_ERROR;
 
 /// The largest amount by which the distribution function of `a` exceeds that of `b` a little
 /// further on.
 fn exceeds(a: &[f64], b: &[f64]) -> f64 {
     let (mut largest, mut below) = (0.0_f64, 0);
     for (k, x) in a.iter().enumerate() {
-        below += b[below..].iter().take_while(|y| **y <= x + EQUAL).count();
+        below += b[below..].iter().take_while(|y| **y <= x + EQUAL_VALUES_TOLERANCE).count();
         largest = largest.max((k + 1) as f64 / a.len() as f64 - below as f64 / b.len() as f64);
     }
     largest

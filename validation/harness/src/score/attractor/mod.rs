@@ -26,5 +26,5 @@ pub use comparison::{AttractorTest, Comparison};
 pub use distance::{Distances, STATISTICS, distances, is_sampled};
 pub use limits::{Calibrated, ComparisonPlan, calibrated};
 pub use power::{Alarms, Changed};
-pub use runs::MOST_RUNS;
+pub use runs::MAX_RUNS;
 pub use section::{RunSection, run_of};

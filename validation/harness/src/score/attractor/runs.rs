@@ -30,12 +30,12 @@ impl RunKind {
 }
 
 /// The most runs of one kind.
-pub const MOST_RUNS: u32 = 1_000_000;
+pub const MAX_RUNS: u32 = 1_000_000;
 
 /// The distance of neighbouring starts in p. Within the transient, two hundred periods at exponents
 /// of
 /// 0.2 and more, it grows e^40 times and more: each start is another stretch of the same chaos.
-const STRIDE: f64 = 1e-9;
+const START_SPACING: f64 = 1e-9;
 
 /// Run number `number` of a kind: the exact solver with `parameters` from a start of its own, as a
 /// section of the attractor that the case's own parameters have.
@@ -46,7 +46,7 @@ pub(super) fn exact_section(
     kind: RunKind,
     number: u32,
 ) -> Result<RunSection, Failure> {
-    nth_section(case, parameters, plan, kind.first() + number % MOST_RUNS)
+    nth_section(case, parameters, plan, kind.first() + number % MAX_RUNS)
 }
 
 /// The reference section of a case: from its own start.
@@ -68,7 +68,8 @@ fn nth_section(
     plan: &ComparisonPlan,
     place: u32,
 ) -> Result<RunSection, Failure> {
-    let start = Start { p: case.problem.start.p - f64::from(place) * STRIDE, ..case.problem.start };
+    let start =
+        Start { p: case.problem.start.p - f64::from(place) * START_SPACING, ..case.problem.start };
     let refused = || Failure::new("the start is refused");
     let periods = plan.transient + plan.periods;
     let task = run_of(parameters, start, periods).ok_or_else(refused)?;

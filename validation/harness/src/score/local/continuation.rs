@@ -5,8 +5,8 @@ use percuss::Ending;
 use percuss::affine::{self, Event, Followed, Follower, What};
 use percuss::number::Number;
 
-/// Exact events between two records that are gone past at the most.
-const MOST_PASSED: usize = 64;
+/// The most exact events between two records that are gone past.
+const MAX_PASSED_EVENTS: usize = 64;
 
 /// The place of a run at a record.
 #[derive(Clone, Debug)]
@@ -118,7 +118,7 @@ pub(super) fn continuation<T: Number>(
     let mut late: Option<Exact> = None;
     let mut gone_past = place.late;
     let mut found = None;
-    while found.is_none() && passed.len() < MOST_PASSED {
+    while found.is_none() && passed.len() < MAX_PASSED_EVENTS {
         let Some(event) = follower.next() else { break };
         let Some(own) = exact(follower, &event, until, std::mem::take(&mut at_once)) else {
             let What::End(ending) = event.what else { continue };

@@ -7,8 +7,9 @@ use crate::engine::Outcome;
 use percuss::Ending;
 use percuss::affine::{self, Event, What};
 
-/// Roundings by which a run's end may differ from its horizon: programs stop stepping there.
-const ROUNDINGS_OF_THE_END: f64 = 32.0 * f64::EPSILON;
+/// The relative distance by which rounding may part a run's end from its horizon: programs stop
+/// stepping there.
+const END_TOLERANCE: f64 = 32.0 * f64::EPSILON;
 
 impl Walk<'_> {
     /// Holds the ending of a run, of which `n` records tell, against that of the exact
@@ -48,7 +49,7 @@ impl Walk<'_> {
 
     /// Whether a run ends before its horizon by more than another count of the same time.
     pub(super) fn is_early(&self, outcome: &Outcome) -> bool {
-        self.judge.judged_until - outcome.ended_at > ROUNDINGS_OF_THE_END * self.judge.judged_until
+        self.judge.judged_until - outcome.ended_at > END_TOLERANCE * self.judge.judged_until
     }
 
     /// The time by which the ending may be off: that of the guard which is nearest to zero.

@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 /// The number of equal parts of a segment at whose ends a perturbation may begin.
 const PARTS: u32 = 8;
-/// Terms of a sum this close to nothing, over their sizes, are rounding.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// The size of a sum, relative to its terms' sizes, that rounding may make of zero.
+const ZERO_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
 /// A system's modes as matrices.
 pub(super) struct Motion {
@@ -201,7 +201,7 @@ impl Motion {
 pub(super) fn value(row: &RowDVector<f64>, point: &DVector<f64>) -> Value {
     let terms = row.iter().zip(point.iter()).map(|(a, b)| a * b);
     let (value, size) = terms.fold((0.0, 0.0), |(value, size), it| (value + it, size + it.abs()));
-    Value { value, rounding: ROUNDING * size }
+    Value { value, rounding: ZERO_TOLERANCE * size }
 }
 
 fn row(row: &Row) -> RowDVector<f64> {

@@ -9,16 +9,16 @@ use crate::engine::Event;
 use crate::system::Direction;
 use nalgebra::RowDVector;
 
-/// The part of a turn in which an extremum is near.
-const NEAR: f64 = 0.125;
+/// The distance to an extremum, in turns, within which it is near.
+const NEAR_TURNS: f64 = 0.125;
 /// Time scales around a graze within which samples show the error there.
-const SHOWN_WITHIN: f64 = 2.0;
-/// How many times the error that samples show may be at a graze near them.
-const ROOM: f64 = 3.0;
-/// Steps of Newton's method on the way to an extremum.
-const MOST_STEPS: usize = 30;
-/// The part of the distance [`NEAR`] to which an extremum is found.
-const CLOSE: f64 = 1e-12;
+const SAMPLE_REACH_TIME_SCALES: f64 = 2.0;
+/// The largest ratio of the error at a graze to the error that samples near it show.
+const MAX_ERROR_RATIO: f64 = 3.0;
+/// The most steps of Newton's method on the way to an extremum.
+const MAX_NEWTON_STEPS: usize = 30;
+/// The error with which an extremum is found, as a share of [`NEAR_TURNS`].
+const EXTREMUM_TOLERANCE: f64 = 1e-12;
 
 impl Walk<'_> {
     /// Whether the mode after a record hangs by less than the errors that are allowed.
@@ -128,7 +128,7 @@ impl Walk<'_> {
     /// with room; none where no sample is near.
     fn shown_near(&mut self, at: f64, row: &RowDVector<f64>, state: &[f64]) -> Option<f64> {
         let system = self.motion().system();
-        let (begin, near) = (self.place.elapsed, SHOWN_WITHIN * system.time_scale);
+        let (begin, near) = (self.place.elapsed, SAMPLE_REACH_TIME_SCALES * system.time_scale);
         let (from, to) = (begin.max(at - near), self.told_until.min(at + near));
         let answer = self.answer;
         let all = answer.times.iter().zip(answer.states);
@@ -144,16 +144,16 @@ impl Walk<'_> {
         let error = errors.fold(0.0, f64::max);
         let k = self.units.allowance.time.max(self.units.allowance.state);
         let least = k * self.units.tolerance() * self.motion().size(row, state);
-        Some(ROOM * error + least)
+        Some(MAX_ERROR_RATIO * error + least)
     }
 
     /// The extremum of a guard along the present flow near a time: what Newton's method finds from
     /// there, if it stays near.
     fn extremum_near(&mut self, elapsed: f64, guard: usize) -> Option<f64> {
         let (mode, begin) = (self.place.mode, self.place.elapsed);
-        let near = NEAR * self.judge.problem.turn();
+        let near = NEAR_TURNS * self.judge.problem.turn();
         let mut at = elapsed;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_NEWTON_STEPS {
             let state = self.along(at);
             let value = |order| self.motion().value((mode, guard, order), at, &state);
             let rate = value(1);
@@ -166,7 +166,7 @@ impl Walk<'_> {
             if !next.is_finite() || (next - elapsed).abs() > near {
                 return None;
             }
-            if (next - at).abs() <= CLOSE * near {
+            if (next - at).abs() <= EXTREMUM_TOLERANCE * near {
                 return Some(next);
             }
             at = next;

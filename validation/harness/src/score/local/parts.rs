@@ -11,16 +11,16 @@ use crate::system::Row;
 use nalgebra::RowDVector;
 
 /// Roundings of an event's time that a guard's value may show, each times the guard's rate.
-const ROUNDINGS_OF_TIME: f64 = 128.0 * f64::EPSILON;
+const TIME_TOLERANCE: f64 = 128.0 * f64::EPSILON;
 
 /// The part of a guard's size that rounding leaves where a dense output of high order is at a root:
 /// three times the largest that was measured, 7e-12 of a method of order 7.
-const ROUNDINGS_OF_DENSE_OUTPUT: f64 = 2e-11;
+const DENSE_OUTPUT_TOLERANCE: f64 = 2e-11;
 
 /// The largest location error of a right engine, in tolerances of the guard's size.
-pub(super) const LOCATION: f64 = 1.0;
+pub(super) const MAX_LOCATION_ERROR: f64 = 1.0;
 /// The largest contradiction between the state before a reset and that after it, in tolerances.
-pub(super) const INCONSISTENCY: f64 = 1.0;
+pub(super) const MAX_INCONSISTENCY: f64 = 1.0;
 
 impl Walk<'_> {
     /// Judges a record whose event may fire, by what that event makes of the present flow at the
@@ -61,12 +61,12 @@ impl Walk<'_> {
     pub(super) fn contradiction(&mut self, event: &Event, named: Named) -> Option<Said> {
         let location = self.location(event, named);
         self.found.defects.location.extend(location);
-        if let Some(location) = location.filter(|it| exceeds(*it, LOCATION)) {
+        if let Some(location) = location.filter(|it| exceeds(*it, MAX_LOCATION_ERROR)) {
             return Some(Said::Wrong(WrongKind::Location, None, location));
         }
         let inconsistency = self.inconsistency(event, named);
         self.found.defects.inconsistency.extend(inconsistency);
-        let defect = inconsistency.filter(|it| exceeds(*it, INCONSISTENCY))?;
+        let defect = inconsistency.filter(|it| exceeds(*it, MAX_INCONSISTENCY))?;
         Some(Said::Wrong(WrongKind::Inconsistent, None, defect))
     }
 
@@ -102,7 +102,7 @@ impl Walk<'_> {
         let value = motion.value((at.0, at.1, 0), event.elapsed, before);
         let rate = motion.value((at.0, at.1, 1), event.elapsed, before).value.abs();
         let clock = self.judge.problem.clock(event.elapsed).abs().max(event.elapsed);
-        let rounding = value.rounding + ROUNDINGS_OF_TIME * clock * rate;
+        let rounding = value.rounding + TIME_TOLERANCE * clock * rate;
         let size = motion.size(motion.guard(at.0, at.1), before);
         // A guard of theta alone has the size of its change in a unit of time.
         let size = if size > 0.0 { size } else { rate * motion.system().time_scale };
@@ -110,7 +110,7 @@ impl Walk<'_> {
         if value.value.is_nan() {
             return Some(f64::NAN);
         }
-        let unit = self.units.tolerance().max(ROUNDINGS_OF_DENSE_OUTPUT) * size;
+        let unit = self.units.tolerance().max(DENSE_OUTPUT_TOLERANCE) * size;
         Some(if beyond <= 0.0 { 0.0 } else { beyond / unit })
     }
 

@@ -2,7 +2,7 @@
 
 use super::continuation::{Exact, Found, Named};
 use super::judgement::{WrongKind, exceeds};
-use super::parts::{INCONSISTENCY, LOCATION};
+use super::parts::{MAX_INCONSISTENCY, MAX_LOCATION_ERROR};
 use super::walk::{Said, Walk};
 use crate::engine::Event;
 use crate::score::WINDOW;
@@ -49,12 +49,12 @@ impl Walk<'_> {
         }
         let location = if exact.at_once { None } else { self.location(event, named) };
         self.found.defects.location.extend(location);
-        if let Some(location) = location.filter(|it| exceeds(*it, LOCATION)) {
+        if let Some(location) = location.filter(|it| exceeds(*it, MAX_LOCATION_ERROR)) {
             return Said::Wrong(WrongKind::Location, Some(exact), location);
         }
         let inconsistency = self.inconsistency(event, named);
         self.found.defects.inconsistency.extend(inconsistency);
-        if let Some(defect) = inconsistency.filter(|it| exceeds(*it, INCONSISTENCY)) {
+        if let Some(defect) = inconsistency.filter(|it| exceeds(*it, MAX_INCONSISTENCY)) {
             return Said::Wrong(WrongKind::Inconsistent, Some(exact), defect);
         }
         let state = self.off_the_state(event, named, &exact);
@@ -140,7 +140,7 @@ impl Walk<'_> {
     fn elsewhen(&mut self, event: &Event, named: Named, exact: Exact) -> Said {
         let location = self.location(event, named);
         self.found.defects.location.extend(location);
-        if let Some(location) = location.filter(|it| exceeds(*it, LOCATION)) {
+        if let Some(location) = location.filter(|it| exceeds(*it, MAX_LOCATION_ERROR)) {
             return Said::Wrong(WrongKind::Location, Some(exact), location);
         }
         let on_flow = self.off_the_flow(event).is_none_or(|it| it <= self.units.allowance.sample);

@@ -6,8 +6,8 @@ use crate::engine::{Outcome, Task};
 use crate::system::SystemProblem;
 use percuss::affine::{Event, Time, What};
 
-/// Roundings of a time within which an instant of output is that of a record.
-const SAME_INSTANT: f64 = 8.0 * f64::EPSILON;
+/// The relative distance within which an instant of output is that of a record: 8 roundings.
+const INSTANT_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
 /// Judges the samples of an answer.
 pub(super) fn judge(
@@ -26,7 +26,7 @@ pub(super) fn judge(
         while outcome.events.get(record).is_some_and(|it| it.elapsed <= *elapsed) {
             record += 1;
         }
-        let near = |it: f64| (it - elapsed).abs() <= SAME_INSTANT * elapsed;
+        let near = |it: f64| (it - elapsed).abs() <= INSTANT_TOLERANCE * elapsed;
         // At the instant of records either side of each may be told.
         let mut first = record;
         while first > 0 && near(outcome.events[first - 1].elapsed) {

@@ -7,22 +7,22 @@ use crate::score::rule::of_length;
 use crate::score::worst;
 use nalgebra::RowDVector;
 
-/// The part of a segment's length that the growth of errors may make of a unit of time: where more
-/// is asked for, events are too close for the growth to be that of small errors.
-const MOST_OF_LENGTH: f64 = 0.1;
-/// Defects smaller than this in units without growth are not asked for their growth.
-const SMALL: f64 = 0.05;
+/// The largest share of a segment's length that the growth of errors may make of a unit of time:
+/// where more is asked for, events are too close for the growth to be that of small errors.
+const MAX_LENGTH_SHARE: f64 = 0.1;
+/// The defect in units without growth up to which the growth is not asked for.
+const NEGLIGIBLE_DEFECT: f64 = 0.05;
 /// Roundings of the time since the start in an answer's times and in differences of them.
-const ROUNDINGS_OF_TIME: f64 = 4.0 * f64::EPSILON;
+const TIME_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The rounding of a state in parts of its weight.
-const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+const STATE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// The part of its weight by which a state moves in a time scale that is slow.
-const SLOW: f64 = 0.1;
+/// The change of a state in a time scale, as a share of its weight, below which it is slow.
+const MIN_SPEED: f64 = 0.1;
 
 /// Time scales after an event within which states tell how late it is.
-const NEAR: f64 = 2.0;
+const MAX_TIME_SCALES: f64 = 2.0;
 
 /// The units of one engine's answer on one system.
 pub(super) struct Units<'a> {
@@ -58,7 +58,7 @@ impl Units<'_> {
 
     /// The rounding error of a time since the start.
     pub(super) fn rounding_of_time(elapsed: f64) -> f64 {
-        ROUNDINGS_OF_TIME * elapsed.abs()
+        TIME_ROUNDING * elapsed.abs()
     }
 
     /// The defect of an event's time, with its sign: the event of a guard ends the stretch.
@@ -66,7 +66,7 @@ impl Units<'_> {
         let rounding = Self::rounding_of_time(stretch.elapsed + stretch.length);
         let beyond = beyond(off, rounding);
         let unit = self.tolerance() * self.time_scale() * self.of_length(stretch.length);
-        if (beyond / unit).abs() <= SMALL || stretch.length <= 0.0 {
+        if (beyond / unit).abs() <= NEGLIGIBLE_DEFECT || stretch.length <= 0.0 {
             return beyond / unit;
         }
         beyond / (unit + self.growth_of_time(stretch, guard))
@@ -76,7 +76,7 @@ impl Units<'_> {
     fn growth_of_time(&self, stretch: &Stretch<'_>, guard: usize) -> f64 {
         let growth = self.motion.growth_of_time(&self.segment(stretch), guard);
         let growth = self.tolerance() * self.of_length(stretch.length) * growth;
-        let most = MOST_OF_LENGTH * stretch.length / self.allowance.time;
+        let most = MAX_LENGTH_SHARE * stretch.length / self.allowance.time;
         if growth.is_finite() { growth.min(most) } else { most }
     }
 
@@ -140,14 +140,14 @@ impl Units<'_> {
         let parts = rates.iter().zip(&weights).map(|(rate, weight)| scale * rate / weight);
         let parts: Vec<f64> = parts.collect();
         let square: f64 = parts.iter().map(|it| it * it).sum();
-        if square < SLOW * SLOW || stretch.length > NEAR * scale {
+        if square < MIN_SPEED * MIN_SPEED || stretch.length > MAX_TIME_SCALES * scale {
             return None;
         }
         let off = own
             .iter()
             .zip(exact)
             .zip(&weights)
-            .map(|((own, exact), weight)| beyond((own - exact) / weight, ROUNDINGS));
+            .map(|((own, exact), weight)| beyond((own - exact) / weight, STATE_ROUNDING));
         let along: f64 = off.zip(&parts).map(|(off, part)| off * part).sum();
         let rounding = Self::rounding_of_time(end) / scale;
         Some(beyond(along / square, rounding) / self.tolerance())
@@ -165,7 +165,7 @@ impl Units<'_> {
         let rates = self.motion.rates(stretch.mode, end, exact);
         // No state is known better than its time.
         let rounding =
-            |n: usize| ROUNDINGS * weights[n] + Self::rounding_of_time(end) * rates[n].abs();
+            |n: usize| STATE_ROUNDING * weights[n] + Self::rounding_of_time(end) * rates[n].abs();
         let off = |n: usize| beyond(own[n] - exact[n], rounding(n)).abs();
         let worst_by = |sizes: &[f64]| {
             let each =
@@ -173,7 +173,7 @@ impl Units<'_> {
             worst(each) / unit
         };
         let plain = worst_by(&weights);
-        if plain <= SMALL || stretch.length <= 0.0 || !plain.is_finite() {
+        if plain <= NEGLIGIBLE_DEFECT || stretch.length <= 0.0 || !plain.is_finite() {
             return plain;
         }
         worst_by(&larger(&weights, &grown(&self.segment(stretch))))

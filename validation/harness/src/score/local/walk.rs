@@ -11,12 +11,12 @@ use crate::system::Values;
 use percuss::Ending;
 use percuss::affine::{DoubleDouble, Follower, What};
 
-/// Tolerances below which f64 alone condemns nothing.
-const FINE: f64 = 1e-9;
-/// Exact events after the last record that are counted at the most.
-const MOST_LEFT: usize = 100_000;
+/// The tolerance below which f64 alone condemns nothing.
+const MIN_F64_TOLERANCE: f64 = 1e-9;
+/// The most exact events after the last record that are counted.
+const MAX_EVENTS_LEFT: usize = 100_000;
 /// Events of one instant after which a run makes no progress.
-const MOST_AT_ONCE: usize = 64;
+const MAX_SIMULTANEOUS_EVENTS: usize = 64;
 
 /// A walk, at one of the records.
 pub(super) struct Walk<'a> {
@@ -90,7 +90,7 @@ impl<'a> Walk<'a> {
         let mode = &self.motion().system().modes[self.place.mode];
         let is_of_the_mode = event.event < mode.until.len() + mode.watch.len();
         // A run that makes no progress has ended.
-        let said = if !is_of_the_mode || self.at_once > MOST_AT_ONCE {
+        let said = if !is_of_the_mode || self.at_once > MAX_SIMULTANEOUS_EVENTS {
             Said::Wrong(WrongKind::Spurious, None, f64::NAN)
         } else {
             self.said_of(n, event, found, decided)
@@ -110,7 +110,7 @@ impl<'a> Walk<'a> {
     fn continuation(&mut self, record: (Named, f64)) -> Continuation {
         let found = continuation(&self.units, &mut self.coarse, &self.place, record);
         let is_good = matches!(found.found, Found::Same(_)) && found.passed.is_empty();
-        if found.decided && (is_good || self.units.tolerance() >= FINE) {
+        if found.decided && (is_good || self.units.tolerance() >= MIN_F64_TOLERANCE) {
             return found;
         }
         let Some(solver) = self.judge.fine() else { return found };
@@ -191,14 +191,14 @@ impl<'a> Walk<'a> {
         if early && outcome.ended == Ending::Horizon {
             return self.cut_short(n, outcome.ended_at);
         }
-        if early && outcome.ended == Ending::NoProgress && self.at_once >= MOST_AT_ONCE {
+        if early && outcome.ended == Ending::NoProgress && self.at_once >= MAX_SIMULTANEOUS_EVENTS {
             return;
         }
         let end = self.judge.judged_until - self.units.allowance.time * self.at_once_within();
         let mut gone_past = self.place.late;
         self.coarse.go_on(self.place.elapsed, &self.place.state, end, gone_past);
         let until = self.until_count();
-        for _ in 0..MOST_AT_ONCE {
+        for _ in 0..MAX_SIMULTANEOUS_EVENTS {
             let at_once = self.coarse.fires_at_once();
             let Some(event) = self.coarse.next() else { return };
             let Some(own) = exact(&self.coarse, &event, until, at_once) else {
@@ -252,7 +252,7 @@ impl<'a> Walk<'a> {
 
     /// Counts the events of the exact continuation as missed, but for the first, which was.
     fn count_left(&mut self) {
-        let events = self.coarse.by_ref().take(MOST_LEFT);
+        let events = self.coarse.by_ref().take(MAX_EVENTS_LEFT);
         let is_event = |it: &percuss::affine::Event<f64>| !matches!(it.what, What::End(_));
         self.found.missed += events.filter(is_event).count().saturating_sub(1);
     }

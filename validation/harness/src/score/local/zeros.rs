@@ -9,10 +9,10 @@ use crate::engine::Event;
 use nalgebra::{DMatrix, DVector};
 use percuss::affine::{Followed, Follower, Imposed};
 
-/// Zeros are denied by values of this many times what a right method is allowed.
-const DENIED: f64 = 10.0;
+/// The ratio of a value to what a right method is allowed from which on a zero is denied.
+const MAX_ALLOWED_RATIO: f64 = 10.0;
 /// Singular values below this part of the largest are none: the rows say the same.
-const SAME_ROWS: f64 = 1e-12;
+const SINGULAR_VALUE_TOLERANCE: f64 = 1e-12;
 
 impl JudgedRun {
     /// The guards that end the mode of a place and are zero there to rounding, as bits.
@@ -40,7 +40,7 @@ impl JudgedRun {
         let weighted = DMatrix::from_fn(rows.len(), states, |n, k| rows[n][k] * weights[k]);
         let values = DVector::from_iterator(imposed.len(), imposed.iter().map(|it| it.value));
         // Rows of theta alone say nothing of the states, and some rows say the same.
-        let moved = weighted.svd(true, true).solve(&values, SAME_ROWS);
+        let moved = weighted.svd(true, true).solve(&values, SINGULAR_VALUE_TOLERANCE);
         let Ok(moved) = moved else { return place.state.clone() };
         let state = place.state.iter().zip(moved.iter()).zip(&weights);
         state.map(|((value, moved), weight)| value - moved * weight).collect()
@@ -81,7 +81,8 @@ impl Walk<'_> {
             let point = motion.point(self.place.elapsed, &self.place.state);
             let size = motion.size(&row, point.as_slice());
             let rounding = value_of(&row, &point).rounding;
-            it.value.abs() <= DENIED * k * self.units.tolerance() * size + 16.0 * rounding
+            it.value.abs()
+                <= MAX_ALLOWED_RATIO * k * self.units.tolerance() * size + 16.0 * rounding
         };
         let truths: Vec<bool> = imposed.iter().map(is_true).collect();
         if truths.iter().all(|it| *it) {

@@ -9,9 +9,9 @@ use crate::suite::{PreparedCase, Scored, Status};
 use rayon::prelude::*;
 
 /// Rows whose event is shown: a page stays quick, and so does the run, with that many.
-const MOST_ROWS: usize = 200;
+const MAX_ROWS: usize = 200;
 /// A run that took more right-hand sides is not made again to be watched.
-const MOST_WORK: u64 = 10_000_000;
+const MAX_RHS_EVALUATIONS: u64 = 10_000_000;
 
 /// A row that has something to show, and what.
 struct RowChoice<'a> {
@@ -46,7 +46,7 @@ fn chosen(candidates: Vec<RowChoice<'_>>) -> Vec<RowChoice<'_>> {
     };
     let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.sort_by_cached_key(key);
-    order.truncate(MOST_ROWS);
+    order.truncate(MAX_ROWS);
     let all = candidates.into_iter().enumerate();
     all.filter(|(i, _)| order.contains(i)).map(|(_, it)| it).collect()
 }
@@ -63,7 +63,7 @@ fn candidate<'a>(cases: &'a [PreparedCase], row: &'a Scored) -> Option<RowChoice
     }
     let prepared = cases.iter().find(|it| it.case.name == row.case)?;
     let mismatch = EventMismatch::first(prepared, measures, outcome, row)?;
-    let affordable = outcome.work.rhs_evaluations <= MOST_WORK;
+    let affordable = outcome.work.rhs_evaluations <= MAX_RHS_EVALUATIONS;
     let own = integrators::all().iter().find(|it| it.declaration().name == row.engine);
     Some(RowChoice { row, prepared, mismatch, again: own.filter(|_| affordable).copied() })
 }

@@ -40,7 +40,7 @@ pub struct EventMismatch {
 }
 
 /// Room for the rounding of a horizon that is kept in forcing periods.
-const HORIZON_ROUNDING: f64 = 1e-12;
+const HORIZON_TOLERANCE: f64 = 1e-12;
 
 /// The events of truth or engine: when, and the mode and number of each.
 type Events = Vec<(f64, (usize, usize))>;
@@ -163,7 +163,7 @@ fn pairs(prepared: &PreparedCase, measures: &Measures, outcome: &Outcome) -> Vec
     let PreparedCase { task, truth, .. } = prepared;
     let names = prepared.names();
     let window = WINDOW * prepared.period();
-    let horizon = measures.horizon_periods * prepared.period() * (1.0 + HORIZON_ROUNDING);
+    let horizon = measures.horizon_periods * prepared.period() * (1.0 + HORIZON_TOLERANCE);
     let near = |events: Vec<crate::score::Occurrence>| {
         let near = events.into_iter().take_while(|it| it.elapsed <= horizon + window);
         near.collect::<Vec<_>>()

@@ -3,20 +3,22 @@
 /// Instants of a view at which both curves are known.
 const INSTANTS: usize = 121;
 
-/// Half the widest view: so many steps of the engine, as far as that is between these shares of a
-/// forcing period.
-const STEPS: f64 = 8.0;
-const LEAST: f64 = 0.02;
-const MOST: f64 = 0.25;
+/// Half the widest view, in steps of the engine, as far as that is between [`MIN_WIDEST_PERIODS`]
+/// and [`MAX_WIDEST_PERIODS`].
+const WIDEST_VIEW_STEPS: f64 = 8.0;
+/// The least half width of the widest view, in forcing periods.
+const MIN_WIDEST_PERIODS: f64 = 0.02;
+/// The largest half width of the widest view, in forcing periods.
+const MAX_WIDEST_PERIODS: f64 = 0.25;
 
 /// Half the closest view, in distances from the event to what it is confused with.
-const AROUND: f64 = 2.5;
-/// A distance of more than this share of half the widest view needs no closer one.
-const FAR: f64 = 0.25;
+const CLOSEST_VIEW_DISTANCES: f64 = 2.5;
+/// The share of half the widest view up to which a distance needs a closer one.
+const MAX_CLOSEST_SHARE: f64 = 0.25;
 /// A view is at most so much wider than the next one.
-const ZOOM: f64 = 8.0;
-/// Half a view is at least so many roundings of the time it stands at.
-const ROUNDINGS: f64 = 2048.0 * f64::EPSILON;
+const MAX_ZOOM: f64 = 8.0;
+/// Half a view at the least, as a share of the time it stands at: 2048 roundings.
+const MIN_VIEW: f64 = 2048.0 * f64::EPSILON;
 
 /// The ranges of the views, times since the start, from the widest to the closest.
 pub(super) struct Scales {
@@ -33,8 +35,9 @@ impl Scales {
         period: f64,
         span: f64,
     ) -> Self {
-        let widest = (STEPS * mean_step).clamp(LEAST * period, MOST * period);
-        let closest = (AROUND * reach).max(ROUNDINGS * (1.0 + centre));
+        let widest = (WIDEST_VIEW_STEPS * mean_step)
+            .clamp(MIN_WIDEST_PERIODS * period, MAX_WIDEST_PERIODS * period);
+        let closest = (CLOSEST_VIEW_DISTANCES * reach).max(MIN_VIEW * (1.0 + centre));
         let halves = halves(widest, closest);
         let view = |half: f64| [(centre - half).max(0.0), (centre + half).min(span)];
         Self { spans: halves.into_iter().map(view).collect(), centre }
@@ -62,10 +65,10 @@ pub fn view_instants([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
 
 /// Halves of the views, each as much wider than the next.
 fn halves(widest: f64, closest: f64) -> Vec<f64> {
-    if closest > FAR * widest {
+    if closest > MAX_CLOSEST_SHARE * widest {
         return vec![widest];
     }
-    let count = ((widest / closest).ln() / ZOOM.ln()).ceil();
+    let count = ((widest / closest).ln() / MAX_ZOOM.ln()).ceil();
     let ratio = (closest / widest).powf(1.0 / count);
     (0..=count as i32).map(|k| widest * ratio.powi(k)).collect()
 }
@@ -78,7 +81,7 @@ mod tests {
     fn views_close_in_by_at_most_the_zoom() {
         let halves = halves(1.0, 1e-6);
         assert_eq!(halves.len(), 8);
-        assert!(halves.windows(2).all(|pair| pair[0] / pair[1] <= ZOOM * (1.0 + 1e-9)));
+        assert!(halves.windows(2).all(|pair| pair[0] / pair[1] <= MAX_ZOOM * (1.0 + 1e-9)));
         assert!((halves[0] - 1.0).abs() < 1e-12 && (halves[7] / 1e-6 - 1.0).abs() < 1e-9);
         assert_eq!(super::halves(1.0, f64::INFINITY), [1.0]);
     }
