@@ -3,7 +3,7 @@
 use percuss::affine::Section;
 
 /// The largest angle of a section, in radians.
-pub const LARGEST_ANGLE: f64 = 1e15;
+pub const MAX_ANGLE_RADIANS: f64 = 1e15;
 
 /// A number, or a multiple of pi such as `pi/2`, `-pi`, `2pi` or `3*pi/4`: the double nearest to pi
 /// times the factor, over the divisor.
@@ -27,7 +27,7 @@ pub fn number(text: &str) -> Option<f64> {
 /// An angle, in radians.
 #[must_use]
 pub fn angle(text: &str) -> Option<f64> {
-    number(text).filter(|angle| angle.abs() <= LARGEST_ANGLE)
+    number(text).filter(|angle| angle.abs() <= MAX_ANGLE_RADIANS)
 }
 
 /// A section as it is written: `strobe`, `strobe:ANGLE`, `EVENT` or `EVENT@MODE`.

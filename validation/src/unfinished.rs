@@ -8,11 +8,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::{Builder, NamedTempFile, PersistError};
 
 /// The temporary names that are in use.
-static NAMES: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+static NAMES_IN_USE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn names() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     // A set of paths is as good after a panic as before it.
-    NAMES.lock().unwrap_or_else(PoisonError::into_inner)
+    NAMES_IN_USE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Watches for interruptions: they remove what is unfinished and end the programs that were
@@ -93,13 +93,13 @@ mod signals {
     use signal_hook::iterator::Signals;
     use std::sync::Once;
 
-    static WATCHED: Once = Once::new();
+    static WATCH_STARTED: Once = Once::new();
 
     /// From the first file on, SIGINT and SIGTERM remove what is unfinished and end the process
     /// with exit code 128 + signal, as a shell reports it. Until then they do what they do by
     /// default.
     pub(super) fn watch() {
-        WATCHED.call_once(|| {
+        WATCH_STARTED.call_once(|| {
             // Where signals cannot be watched an interruption leaves its file, as it would without
             // this.
             if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) {

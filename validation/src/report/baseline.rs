@@ -64,14 +64,14 @@ pub struct Compared {
     pub common: usize,
 }
 
-/// Errors may grow by this factor: another processor or compiler rounds differently, and a step
-/// that is accepted here is refused there. A method that loses an order, or an adapter a digit, is
-/// beyond it.
-const FACTOR: f64 = 1.5;
-/// A cost that has grown by this factor is named.
-const DEARER: f64 = 1.2;
-/// Errors below this are rounding.
-const ROUNDING: f64 = 1e-14;
+/// The largest ratio of an error to the baseline's: another processor or compiler rounds
+/// differently, and a step that is accepted here is refused there. A method that loses an order, or
+/// an adapter a digit, is beyond it.
+const MAX_ERROR_RATIO: f64 = 1.5;
+/// The ratio of a cost to the baseline's beyond which it is named.
+const MAX_COST_RATIO: f64 = 1.2;
+/// The error below which all is rounding.
+const MIN_ERROR: f64 = 1e-14;
 
 impl Baseline {
     /// Reads a report.
@@ -166,7 +166,7 @@ impl Earlier {
     /// How many times as many right-hand sides a row takes, where they are many more.
     fn dearer(&self, row: &ReportRow) -> Option<String> {
         let factor = row.rhs_evaluations? as f64 / self.rhs_evaluations? as f64;
-        (factor > DEARER && factor.is_finite()).then(|| format!("{factor:.2} times"))
+        (factor > MAX_COST_RATIO && factor.is_finite()).then(|| format!("{factor:.2} times"))
     }
 
     fn is(&self, row: &ReportRow) -> bool {
@@ -206,7 +206,7 @@ impl Earlier {
         ];
         for (what, now, then) in errors {
             if let Some(then) = then
-                && now > FACTOR * then.max(ROUNDING)
+                && now > MAX_ERROR_RATIO * then.max(MIN_ERROR)
             {
                 worse.push(format!("{what} {}, was {}", brief(now), brief(then)));
             }
@@ -219,7 +219,7 @@ impl Earlier {
 
 /// The place of a verdict among all, the best first.
 fn rank(verdict: &str) -> usize {
-    const BEST_FIRST: [&str; 8] =
+    const VERDICTS_BEST_FIRST: [&str; 8] =
         ["pass", "known", "undecidable", "not-scored", "not-run", "unavailable", "fail", "error"];
-    BEST_FIRST.iter().position(|it| *it == verdict).unwrap_or(BEST_FIRST.len())
+    VERDICTS_BEST_FIRST.iter().position(|it| *it == verdict).unwrap_or(VERDICTS_BEST_FIRST.len())
 }

@@ -7,7 +7,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 /// An engine's cases are named where that takes at most this many lines, else counted by system.
-const FEW_LINES: usize = 3;
+const MAX_NAMED_LINES: usize = 3;
 
 /// The cases on which each engine fails, with expected failures told apart; `all_names`: however
 /// many they are.
@@ -22,7 +22,7 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
         let head =
             format!("  {}: {} of {}", it.engine, it.fails_on.len(), report.number_of_cases());
         let names = wrapped(&format!("{head}: {}", marked(report, it).join(", ")));
-        let is_short = all_names || names.lines().count() <= FEW_LINES;
+        let is_short = all_names || names.lines().count() <= MAX_NAMED_LINES;
         let groups = if is_short { Vec::new() } else { by_system(report, evidence, it) };
         any_counted |= !groups.is_empty();
         let unexpected: Vec<_> =

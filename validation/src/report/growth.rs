@@ -58,9 +58,9 @@ fn tolerances(runs: &[&ErrorGrowth]) -> Vec<f64> {
 
 /// The finer a tolerance, the more of its line is drawn; without one the line is whole.
 fn stroke(tolerances: &[f64], tolerance: Option<f64>) -> Stroke {
-    const FROM_COARSE: [Stroke; 3] = [Stroke::Dotted, Stroke::DashDotted, Stroke::Dashed];
+    const STROKES_FROM_COARSE: [Stroke; 3] = [Stroke::Dotted, Stroke::DashDotted, Stroke::Dashed];
     let place = tolerance.and_then(|it| tolerances.iter().position(|other| *other == it));
-    place.map_or(Stroke::Solid, |place| FROM_COARSE[place % FROM_COARSE.len()])
+    place.map_or(Stroke::Solid, |place| STROKES_FROM_COARSE[place % STROKES_FROM_COARSE.len()])
 }
 
 /// The line exp(lambda t) from the smallest error there is, as far as it says anything.

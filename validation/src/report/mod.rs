@@ -46,7 +46,7 @@ pub use ranking::{
 };
 pub use records::{DefectQuantiles, FirstWrongRecord, JudgedRecords, Quantiles, TimeQuantiles};
 pub use row::{EngineEntry, Report, ReportRow, Summary, ValidHorizons};
-pub use screen::{MOST_LINES, ScreenParts, screen};
+pub use screen::{MAX_LINES, ScreenParts, screen};
 pub use table::WIDTH;
 pub use unanswered::Unanswered;
 

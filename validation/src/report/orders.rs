@@ -20,7 +20,7 @@ impl Order {
     /// Whether it falls short of what is claimed by more than a right method does by chance.
     #[must_use]
     pub fn falls_short(&self) -> bool {
-        self.cases >= ENOUGH && self.found < f64::from(self.claimed) - SLACK
+        self.cases >= MIN_CASES && self.found < f64::from(self.claimed) - MAX_ORDER_DEFICIT
     }
 }
 
@@ -31,10 +31,10 @@ impl Order {
 /// with repetition one in a thousand is up to 0.47 below it (Verner 7(6)). The classical method
 /// with fixed steps is 0.28 below. A method that claims one order too much is 0.9 below (ESDIRK
 /// 3(4) taken for order 4) and has to be named.
-const SLACK: f64 = 0.6;
+const MAX_ORDER_DEFICIT: f64 = 0.6;
 /// The least number of cases with settings enough: with five the same draws reach 2.7 below the
 /// order.
-const ENOUGH: usize = 10;
+const MIN_CASES: usize = 10;
 
 /// The orders of all engines that claim one and have settings enough.
 #[must_use]
@@ -81,6 +81,6 @@ mod tests {
 
     #[test]
     fn too_few_ladders_say_nothing() {
-        assert!(!falls_short(8, 1.0, ENOUGH - 1) && falls_short(8, 1.0, ENOUGH));
+        assert!(!falls_short(8, 1.0, MIN_CASES - 1) && falls_short(8, 1.0, MIN_CASES));
     }
 }

@@ -13,10 +13,10 @@ use crate::picture::{
 use percuss::Phase;
 use rayon::prelude::*;
 
-/// Two clouds of more points together are no SVG.
-const MOST_SVG_POINTS: usize = 6000;
+/// The most points of two clouds together in an SVG.
+const MAX_SVG_POINTS: usize = 6000;
 /// Wrong events are drawn one by one where at most this many cases are chosen.
-const FEW_CASES: usize = 3;
+const MAX_DRAWN_CASES: usize = 3;
 pub(super) const GREY: Colour = Colour(150, 150, 150);
 
 /// A picture's file name and bytes.
@@ -49,7 +49,7 @@ pub fn pictures(report: &Report, evidence: &ReportEvidence) -> Result<Vec<Pictur
         drawn(&curves, |_| true)?,
         drawn(&heat_maps, |_| true)?,
         drawn(&histograms, |_| true)?,
-        drawn(&clouds, |it| it.points() <= MOST_SVG_POINTS)?,
+        drawn(&clouds, |it| it.points() <= MAX_SVG_POINTS)?,
     ];
     Ok(drawn.into_iter().flatten().collect())
 }
@@ -61,7 +61,7 @@ fn events<'a>(
     palette: &'a Palette,
 ) -> impl Iterator<Item = (String, Encounter)> + 'a {
     let cases = report.results.chunk_by(|a, b| a.case == b.case).count();
-    let shown = evidence.events.iter().filter(move |_| cases <= FEW_CASES);
+    let shown = evidence.events.iter().filter(move |_| cases <= MAX_DRAWN_CASES);
     shown.map(|it| (it.file_name(), it.encounter(palette.colour(&it.engine))))
 }
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// A typical figure stands beside those of other engines if at least nine tenths of its rows were
 /// run: the rest hardly moves a median. What is over fewer is over other cases.
-const MOST_ROWS: (usize, usize) = (9, 10);
+const MIN_ROWS_RATIO: (usize, usize) = (9, 10);
 
 /// The figures of one engine over all cases.
 #[derive(Clone, Debug, Default)]
@@ -97,7 +97,7 @@ impl SettingSummary {
 }
 
 fn are_most(ran: usize, rows: usize) -> bool {
-    let (most, of) = MOST_ROWS;
+    let (most, of) = MIN_ROWS_RATIO;
     ran * of >= rows * most
 }
 

@@ -8,8 +8,8 @@ use super::summary::{EngineSummary, SettingSummary};
 use super::{EngineEntry, Report};
 use crate::picture::{Axis, AxisScale, Curve, Curves, Marker, Stroke};
 
-/// More hollow points than these are counted instead of named.
-const FEW_POINTS: usize = 8;
+/// The most hollow points that are named instead of counted.
+const MAX_NAMED_POINTS: usize = 8;
 
 /// An error that is shown: its words and its figure.
 type Shown = (&'static str, fn(&SettingSummary) -> f64);
@@ -92,7 +92,7 @@ fn note(report: &Report, summaries: &[EngineSummary]) -> String {
     };
     let hollow = match apart.len() {
         0 => String::new(),
-        1..=FEW_POINTS => format!("Hollow, not joined: {why}: {}. ", apart.join(", ")),
+        1..=MAX_NAMED_POINTS => format!("Hollow, not joined: {why}: {}. ", apart.join(", ")),
         count => format!("Hollow, not joined, {count} points: {why}. "),
     };
     let infinite = match one_case {

@@ -7,10 +7,11 @@ use percuss::{Ending, Kind, System, SystemError};
 use std::f64::consts::TAU;
 
 /// The most returns that a run may have.
-pub const MOST_RETURNS: u64 = 1_000_000_000;
+pub const MAX_RETURNS: u64 = 1_000_000_000;
 
-/// Times so close to a strobe, beside a forcing period, are it.
-const AT_STROBE: f64 = 1e-9;
+/// The distance from a strobe within which a time is taken for it, relative to the time and in
+/// forcing periods.
+const STROBE_TOLERANCE: f64 = 1e-9;
 
 /// The returns that a run is to be measured in.
 #[derive(Clone, Copy, Debug)]
@@ -193,7 +194,7 @@ impl WantedReturns<'_> {
     fn check_count(&self) -> Result<(), Uncounted> {
         let returns = self.left_out.saturating_add(self.wanted.unwrap_or(0));
         let whole = returns.saturating_mul(u64::from(self.every));
-        if whole > MOST_RETURNS { Err(Uncounted::TooMany(whole)) } else { Ok(()) }
+        if whole > MAX_RETURNS { Err(Uncounted::TooMany(whole)) } else { Ok(()) }
     }
 
     fn of_event(&self, system: &System, event: &str, mode: Option<&str>) -> EventReturns {
@@ -223,7 +224,7 @@ impl WantedReturns<'_> {
 fn strobe_at_or_before(time: f64, first: f64, period: f64) -> f64 {
     let turns = (time - first) / period;
     let nearest = turns.round();
-    let is_at_it = (turns - nearest).abs() <= AT_STROBE * turns.abs().max(1.0);
+    let is_at_it = (turns - nearest).abs() <= STROBE_TOLERANCE * turns.abs().max(1.0);
     first + if is_at_it { nearest } else { turns.floor() } * period
 }
 

@@ -3,13 +3,13 @@
 mod counted;
 
 pub use counted::{
-    CountedReturns, EventReturns, MOST_RETURNS, ReturnCount, Strobes, Uncounted, WantedReturns,
+    CountedReturns, EventReturns, MAX_RETURNS, ReturnCount, Strobes, Uncounted, WantedReturns,
 };
 
 use percuss::affine::{Exponents, NoOrbit, NoReturn, Place, SectionMap, SystemError};
 
 /// The most returns of the transient in which the directions of small changes are found.
-const SETTLING: u64 = 200;
+const MAX_SETTLING_RETURNS: u64 = 200;
 
 /// The exponents of the motion from a system's start, or why it does not return as often and how
 /// often it does. `told` hears of the number of returns that are passed.
@@ -22,7 +22,7 @@ pub fn exponents(
     returns: u64,
     told: &mut dyn FnMut(u64),
 ) -> Result<Result<Exponents, (NoReturn, u64)>, SystemError> {
-    let settling = transient.min(SETTLING);
+    let settling = transient.min(MAX_SETTLING_RETURNS);
     let mut before = map.returns(map.system().start()?)?;
     let mut passed = 0;
     // One more, because the run begins at a return.

@@ -14,7 +14,7 @@ pub struct Deal {
 }
 
 /// The fractional part of the golden ratio, in units of 2^-64.
-const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+const GOLDEN_FRACTION: u64 = 0x9E37_79B9_7F4A_7C15;
 
 impl Deal {
     /// Deals a number of tiles to at most as many shards.
@@ -45,7 +45,7 @@ const fn mixed(number: u64) -> u64 {
 /// The place of a number among some places, over which any numbers in a row are spread evenly: by
 /// the multiples of the golden ratio, without their integer parts.
 pub fn spread(number: u64, places: u32) -> u32 {
-    let share = number.wrapping_mul(GOLDEN);
+    let share = number.wrapping_mul(GOLDEN_FRACTION);
     ((u128::from(share) * u128::from(places)) >> 64) as u32
 }
 

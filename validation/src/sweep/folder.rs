@@ -11,9 +11,9 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// The file that says which plan and program the folder is of.
-const SWEEP: &str = "sweep.json";
+const SWEEP_FILE: &str = "sweep.json";
 /// The beginning of its temporary name.
-const OTHERS: &str = ".percuss-";
+const TEMPORARY_PREFIX: &str = ".percuss-";
 
 /// The program that computes. Programs that differ may differ in the last bits, which chaos
 /// amplifies, so one sweep is computed by one program.
@@ -83,15 +83,15 @@ impl Folder {
     /// Says whose they are, and what to do.
     pub fn check(&self, plan: &Plan) -> Result<bool> {
         let shown = self.path.display();
-        let text = match fs::read(self.path.join(SWEEP)) {
+        let text = match fs::read(self.path.join(SWEEP_FILE)) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
-            Err(error) => bail!("--out {shown}: {SWEEP} cannot be read ({error})"),
+            Err(error) => bail!("--out {shown}: {SWEEP_FILE} cannot be read ({error})"),
         };
         let owner: Owner = serde_json::from_slice(&text).map_err(|error| {
             anyhow!(
-                "--out {shown}: {SWEEP} is damaged ({error}); remove it, and run again: each shard \
-                 says itself what it is of"
+                "--out {shown}: {SWEEP_FILE} is damaged ({error}); remove it, and run again: each \
+                 shard says itself what it is of"
             )
         })?;
         if owner.plan != plan.hash {
@@ -117,14 +117,14 @@ impl Folder {
     /// # Errors
     /// What [`Folder::check`] refuses, and a folder that cannot be written.
     pub fn begin(&self, plan: &Plan) -> Result<()> {
-        let unwritable = |error| self.unwritable(SWEEP, &error);
+        let unwritable = |error| self.unwritable(SWEEP_FILE, &error);
         fs::create_dir_all(&self.path).map_err(unwritable)?;
         if self.check(plan)? {
             return Ok(());
         }
         let owner = Owner { schema: 1, plan: plan.hash.clone(), program: ComputedBy::this() };
         let text = serde_json::to_vec_pretty(&owner)?;
-        match self.put(SWEEP, OTHERS, &[&text], Unfinished::finish_new) {
+        match self.put(SWEEP_FILE, TEMPORARY_PREFIX, &[&text], Unfinished::finish_new) {
             // Another worker was first.
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {
                 self.check(plan)?;

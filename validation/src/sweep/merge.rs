@@ -20,15 +20,19 @@ use std::path::Path;
 #[derive(Debug)]
 pub struct NotMerged(Vec<(u32, Damage)>);
 
-/// Most shards that are named.
-const NAMED: usize = 10;
+/// The most shards that are named.
+const MAX_NAMED_SHARDS: usize = 10;
 
 impl std::error::Error for NotMerged {}
 
 impl fmt::Display for NotMerged {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let named = self.0.iter().take(NAMED).map(|(shard, why)| format!("shard {shard} is {why}"));
-        let more = self.0.len().saturating_sub(NAMED);
+        let named = self
+            .0
+            .iter()
+            .take(MAX_NAMED_SHARDS)
+            .map(|(shard, why)| format!("shard {shard} is {why}"));
+        let more = self.0.len().saturating_sub(MAX_NAMED_SHARDS);
         let more = if more > 0 { format!("; and {more} more") } else { String::new() };
         let named = named.collect::<Vec<_>>().join("; ");
         write!(f, "{named}{more}: sweep run with the same plan and folder computes what is missing")

@@ -10,21 +10,21 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Most points of a plan.
-const MOST_POINTS: u64 = 1 << 24;
-/// Most shards of a plan: each is a file in one folder.
-const MOST_SHARDS: u32 = 100_000;
+/// The most points of a plan.
+const MAX_POINTS: u64 = 1 << 24;
+/// The most shards of a plan: each is a file in one folder.
+const MAX_SHARDS: u32 = 100_000;
 
 /// Flags of a verb that say where and how it writes, which the sweep decides.
-const NOT_FIXED: [&str; 11] = [
+const OUTPUT_FLAGS: [&str; 11] = [
     "output", "format", "show", "range", "size", "dpi", "threads", "quiet", "color", "help",
     "version",
 ];
 
 /// Flags of a verb that are given once for each of their values.
-const REPEATED: [&str; 2] = ["set", "at"];
+const REPEATED_FLAGS: [&str; 2] = ["set", "at"];
 /// Flags of a verb that name a file, which counts by what is in it, wherever it lies.
-const FILES: [&str; 2] = ["problem", "start"];
+const FILE_FLAGS: [&str; 2] = ["problem", "start"];
 
 /// A plan as its file has it.
 #[derive(Clone, Debug, Deserialize)]
@@ -135,8 +135,8 @@ impl PlanFile {
     /// Checks all that can be checked without the verb.
     fn check(self, folder: &Path) -> Result<Plan> {
         let Self { sweep: PlanHead { verb, shards, first, system }, fixed, axis: axes } = self;
-        if !(1..=MOST_SHARDS).contains(&shards) {
-            bail!("shards = {shards} is not accepted: accepted are 1 to {MOST_SHARDS}");
+        if !(1..=MAX_SHARDS).contains(&shards) {
+            bail!("shards = {shards} is not accepted: accepted are 1 to {MAX_SHARDS}");
         }
         check_axes(&axes, &fixed)?;
         if system.is_none() {
@@ -183,10 +183,10 @@ impl PlanWords {
 
     /// Takes up an entry of `[fixed]`.
     fn fixed(&mut self, name: &str, value: &toml::Value, folder: &Path) -> Result<()> {
-        if NOT_FIXED.contains(&name) {
+        if OUTPUT_FLAGS.contains(&name) {
             bail!("[fixed] {name} is not accepted: the sweep decides where and how it writes");
         }
-        if let Some(name) = FILES.into_iter().find(|it| *it == name) {
+        if let Some(name) = FILE_FLAGS.into_iter().find(|it| *it == name) {
             let path = folder.join(value.as_str().unwrap_or_default());
             let read = fs::read_to_string(&path);
             let text = read.map_err(|error| anyhow!("[fixed] {name} {value}: {error}"))?;
@@ -197,7 +197,7 @@ impl PlanWords {
         match value {
             toml::Value::Boolean(true) => self.flags.push(format!("--{name}")),
             toml::Value::Boolean(false) => self.off.push(name.to_owned()),
-            value if REPEATED.contains(&name) => self.flags.extend(repeated(name, value)?),
+            value if REPEATED_FLAGS.contains(&name) => self.flags.extend(repeated(name, value)?),
             toml::Value::Array(values) => {
                 let texts: Result<Vec<_>> = values.iter().map(|it| plain(name, it)).collect();
                 self.flags.push(format!("--{name}={}", texts?.join(",")));
@@ -244,8 +244,8 @@ fn check_axes(axes: &[SweepAxis], fixed: &toml::Table) -> Result<()> {
         bail!("both axes are {}: accepted are two parameters", axes[0].parameter);
     }
     let points: u64 = axes.iter().map(|axis| u64::from(axis.steps)).product();
-    if points > MOST_POINTS {
-        bail!("the axes span {points} points: accepted are at most {MOST_POINTS}");
+    if points > MAX_POINTS {
+        bail!("the axes span {points} points: accepted are at most {MAX_POINTS}");
     }
     Ok(())
 }

@@ -10,10 +10,10 @@ use anyhow::{Result, bail};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
-/// Most tiles of a plan: every task and every merge holds what is known of each in memory.
-const MOST_TILES: u64 = 1 << 24;
+/// The most tiles of a plan: every task and every merge holds what is known of each in memory.
+const MAX_TILES: u64 = 1 << 24;
 /// The time between two looks at a shard that another process computes.
-const BETWEEN_LOOKS: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
 /// A sweep that is ready to be computed, looked at or merged.
 pub struct Sweep<'a> {
@@ -51,9 +51,9 @@ impl<'a> Sweep<'a> {
                 plan.shards
             );
         }
-        if tiles > MOST_TILES {
+        if tiles > MAX_TILES {
             bail!(
-                "the plan has {tiles} blocks of starts: accepted are at most {MOST_TILES}, by \
+                "the plan has {tiles} blocks of starts: accepted are at most {MAX_TILES}, by \
                  fewer points or smaller grids"
             );
         }
@@ -141,7 +141,7 @@ impl<'a> Sweep<'a> {
             if lock.is_ours() || begun.elapsed() >= patience {
                 return Ok(lock);
             }
-            std::thread::sleep(BETWEEN_LOOKS);
+            std::thread::sleep(POLL_INTERVAL);
         }
     }
 

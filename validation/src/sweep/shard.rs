@@ -51,10 +51,10 @@ pub enum Damage {
     Damaged(String),
 }
 
-/// Bytes of the checksum at the end: a line break, 64 digits, a line break.
-const CHECKSUM: u64 = 66;
-/// A longer first line is none.
-const LONGEST_HEAD: u64 = 1 << 30;
+/// The bytes of the checksum at the end: a line break, 64 digits, a line break.
+const CHECKSUM_BYTES: u64 = 66;
+/// The most bytes of the first line.
+const MAX_HEAD_BYTES: u64 = 1 << 30;
 
 impl fmt::Display for Damage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -105,7 +105,7 @@ impl Shard {
         let damaged = |why: &str| Damage::Damaged(why.to_owned());
         let file = File::open(folder.shard(shard))?;
         let length = file.metadata()?.len();
-        let body = length.checked_sub(CHECKSUM).ok_or_else(|| damaged("it is truncated"))?;
+        let body = length.checked_sub(CHECKSUM_BYTES).ok_or_else(|| damaged("it is truncated"))?;
         let mut file = BufReader::new(file);
         let mut hash = Sha256::new();
         io::copy(&mut (&mut file).take(body), &mut hash)?;
@@ -116,7 +116,7 @@ impl Shard {
         }
         file.rewind()?;
         let mut line = Vec::new();
-        (&mut file).take(LONGEST_HEAD.min(body)).read_until(b'\n', &mut line)?;
+        (&mut file).take(MAX_HEAD_BYTES.min(body)).read_until(b'\n', &mut line)?;
         let head: ShardHead = serde_json::from_slice(&line)
             .map_err(|error| Damage::Damaged(format!("its first line is none ({error})")))?;
         if head.identity != *identity {

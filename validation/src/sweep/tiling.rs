@@ -9,8 +9,8 @@ use super::verb::SweepVerb;
 use anyhow::{Context, Result, bail};
 use std::ops::Range;
 
-/// Most tiles of points that are not cut.
-const MOST: u64 = 1 << 16;
+/// The most tiles of points that are not cut.
+const MAX_WHOLE_TILES: u64 = 1 << 16;
 
 /// The tiles of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ impl Tiling {
     }
 
     fn of(points: u64, blocks: u32, shards: u32) -> Self {
-        let fit = points.div_ceil(MOST).min(points / u64::from(shards));
+        let fit = points.div_ceil(MAX_WHOLE_TILES).min(points / u64::from(shards));
         let together = if blocks == 1 { fit.max(1) } else { 1 };
         Self { points, blocks, together }
     }
@@ -103,7 +103,9 @@ mod tests {
             [(1, 1, 1), (65_537, 1, 1), (200_000, 1, 100_000), (1 << 24, 1, 7), (100, 200, 1000)]
         {
             let tiling = Tiling::of(points, blocks, shards);
-            let most = MOST.max(2 * u64::from(shards)).max(points.min(MOST) * u64::from(blocks));
+            let most = MAX_WHOLE_TILES
+                .max(2 * u64::from(shards))
+                .max(points.min(MAX_WHOLE_TILES) * u64::from(blocks));
             assert!(tiling.count() <= most && tiling.count() >= u64::from(shards), "{tiling:?}");
             let mut next = 0;
             for tile in (0..tiling.count()).step_by(blocks as usize) {

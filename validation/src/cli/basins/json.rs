@@ -68,10 +68,10 @@ pub(super) struct EntropyJson {
     boundary_boxes: u64,
 }
 
-/// Strobes that are written of an attractor that is no orbit.
-pub(super) const POINTS: usize = 1000;
+/// The most strobes that are written of an attractor that is no orbit.
+pub(super) const MAX_POINTS: usize = 1000;
 /// Cells along the side of a box of the basin entropy, as in its authors' paper.
-pub(super) const BOX: u32 = 5;
+pub(super) const BOX_CELLS: u32 = 5;
 
 impl Json {
     pub(in crate::cli) fn of(survey: &Survey) -> Self {
@@ -99,7 +99,7 @@ impl Json {
             unresolved: basins.fraction(Label::Unresolved),
             unresolved_examples: unresolved.iter().map(UnresolvedJson::of).collect(),
             uncertainty: UncertaintyJson::of(&uncertainty(basins)),
-            basin_entropy: EntropyJson::of(&entropy(basins, BOX)),
+            basin_entropy: EntropyJson::of(&entropy(basins, BOX_CELLS)),
         }
     }
 }
@@ -107,7 +107,8 @@ impl Json {
 impl AttractorJson {
     fn of(basins: &Basins, label: Label, attractor: &Attractor) -> Self {
         let points = &attractor.points;
-        let from = if attractor.orbit.is_some() { 0 } else { points.len().saturating_sub(POINTS) };
+        let from =
+            if attractor.orbit.is_some() { 0 } else { points.len().saturating_sub(MAX_POINTS) };
         Self {
             id: label.number(),
             kind: attractor.kind.as_str(),

@@ -11,7 +11,7 @@ use super::shared::long_work;
 use super::shared::model::ModelFlags;
 use super::shared::output::{Destination, json as write_json};
 use super::shared::outputs::{Outputs, OutputsFlags};
-use super::shared::parse::{self, MAX_TRANSIENT};
+use super::shared::parse::{self, MAX_TRANSIENT_PERIODS};
 use super::shared::picture::{PictureFormat, PrintFlags};
 use super::shared::plane::plane;
 use super::shared::section::{SectionFlags, without_system};
@@ -96,7 +96,7 @@ pub(super) struct GridFlags {
     window: Window,
     /// Forcing periods, with SYSTEM returns, that a start is followed before it is examined;
     /// doubled up to three times where that does not settle it, and cut short as soon as it does
-    #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_TRANSIENT), allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_TRANSIENT_PERIODS), allow_hyphen_values = true)]
     pub(super) transient: u64,
     /// Longest period of an orbit that is looked for, in forcing periods or returns, 1 to 10000
     #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true, default_value_t = MAX_PERIOD)]

@@ -78,7 +78,7 @@ enum Format {
 /// Rows that are held in memory.
 pub(super) const MAX_ROWS: u64 = 10_000_000;
 /// An SVG of more points is not small.
-const MAX_SVG: u64 = 20_000;
+const MAX_SVG_POINTS: u64 = 20_000;
 
 /// Writes the diagram; whether the motion was decided to its end at every value.
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
@@ -105,7 +105,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
 
 /// The most rows, or points of a picture.
 fn most_rows(outputs: &Outputs<Format>) -> u64 {
-    if outputs.any(|it| it == Format::Svg) { MAX_SVG } else { MAX_ROWS }
+    if outputs.any(|it| it == Format::Svg) { MAX_SVG_POINTS } else { MAX_ROWS }
 }
 
 impl Arguments {

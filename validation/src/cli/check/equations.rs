@@ -7,8 +7,8 @@ use percuss::System;
 use percuss::affine::{Rational, Row, Successor, Until, is_unit};
 use std::fmt::Write;
 
-/// A fraction that is longer than this is printed as the nearest f64.
-const LONGEST_FRACTION: usize = 9;
+/// The most characters of a fraction; a longer one is printed as the nearest f64.
+const MAX_FRACTION_CHARACTERS: usize = 9;
 
 /// A system with the texts of its file.
 pub(super) struct Equations<'a> {
@@ -215,7 +215,7 @@ fn form(factors: &[Rational], names: &[String]) -> String {
 /// A number as a fraction where that is short, or else as the nearest f64.
 fn number(exact: &Rational) -> String {
     let fraction = exact.to_string();
-    if fraction.len() <= LONGEST_FRACTION { fraction } else { shortest(exact.to_f64()) }
+    if fraction.len() <= MAX_FRACTION_CHARACTERS { fraction } else { shortest(exact.to_f64()) }
 }
 
 #[cfg(test)]

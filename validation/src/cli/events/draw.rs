@@ -12,7 +12,7 @@ use percuss::{Event, Kind, Proved};
 use std::io::Write;
 
 /// A picture of more events than this shows nothing.
-const MOST_DRAWN: usize = 20_000;
+const MAX_DRAWN_EVENTS: usize = 20_000;
 
 /// The indices of the states that `--states` names, or of the first ones.
 pub(super) fn shown(system: &System, states: Option<&str>) -> Result<Vec<usize>> {
@@ -69,10 +69,10 @@ pub(super) struct Drawn<'a> {
 
 impl Sink for Drawn<'_> {
     fn passed(&mut self, event: &Event<'_, Proved>) -> Result<()> {
-        if self.run.len() > MOST_DRAWN {
+        if self.run.len() > MAX_DRAWN_EVENTS {
             bail!(
-                "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format \
-                 of csv or json is, or a shorter run"
+                "a picture of more than {MAX_DRAWN_EVENTS} events is not accepted: --output or \
+                 --format of csv or json is, or a shorter run"
             );
         }
         self.run.push(in_106_bits(event));

@@ -43,7 +43,7 @@ impl Rows<'_> {
 /// The two times, after the last impact, between which infinitely many impacts accumulate.
 fn accumulation(last: &Event<'_, Proved>) -> Option<Accumulation> {
     /// The digits of each end, which is rounded away from the other.
-    const DIGITS: u8 = 30;
+    const END_DIGITS: u8 = 30;
     let [earliest, latest] = last.accumulation()?;
-    Some(Accumulation { earliest: earliest.lower(DIGITS)?, latest: latest.upper(DIGITS)? })
+    Some(Accumulation { earliest: earliest.lower(END_DIGITS)?, latest: latest.upper(END_DIGITS)? })
 }

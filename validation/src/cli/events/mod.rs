@@ -26,11 +26,11 @@ use rows::{Limits, Rows};
 use std::path::PathBuf;
 
 /// The most bits that a run may take.
-const MOST_BITS: u32 = BITS[BITS.len() - 1];
+const MAX_BITS: u32 = BITS[BITS.len() - 1];
 
 /// The number of events after which a run is stopped, where neither --events nor --max-events is
 /// given.
-const USUAL_MAX_EVENTS: usize = 1_000_000;
+const DEFAULT_MAX_EVENTS: usize = 1_000_000;
 
 /// Print the events of a piecewise-affine system, every digit of them proved
 ///
@@ -63,7 +63,7 @@ pub(super) struct Arguments {
     max_events: Option<usize>,
     /// The most bits that a run may take: it begins with 106 and takes twice as many where these
     /// do not decide or have too few digits [default: 3392]
-    #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(u64::from(BITS[0]), u64::from(MOST_BITS)), allow_hyphen_values = true)]
+    #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(u64::from(BITS[0]), u64::from(MAX_BITS)), allow_hyphen_values = true)]
     max_bits: Option<u32>,
     /// Runs back in time
     #[arg(long)]
@@ -102,7 +102,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         solver: &solver,
         digits: if arguments.digits.as_deref() == Some("25") { 25 } else { 17 },
         limits,
-        most_bits: arguments.max_bits.unwrap_or(MOST_BITS),
+        most_bits: arguments.max_bits.unwrap_or(MAX_BITS),
         samples: arguments.samples,
         bar: bar.as_ref(),
     };
@@ -122,7 +122,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
 /// The limits of a run that begins at a time.
 fn limits(arguments: &Arguments, system: &System, time: f64) -> Result<Limits> {
     let until = horizon(arguments.until.as_ref(), system, time, arguments.backward)?;
-    let usual = arguments.events.is_none().then_some(USUAL_MAX_EVENTS);
+    let usual = arguments.events.is_none().then_some(DEFAULT_MAX_EVENTS);
     Ok(Limits { until, events: arguments.events, most: arguments.max_events.or(usual) })
 }
 

@@ -8,10 +8,10 @@ use percuss::{Event, Proved, Run, Solver, System};
 use serde::Serialize;
 
 /// The number of rows between two updates of the progress bar.
-const RARELY: usize = 64;
+const ROWS_PER_UPDATE: usize = 64;
 
-/// A time of fewer digits is said to have few.
-const FEW: usize = 6;
+/// The number of digits below which a time is said to have few.
+const FEW_DIGITS: usize = 6;
 
 /// The system, limits and digits of a run.
 pub(super) struct Rows<'a> {
@@ -147,7 +147,7 @@ impl<'a> Rows<'a> {
             return true;
         }
         let count = passed.count;
-        let Some(digits) = event.time().digits(FEW) else { return true };
+        let Some(digits) = event.time().digits(FEW_DIGITS) else { return true };
         if digits == 0 {
             end.notes.push(format!(
                 "after {} events no digit of the time is left: the run ends there",
@@ -155,11 +155,11 @@ impl<'a> Rows<'a> {
             ));
             return false;
         }
-        if !passed.few_digits && digits < FEW {
+        if !passed.few_digits && digits < FEW_DIGITS {
             passed.few_digits = true;
             let time = self.time(event);
             end.notes.push(format!(
-                "from event {count} on, at {time}, the time has fewer than {FEW} digits"
+                "from event {count} on, at {time}, the time has fewer than {FEW_DIGITS} digits"
             ));
         }
         true
@@ -167,7 +167,7 @@ impl<'a> Rows<'a> {
 
     /// Shows the share of the run that is done: of its time, or of its events where that is more.
     fn show_progress(&self, event: &Event<'_, Proved>, count: usize) {
-        let Some(bar) = self.bar.filter(|_| count.is_multiple_of(RARELY)) else { return };
+        let Some(bar) = self.bar.filter(|_| count.is_multiple_of(ROWS_PER_UPDATE)) else { return };
         let start = self.system.start.as_ref().map_or(0.0, |it| it.time.to_f64());
         let Limits { until, events, most } = self.limits;
         let of_time = (event.time().midpoint() - start) / (until - start);

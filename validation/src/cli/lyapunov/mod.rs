@@ -141,16 +141,17 @@ fn tell_errors(transient: u64, periods: u64, stationarity: Stationarity) {
             "the motion changes on the way: the means of its batches differ before and after \
              {after} of {periods} forcing periods; --transient {settled} leaves that out"
         ));
-    } else if periods < SHORT {
+    } else if periods < MIN_PERIODS {
         note(&format!(
-            "standard errors hold from {SHORT} forcing periods on: here they are of the right order \
-             only"
+            "standard errors hold from {MIN_PERIODS} forcing periods on: here they are of the right \
+             order only"
         ));
     }
 }
 
-/// Runs of fewer forcing periods have errors of the right order only.
-const SHORT: u64 = LEAST_COUNT * LEAST_LENGTH;
+/// The forcing periods from which on standard errors hold; those of shorter runs are of the right
+/// order only.
+const MIN_PERIODS: u64 = LEAST_COUNT * LEAST_LENGTH;
 
 /// The next number with at most two digits that are not zero.
 fn rounded_up(number: u64) -> u64 {

@@ -4,7 +4,7 @@ use super::{Arguments, stationary};
 use crate::cli::note;
 use crate::cli::shared::drift;
 use crate::cli::shared::long_work;
-use crate::cli::shared::section::{RARELY, tell_no_return, tell_undecidable};
+use crate::cli::shared::section::{RETURNS_PER_UPDATE, tell_no_return, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::returns;
 use anyhow::Result;
@@ -61,7 +61,7 @@ fn exponents(
 ) -> Result<Result<Exponents, (NoReturn, u64)>> {
     let bar = long_work::share_bar();
     let found = returns::exponents(map, transient, returns, &mut |passed| {
-        if passed.is_multiple_of(RARELY) {
+        if passed.is_multiple_of(RETURNS_PER_UPDATE) {
             bar.show_share(passed as f64 / (transient + returns) as f64);
         }
     });

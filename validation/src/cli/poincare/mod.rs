@@ -70,16 +70,16 @@ enum Format {
 }
 
 /// A picture of more points shows no more.
-const MAX_PICTURE: u64 = 5_000_000;
+const MAX_PICTURE_POINTS: u64 = 5_000_000;
 /// An SVG of more points is not small.
-const MAX_SVG: u64 = 20_000;
+const MAX_SVG_POINTS: u64 = 20_000;
 
 /// Refuses a picture of more points than show anything, or than stay small.
 fn check_size(outputs: &Outputs<Format>, flag: &str, count: u64) -> Result<()> {
     let is_picture = outputs.any(|it| PictureFormat::of(it).is_some());
     for (is_drawn, most, kind) in [
-        (is_picture, MAX_PICTURE, "a picture"),
-        (outputs.any(|it| it == Format::Svg), MAX_SVG, "svg"),
+        (is_picture, MAX_PICTURE_POINTS, "a picture"),
+        (outputs.any(|it| it == Format::Svg), MAX_SVG_POINTS, "svg"),
     ] {
         if is_drawn && count > most {
             bail!("{flag} {count} is not accepted for {kind}: at most {most}");

@@ -7,7 +7,7 @@ use crate::cli::shared::output::Opened;
 use crate::cli::shared::outputs::Outputs;
 use crate::cli::shared::picture::{PictureFormat, Shown, place};
 use crate::cli::shared::run_arrays::Arrays;
-use crate::cli::shared::section::{RARELY, tell_no_return, tell_undecidable};
+use crate::cli::shared::section::{RETURNS_PER_UPDATE, tell_no_return, tell_undecidable};
 use crate::cli::shared::system_choice::ChosenSystem;
 use crate::number::shortest;
 use crate::picture::Figure;
@@ -37,7 +37,7 @@ pub(super) fn run(
     let all = arguments.transient + count;
     let passed = returns.by_ref().take(all as usize).map_while(|it| {
         seen += 1;
-        if let Some(bar) = bar.as_ref().filter(|_| seen % RARELY == 0) {
+        if let Some(bar) = bar.as_ref().filter(|_| seen % RETURNS_PER_UPDATE == 0) {
             bar.show_share(seen as f64 / all as f64);
         }
         end = it.as_ref().err().copied();

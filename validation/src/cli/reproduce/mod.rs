@@ -38,12 +38,12 @@ pub(super) struct Arguments {
 }
 
 /// The item whose grids have two sizes.
-const SIZED: &str = "figure-7";
+const SIZED_ITEM: &str = "figure-7";
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let chosen = chosen(&arguments.only)?;
-    if arguments.size.is_some() && !chosen.iter().any(|item| item.id == SIZED) {
-        bail!("--size has no effect on what --only names: it is accepted with {SIZED}");
+    if arguments.size.is_some() && !chosen.iter().any(|item| item.id == SIZED_ITEM) {
+        bail!("--size has no effect on what --only names: it is accepted with {SIZED_ITEM}");
     }
     let size = arguments.size.unwrap_or(Size::Default);
     make_folder(&arguments.out)?;

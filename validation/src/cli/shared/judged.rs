@@ -78,8 +78,8 @@ enum Format {
     Json,
 }
 
-/// With at most this many cases the rows are printed too.
-const FEW_CASES: usize = 3;
+/// The most cases whose rows are printed too.
+const MAX_CASES_WITH_ROWS: usize = 3;
 
 impl CaseFlags {
     /// The cases that are chosen; none where patterns match only `others`, which are judged by
@@ -263,7 +263,8 @@ impl JudgedFlags {
             reports::write(report, evidence, folder)?;
         }
         reports::annotate(report, evidence, self.require);
-        let parts = ScreenParts { rows: self.rows || cases <= FEW_CASES, details: self.details };
+        let parts =
+            ScreenParts { rows: self.rows || cases <= MAX_CASES_WITH_ROWS, details: self.details };
         let text = match self.format {
             Format::Table => screen(report, evidence, parts),
             Format::Markdown => ranking_text(report, RankingFormat::Markdown)?,

@@ -28,16 +28,16 @@ pub(in crate::cli) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool> {
 }
 
 /// Work that is done sooner shows no progress.
-const PATIENCE: Duration = Duration::from_secs(2);
+const SILENT_TIME: Duration = Duration::from_secs(2);
 
 /// The time between two lines about work, where stderr is no terminal.
-const BETWEEN_LINES: Duration = Duration::from_secs(30);
+const LINE_INTERVAL: Duration = Duration::from_secs(30);
 
 /// Progress on stderr with the time to go: of work that takes long, unless `--quiet` was given. A
 /// terminal has a bar, anything else a line now and then.
 pub(in crate::cli) struct Bar {
     bar: ProgressBar,
-    /// Ends the wait for [`PATIENCE`], or for the next line.
+    /// Ends the wait for [`SILENT_TIME`], or for the next line.
     waiting: Mutex<Option<Sender<()>>>,
 }
 
@@ -53,7 +53,7 @@ impl Bar {
         };
         bar.set_draw_target(ProgressDrawTarget::hidden());
         let told = |bar: ProgressBar| {
-            told_every(BETWEEN_LINES, move || note(&line(&done(&bar), bar.elapsed(), bar.eta())))
+            told_every(LINE_INTERVAL, move || note(&line(&done(&bar), bar.elapsed(), bar.eta())))
         };
         let waiting = (!is_quiet()).then(|| match io::stderr().is_terminal() {
             true => shown_later(bar.clone()),
@@ -74,7 +74,7 @@ impl Bar {
 
     /// Shows the share of the work that is done, 0 to 1.
     pub(in crate::cli) fn show_share(&self, share: f64) {
-        self.bar.set_position((share * SHARES) as u64);
+        self.bar.set_position((share * SHARE_STEPS) as u64);
     }
 
     /// Removes the bar from the terminal, or says no more lines.
@@ -94,7 +94,7 @@ impl Drop for Bar {
 fn shown_later(bar: ProgressBar) -> Sender<()> {
     let (waiting, done) = channel();
     std::thread::spawn(move || {
-        if done.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+        if done.recv_timeout(SILENT_TIME) == Err(RecvTimeoutError::Timeout) {
             bar.set_draw_target(ProgressDrawTarget::stderr());
             // Moves while a long step is under way.
             bar.enable_steady_tick(Duration::from_millis(200));
@@ -134,12 +134,12 @@ pub(in crate::cli) fn bar(length: u64, unit: &'static str) -> Bar {
 }
 
 /// Steps of a bar for a share.
-const SHARES: f64 = 1000.0;
+const SHARE_STEPS: f64 = 1000.0;
 
 /// A bar for a share of 0 to 1.
 pub(in crate::cli) fn share_bar() -> Bar {
-    let done = |bar: &ProgressBar| format!("{} %", bar.position() * 100 / SHARES as u64);
-    Bar::new(ProgressBar::new(SHARES as u64), "{bar:40} {percent} %, {eta} to go", done)
+    let done = |bar: &ProgressBar| format!("{} %", bar.position() * 100 / SHARE_STEPS as u64);
+    Bar::new(ProgressBar::new(SHARE_STEPS as u64), "{bar:40} {percent} %, {eta} to go", done)
 }
 
 /// A bar for a run of one motion, from its start to its horizon; none where its rows appear on the

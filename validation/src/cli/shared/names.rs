@@ -7,9 +7,9 @@ use std::path::Path;
 use strsim::normalized_damerau_levenshtein;
 
 /// A name less similar than this is no help.
-const LEAST: f64 = 0.5;
-/// The number of names that are shown.
-const SHOWN: usize = 3;
+const MIN_SIMILARITY: f64 = 0.5;
+/// The most names that are suggested.
+const MAX_SUGGESTIONS: usize = 3;
 
 /// A flag that selects things by patterns on their names.
 pub(in crate::cli) struct Selection<'a> {
@@ -21,8 +21,8 @@ pub(in crate::cli) struct Selection<'a> {
     pub(in crate::cli) listed: &'a str,
 }
 
-/// At most this many names of a user's own are all shown.
-const FEW_OWN: usize = 8;
+/// The most names of a user's own that are all shown.
+const MAX_LISTED_OWN: usize = 8;
 
 /// `--case`, of the cases inside the binary.
 pub(in crate::cli) const CASES: Selection<'_> =
@@ -36,7 +36,7 @@ pub(in crate::cli) fn held_by(folder: &Path, names: &[&str]) -> String {
     let folder = folder.display();
     match names {
         [] => format!("{folder} holds none"),
-        few if few.len() <= FEW_OWN => format!("{folder} holds {}", few.join(", ")),
+        few if few.len() <= MAX_LISTED_OWN => format!("{folder} holds {}", few.join(", ")),
         [first, .., last] => format!("{folder} holds {} from {first} to {last}", names.len()),
         [one] => format!("{folder} holds {one}"),
     }
@@ -83,10 +83,10 @@ pub(in crate::cli) fn nearest<'n>(
     let mut scored: Vec<(f64, f64, &str)> = names
         .into_iter()
         .map(|name| (likeness(&plain, name), normalized_damerau_levenshtein(&plain, name), name))
-        .filter(|it| it.0 >= LEAST)
+        .filter(|it| it.0 >= MIN_SIMILARITY)
         .collect();
     scored.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1)));
-    scored.into_iter().take(SHOWN).map(|it| it.2).collect()
+    scored.into_iter().take(MAX_SUGGESTIONS).map(|it| it.2).collect()
 }
 
 /// How like `typed` the most similar run of a name's parts is, from 0 to 1.

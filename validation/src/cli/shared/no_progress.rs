@@ -6,10 +6,10 @@ use percuss::affine::{Rational, Row, System, Until, is_unit};
 use std::collections::VecDeque;
 
 /// The largest number of events that are named.
-const MOST_NAMED: usize = 6;
+const MAX_NAMED_EVENTS: usize = 6;
 
 /// The number of `until` events in one instant that ends a run, and that are kept to name them.
-const AT_ONCE: usize = 64;
+const MAX_SIMULTANEOUS_EVENTS: usize = 64;
 
 /// An `until` of a mode by its index, with the mode that it begins.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,7 +27,7 @@ impl LastTurns {
     /// Keeps an event, where it is an `until`, with the mode that it begins.
     pub(in crate::cli) fn add(&mut self, kind: Kind, next: usize) {
         if let Kind::Until(mode, until) = kind {
-            self.0.truncate(AT_ONCE - 1);
+            self.0.truncate(MAX_SIMULTANEOUS_EVENTS - 1);
             self.0.push_front(Turned { mode, until, next });
         }
     }
@@ -44,7 +44,7 @@ struct Turn<'a> {
 pub(super) fn note(system: &System, last: &LastTurns) -> String {
     let turns = turns(system, &last.0);
     let name = |mode: usize| &system.modes[mode].name;
-    let named = turns.iter().take(MOST_NAMED).map(|turn| {
+    let named = turns.iter().take(MAX_NAMED_EVENTS).map(|turn| {
         let Turn { until, mode, next } = turn;
         if mode == next {
             format!("\"{}\" (in {})", until.name, name(*mode))
@@ -54,9 +54,11 @@ pub(super) fn note(system: &System, last: &LastTurns) -> String {
     });
     let (named, all) = (named.collect::<Vec<_>>().join(", "), turns.len());
     match all {
-        1 => format!("{AT_ONCE} events fall on one instant, all of them {named}"),
-        2..=MOST_NAMED => format!("{AT_ONCE} events fall on one instant, in turn {named}"),
-        _ => format!("{AT_ONCE} events fall on one instant, among them {named}"),
+        1 => format!("{MAX_SIMULTANEOUS_EVENTS} events fall on one instant, all of them {named}"),
+        2..=MAX_NAMED_EVENTS => {
+            format!("{MAX_SIMULTANEOUS_EVENTS} events fall on one instant, in turn {named}")
+        }
+        _ => format!("{MAX_SIMULTANEOUS_EVENTS} events fall on one instant, among them {named}"),
     }
 }
 

@@ -13,7 +13,7 @@ pub(in crate::cli) const MAX_PERIODS: u64 = 1_000_000_000;
 
 /// The longest transient of a grid's starts, in forcing periods: with its extensions fifteen times
 /// that.
-pub(in crate::cli) const MAX_TRANSIENT: u64 = 10_000_000;
+pub(in crate::cli) const MAX_TRANSIENT_PERIODS: u64 = 10_000_000;
 
 /// Most cells of a grid of starts.
 const MAX_CELLS: u64 = 1 << 24;
@@ -67,13 +67,13 @@ pub(in crate::cli) fn time(text: &str) -> Result<Typed<f64>, String> {
 }
 
 /// Integers up to this size, 2^53, are the same as doubles.
-const EXACT: f64 = 9_007_199_254_740_992.0;
+const MAX_EXACT_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// An integer, in digits or with an exponent as 1e6.
 fn integer(text: &str) -> Option<i64> {
     let exponent = |text: &str| {
         let value: f64 = text.parse().ok().filter(|_| text.contains(['e', 'E']))?;
-        (value.fract() == 0.0 && value.abs() <= EXACT).then_some(value as i64)
+        (value.fract() == 0.0 && value.abs() <= MAX_EXACT_INTEGER).then_some(value as i64)
     };
     text.parse().ok().or_else(|| exponent(text))
 }

@@ -5,7 +5,7 @@ use percuss::Instant;
 use std::cell::Cell;
 
 /// The number of phases or rows between two updates of the bar.
-const RARELY: u64 = 256;
+const PHASES_PER_UPDATE: u64 = 256;
 
 /// A bar that is moved now and then.
 pub(in crate::cli) struct Progress {
@@ -38,7 +38,7 @@ impl Progress {
         let Some(bar) = &self.bar else { return };
         let calls = self.calls.get();
         self.calls.set(calls + 1);
-        if calls.is_multiple_of(RARELY) {
+        if calls.is_multiple_of(PHASES_PER_UPDATE) {
             let share = instant.since(&self.start, self.omega).value() / self.span;
             bar.show_share(share.max(done).clamp(0.0, 1.0));
         }

@@ -1,14 +1,14 @@
 //! The section of a SYSTEM's motions at which verbs of the dynamics look.
 
 use super::parse::{self, SectionChoice, Typed};
-use super::system_choice::AFTER_SYSTEM;
+use super::system_choice::FLAG_PLACE;
 use super::terminal::note;
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use percuss::affine::{NoReturn, Section, SectionMap, Solver};
 
 /// The number of returns between two updates of a progress bar.
-pub(in crate::cli) const RARELY: u64 = 64;
+pub(in crate::cli) const RETURNS_PER_UPDATE: u64 = 64;
 
 /// Flags for the returns to a section: every N-th alone, and the longest wait for one.
 #[derive(Args, Clone, Debug)]
@@ -115,7 +115,7 @@ impl ReturnFlags {
 
 /// The line that refuses a flag of a system where none is chosen.
 pub(in crate::cli) fn without_system(flag: &str, value: &dyn std::fmt::Display) -> String {
-    format!("{flag} {value} is not accepted without SYSTEM: {AFTER_SYSTEM}")
+    format!("{flag} {value} is not accepted without SYSTEM: {FLAG_PLACE}")
 }
 
 /// Says that a motion has not returned as often as was asked; whether the model says so, and not

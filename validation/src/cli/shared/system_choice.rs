@@ -14,7 +14,7 @@ use percuss::affine::{SystemError, SystemFile};
 use std::path::{Path, PathBuf};
 
 /// The place in which a flag of SYSTEM is accepted.
-pub(in crate::cli) const AFTER_SYSTEM: &str =
+pub(in crate::cli) const FLAG_PLACE: &str =
     "accepted is it after a *.system.toml, or a name that percuss systems prints";
 
 /// SYSTEM, for verbs that mean the impact oscillator without it.
@@ -117,7 +117,7 @@ impl SystemFlags {
         let at = self.at.first().map(|[name, value]| format!("--at {name}={value}"));
         let mode = self.mode.as_ref().map(|it| format!("--mode {it}"));
         match set.or(start).or(at).or(mode) {
-            Some(flag) => bail!("{flag} has no effect without SYSTEM: {AFTER_SYSTEM}"),
+            Some(flag) => bail!("{flag} has no effect without SYSTEM: {FLAG_PLACE}"),
             None => Ok(()),
         }
     }

@@ -11,7 +11,7 @@ use percuss::{Endless, Exit, Instant, Segment, Trajectory};
 
 /// Forcing periods after which a run that counts events stops, where `--max-periods` is not
 /// given.
-const USUAL_MAX_PERIODS: u64 = 1_000_000;
+const DEFAULT_MAX_PERIODS: u64 = 1_000_000;
 
 /// A picture of more forcing periods than this shows nothing.
 const MAX_PICTURE_PERIODS: f64 = 5000.0;
@@ -31,7 +31,7 @@ impl PlannedRun {
     pub(super) fn new(problem: Problem, arguments: &Arguments, bar: Option<Bar>) -> Result<Self> {
         let start = problem.entry.instant;
         let periods = |count| start.after_periods(count, 1);
-        let max_periods = arguments.max_periods.unwrap_or(USUAL_MAX_PERIODS);
+        let max_periods = arguments.max_periods.unwrap_or(DEFAULT_MAX_PERIODS);
         let horizon = match (arguments.periods, &arguments.until) {
             (Some(count), _) => periods(count),
             (None, Some(tau)) => until(&problem, tau)?,

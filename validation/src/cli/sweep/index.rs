@@ -15,7 +15,7 @@ const VARIABLES: [(&str, u32); 4] =
 const RANKS: [&str; 4] = ["OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID"];
 
 /// The value that Grid Engine sets outside arrays.
-const UNDEFINED: &str = "undefined";
+const UNDEFINED_VALUE: &str = "undefined";
 
 /// The shard that the first variable that is set says; none where none is.
 ///
@@ -26,7 +26,7 @@ pub(super) fn of_task(
     variable: impl Fn(&str) -> Option<String>,
 ) -> Result<Option<u32>> {
     let set = |(name, first): (&'static str, u32)| {
-        let value = variable(name).filter(|it| !it.is_empty() && it != UNDEFINED)?;
+        let value = variable(name).filter(|it| !it.is_empty() && it != UNDEFINED_VALUE)?;
         Some((name, plan.first.unwrap_or(first), value))
     };
     let Some((name, first, value)) = VARIABLES.into_iter().find_map(set) else { return Ok(None) };

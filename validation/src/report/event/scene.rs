@@ -4,10 +4,10 @@ use super::{EventMark, View, ViewTrajectory};
 use crate::suite::first_wrong::view_instants;
 
 /// Marks of steps and looks nearer to each other than this share of a view are shown as one.
-const APART: f64 = 1.0 / 120.0;
-/// The engine's error hides the truth's shape where it is larger than this share of the truth's
-/// range.
-const HIDDEN: f64 = 0.6;
+const MIN_MARK_DISTANCE: f64 = 1.0 / 120.0;
+/// The largest share of the truth's range that the engine's error may be: a larger one hides the
+/// truth's shape.
+const MAX_ERROR_SHARE: f64 = 0.6;
 
 /// The data of all views of one event, for any system.
 pub(super) struct Scene {
@@ -36,7 +36,7 @@ impl Scene {
         let since = |t: f64| t - self.at;
         let inside = |t: &f64| from <= *t && *t <= to;
         let mut steps: Vec<f64> = self.steps.iter().copied().filter(inside).map(since).collect();
-        steps.dedup_by(|next, kept| *next - *kept < APART * (to - from));
+        steps.dedup_by(|next, kept| *next - *kept < MIN_MARK_DISTANCE * (to - from));
         View {
             from: since(from),
             to: since(to),
@@ -69,7 +69,7 @@ impl Scene {
     fn looks(&self, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
         let inside = |look: &&[f64; 2]| from <= look[0] && look[0] <= to;
         let mut looks: Vec<_> = self.looks.iter().filter(inside).copied().collect();
-        looks.dedup_by(|next, kept| next[0] - kept[0] < APART * (to - from));
+        looks.dedup_by(|next, kept| next[0] - kept[0] < MIN_MARK_DISTANCE * (to - from));
         looks.iter().map(|[t, value]| [t - self.at, *value]).collect()
     }
 }
@@ -92,7 +92,7 @@ pub(super) fn telling(views: &[View]) -> usize {
         };
         let pairs = view.truth.values.iter().zip(&view.engine.values);
         let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        apart <= HIDDEN * range(&view.truth.values)
+        apart <= MAX_ERROR_SHARE * range(&view.truth.values)
     };
     views.iter().rposition(shows).unwrap_or(0).max(usize::from(views.len() > 1))
 }

@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
 /// Points of a section that are drawn; a page stays quick with that many.
-const MOST_POINTS: usize = 6000;
+const MAX_POINTS: usize = 6000;
 
 /// The page's data, fit to stand inside a script element.
 pub(super) fn json(
@@ -176,7 +176,7 @@ fn in_words(quantity: &str) -> &str {
 
 fn section(pair: &super::super::SectionPair) -> Value {
     let thinned = |points: &[[f64; 2]]| {
-        let stride = points.len().div_ceil(MOST_POINTS).max(1);
+        let stride = points.len().div_ceil(MAX_POINTS).max(1);
         rounded(json!(points.iter().step_by(stride).collect::<Vec<_>>()))
     };
     json!({

@@ -46,7 +46,7 @@ pub(super) fn ranked(report: &Report, looks: &[Look]) -> Vec<RankedLine> {
 fn ranked_line(report: &Report, looks: &[Look], it: &Ranked) -> RankedLine {
     let place = report.engines.iter().position(|engine| engine.name == it.engine);
     let look = place.and_then(|place| looks.get(place));
-    let shown = |value: Option<f64>| value.map_or(NOTHING.to_owned(), figure);
+    let shown = |value: Option<f64>| value.map_or(DASH.to_owned(), figure);
     RankedLine {
         place: place.unwrap_or(0),
         rank: it.shown_rank().map_or(String::new(), |rank| rank.to_string()),
@@ -64,7 +64,7 @@ fn ranked_line(report: &Report, looks: &[Look], it: &Ranked) -> RankedLine {
         cost: [
             shown(it.cost.area),
             shown(it.cost.within_twice),
-            it.cost.rhs_per_event.map_or(NOTHING.to_owned(), count),
+            it.cost.rhs_per_event.map_or(DASH.to_owned(), count),
         ],
         fails: it.fails_on.clone(),
     }
@@ -92,7 +92,8 @@ fn bars(it: &Ranked) -> Vec<RightBar> {
     it.cases_right.0.iter().zip(&it.cases_total.0).map(bar).collect()
 }
 
-const NOTHING: &str = "\u{2013}";
+/// The sign in place of a figure that was not measured.
+const DASH: &str = "\u{2013}";
 
 /// The valid horizons of one row, as the page shows them.
 pub(super) struct HorizonLine {

@@ -3,8 +3,8 @@
 
 use super::super::{CASES_FLAG, CaseNote, OSCILLATOR, Report, ReportEvidence};
 
-/// More systems, or cases, than these are counted instead of named.
-const FEW_NAMES: usize = 6;
+/// The most systems, or cases, that are named instead of counted.
+const MAX_NAMES: usize = 6;
 
 /// The texts of the page on the cases as a whole.
 pub(super) struct ReportScope {
@@ -58,7 +58,7 @@ fn lead(report: &Report, (oscillator, systems): (bool, &[&CaseNote]), own: bool)
     let others = match names[..] {
         [] => None,
         [name] => Some(format!("the system {name}")),
-        _ if own && names.len() <= FEW_NAMES => Some(format!("the systems {}", names.join(", "))),
+        _ if own && names.len() <= MAX_NAMES => Some(format!("the systems {}", names.join(", "))),
         _ if oscillator && !own => Some("other systems".to_owned()),
         _ => Some(format!("{} piecewise-affine systems", names.len())),
     };
@@ -80,7 +80,7 @@ fn counted(count: usize, of: &str) -> String {
 
 /// Names, or how many of what they are.
 fn named(names: &[String], what: &str) -> String {
-    if names.len() <= FEW_NAMES { names.join(", ") } else { counted(names.len(), what) }
+    if names.len() <= MAX_NAMES { names.join(", ") } else { counted(names.len(), what) }
 }
 
 const TABLES: &str = "Tables of events and states with 25 proved digits, made once in ball \
@@ -112,7 +112,7 @@ fn truth(evidence: &ReportEvidence) -> String {
 fn states(systems: &[&CaseNote]) -> String {
     match systems {
         [only] => named(&only.states, "state"),
-        few if few.len() <= FEW_NAMES => {
+        few if few.len() <= MAX_NAMES => {
             let of = |it: &&CaseNote| format!("{}: {}", it.system, named(&it.states, "state"));
             few.iter().map(of).collect::<Vec<_>>().join("; ")
         }

@@ -10,7 +10,7 @@ use crate::score::Verdict;
 use std::fmt::Write;
 
 /// Failures shown at the top; all are in the table.
-const MOST_FAILURES: usize = 30;
+const MAX_FAILURES: usize = 30;
 
 pub(super) struct EngineLine {
     pub place: usize,
@@ -174,8 +174,8 @@ pub(super) fn failures(report: &Report) -> (Vec<FailureView>, usize) {
             why: row.why.clone(),
         })
         .collect();
-    let more = all.len().saturating_sub(MOST_FAILURES);
-    (all.into_iter().take(MOST_FAILURES).collect(), more)
+    let more = all.len().saturating_sub(MAX_FAILURES);
+    (all.into_iter().take(MAX_FAILURES).collect(), more)
 }
 
 /// Margins, and engines with one cell per margin: class, glyph and title of each setting.

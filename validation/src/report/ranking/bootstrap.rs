@@ -9,9 +9,9 @@ const DRAWS: usize = 2000;
 /// The seed, so that a ranking is the same in every run.
 const SEED: u64 = 2004;
 /// One engine is better than another if at most one draw in this many says otherwise: 2.5 %.
-const ONE_IN: usize = 40;
+const DRAWS_PER_CONTRARY: usize = 40;
 /// Differences of means below this are rounding.
-const ROUNDING: f64 = 1e-9;
+const MEAN_TOLERANCE: f64 = 1e-9;
 
 /// Draws of as many cases as there are, with replacement.
 pub(in crate::report) struct Bootstrap {
@@ -41,8 +41,8 @@ impl Bootstrap {
 /// Whether the lower 2.5 % quantile of the differences of two engines' means is above zero.
 pub(in crate::report) fn is_ahead(better: &[f64], worse: &[f64]) -> bool {
     let pairs = better.iter().zip(worse);
-    let against = pairs.filter(|(better, worse)| **better - **worse <= ROUNDING).count();
-    !better.is_empty() && against * ONE_IN < better.len()
+    let against = pairs.filter(|(better, worse)| **better - **worse <= MEAN_TOLERANCE).count();
+    !better.is_empty() && against * DRAWS_PER_CONTRARY < better.len()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::report::ReportRow;
 use serde::Serialize;
 
 /// The largest error of the state at which costs are compared.
-pub(in crate::report) const COMPARED_AT: f64 = 1e-6;
+pub(in crate::report) const MAX_COMPARED_ERROR: f64 = 1e-6;
 /// The profile goes up to 2 to this power times the least cost.
 const DOUBLINGS: f64 = 4.0;
 
@@ -63,11 +63,11 @@ impl<'a> Common<'a> {
         costs.iter().map(cost).collect()
     }
 
-    /// The least cost at an error of at most [`COMPARED_AT`], for each of the cases.
+    /// The least cost at an error of at most [`MAX_COMPARED_ERROR`], for each of the cases.
     fn least(&self, engine: &EngineRows<'_>) -> Vec<f64> {
         let least = |(case, _): &(&str, usize)| {
             let own = engine.rows.iter().filter(|row| row.case == *case);
-            let exact = own.filter(|row| row.state_error.max <= COMPARED_AT);
+            let exact = own.filter(|row| row.state_error.max <= MAX_COMPARED_ERROR);
             exact.filter_map(|row| work(row)).fold(f64::INFINITY, f64::min)
         };
         self.0.iter().map(least).collect()

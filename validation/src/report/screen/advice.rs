@@ -80,7 +80,7 @@ impl<'a> Best<'a> {
         let telling = telling(rows);
         let choices = Choice::all(&telling);
         let longest = choices.iter().map(Choice::valid_periods).max_by(f64::total_cmp)?;
-        let is_about = |it: &&Choice<'_>| it.valid_periods() >= ABOUT_AS_LONG * longest;
+        let is_about = |it: &&Choice<'_>| it.valid_periods() >= LONG_HORIZON_SHARE * longest;
         let about: Vec<&Choice<'_>> = choices.iter().filter(is_about).collect();
         let loosest = about.first()?.key();
         let loosest: Vec<_> = about.into_iter().filter(|it| it.key() == loosest).collect();
@@ -168,16 +168,16 @@ fn telling<'a>(rows: &[&'a ReportRow]) -> Vec<&'a ReportRow> {
         let same = rows.iter().filter(|it| it.case == row.case).map(|it| valid_periods(it));
         let (least, most) =
             same.fold((f64::INFINITY, 0.0_f64), |(least, most), it| (least.min(it), most.max(it)));
-        most - least > SAME_PERIODS * most
+        most - least > PERIODS_TOLERANCE * most
     };
     let telling: Vec<&ReportRow> = rows.iter().filter(differs).copied().collect();
     if telling.is_empty() { rows.to_vec() } else { telling }
 }
 
 /// A mean horizon of this share of the longest is about as long.
-const ABOUT_AS_LONG: f64 = 0.98;
+const LONG_HORIZON_SHARE: f64 = 0.98;
 /// Horizons that differ by less, as a share, are the same.
-const SAME_PERIODS: f64 = 1e-6;
+const PERIODS_TOLERANCE: f64 = 1e-6;
 
 /// How long a row stays near the truth; 0 where it has no result.
 fn valid_periods(row: &ReportRow) -> f64 {

@@ -10,9 +10,9 @@ use crate::report::{Ranked, Report, ReportEvidence};
 use comfy_table::{CellAlignment, Table, presets};
 
 /// The most engines that stand side by side.
-const ENGINES_ABREAST: usize = 18;
+const MAX_ENGINES_PER_ROW: usize = 18;
 /// The longest name that leaves room for its figures, in columns.
-const LONGEST_NAME: usize = 40;
+const MAX_NAME_COLUMNS: usize = 40;
 
 /// The details; `all_names`: failing cases are named however many they are.
 pub(super) fn details(report: &Report, evidence: &ReportEvidence, all_names: bool) -> String {
@@ -70,7 +70,7 @@ fn cells(it: &Ranked) -> [String; 12] {
     let shown = |value: Option<f64>| value.map_or("-".to_owned(), figure);
     [
         it.shown_rank().map_or("-".to_owned(), |rank| rank.to_string()),
-        fitted(it.engine, LONGEST_NAME),
+        fitted(it.engine, MAX_NAME_COLUMNS),
         it.events_judged.to_string(),
         it.events_missed.to_string(),
         it.events_spurious.to_string(),
@@ -90,7 +90,7 @@ fn trouble_table(report: &Report, evidence: &ReportEvidence) -> String {
     if trouble.lines.is_empty() {
         return String::new();
     }
-    let parts = (0..trouble.engines.len()).step_by(ENGINES_ABREAST);
+    let parts = (0..trouble.engines.len()).step_by(MAX_ENGINES_PER_ROW);
     let tables: String = parts.map(|from| trouble_part(&trouble, from)).collect();
     let engines: Vec<String> =
         trouble.engines.iter().map(|(name, place)| format!("{place} {name}")).collect();
@@ -105,12 +105,12 @@ fn trouble_table(report: &Report, evidence: &ReportEvidence) -> String {
 /// The matrix for as many engines as fit, from one on.
 fn trouble_part(trouble: &Trouble, from: usize) -> String {
     let mut header = vec!["trouble", "cases"];
-    let engines = trouble.engines.iter().skip(from).take(ENGINES_ABREAST);
+    let engines = trouble.engines.iter().skip(from).take(MAX_ENGINES_PER_ROW);
     header.extend(engines.map(|it| it.1.as_str()));
     let mut table = plain(&header, 1);
     for (kind, cases, cells) in &trouble.lines {
         let cell = |cell: &TroubleCell| cell.percent().map_or("-".to_owned(), |it| it.to_string());
-        let cells = cells.iter().skip(from).take(ENGINES_ABREAST).map(cell);
+        let cells = cells.iter().skip(from).take(MAX_ENGINES_PER_ROW).map(cell);
         table.add_row([kind.clone(), cases.to_string()].into_iter().chain(cells));
     }
     text(&table)

@@ -11,9 +11,9 @@ use crate::score::nearest_rank;
 use comfy_table::{CellAlignment, Table};
 
 /// The tolerance at which errors and costs are shown, where it was run.
-const SHOWN_AT: &str = "1e-9";
-/// The share of cases whose errors are below the figure that is shown.
-const MOST: f64 = 0.9;
+const SHOWN_TOLERANCE: &str = "1e-9";
+/// The quantile of the errors of all cases that is shown.
+const SHOWN_QUANTILE: f64 = 0.9;
 const COLUMNS: usize = 8;
 const HEADER: [&str; COLUMNS] = [
     "",
@@ -42,7 +42,7 @@ pub(super) fn title(report: &Report) -> String {
 
 /// The setting at which errors and costs are shown: the usual one, or else the middle one.
 fn shown_at(settings: &[String]) -> Option<&str> {
-    let usual = settings.iter().find(|it| *it == SHOWN_AT);
+    let usual = settings.iter().find(|it| *it == SHOWN_TOLERANCE);
     usual.or_else(|| settings.get(settings.len() / 2)).map(String::as_str)
 }
 
@@ -154,7 +154,7 @@ fn most_errors(rows: &[&ReportRow], setting: &str) -> Option<f64> {
     };
     let mut errors: Vec<f64> = at.map(error).collect();
     errors.sort_by(f64::total_cmp);
-    Some(nearest_rank(&errors, MOST)).filter(|it| it.is_finite())
+    Some(nearest_rank(&errors, SHOWN_QUANTILE)).filter(|it| it.is_finite())
 }
 
 /// A cost in at most six columns.

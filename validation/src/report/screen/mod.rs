@@ -1,7 +1,7 @@
 //! The first screen of `validate`: which integrator, at what tolerance, at what cost, and what goes
 //! wrong with the others.
 //!
-//! It has at most [`MOST_LINES`] lines; every line fits [`WIDTH`](super::WIDTH) columns. A terminal
+//! It has at most [`MAX_LINES`] lines; every line fits [`WIDTH`](super::WIDTH) columns. A terminal
 //! shows the last lines, so rows and details stand above it.
 
 mod advice;
@@ -22,9 +22,9 @@ use engines::EngineTable;
 pub(super) use details::figure;
 
 /// The most lines of the first screen, beside what got worse than a baseline.
-pub const MOST_LINES: usize = 30;
-/// The most unexpected failures that it names.
-const MOST_FAILURES: usize = 3;
+pub const MAX_LINES: usize = 30;
+/// The most unexpected failures that the screen names.
+const MAX_FAILURES: usize = 3;
 
 /// What is printed besides the first screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,14 +56,14 @@ fn first_screen(report: &Report, evidence: &ReportEvidence) -> String {
     let bad = unexpected(report);
     let table = EngineTable::of(report);
     let fixed = above.len() + table.header_lines() + advice.len() + derivatives.len() + below.len();
-    let room = MOST_LINES.saturating_sub(fixed);
+    let room = MAX_LINES.saturating_sub(fixed);
     // Failures keep two lines however many engines there are.
     let engines = table.lines(room - bad.len().min(2).min(room));
     let failures = failures(&bad, room.saturating_sub(engines.len() - table.header_lines()));
     let blocks = [above, engines, advice, derivatives, failures, below];
     let lines: usize = blocks.iter().map(Vec::len).sum();
     let filled = blocks.iter().filter(|block| !block.is_empty());
-    let spaced = lines + filled.clone().count() <= MOST_LINES;
+    let spaced = lines + filled.clone().count() <= MAX_LINES;
     let between = if spaced { "\n\n" } else { "\n" };
     let text = filled.map(|it| it.join("\n")).collect::<Vec<_>>().join(between);
     [text, "\n".to_owned(), worse(evidence), dearer(evidence)].concat()
@@ -90,8 +90,8 @@ fn above(report: &Report) -> Vec<String> {
 
 /// The first unexpected failures, each in one line, and how many more there are.
 fn failures(bad: &[&ReportRow], room: usize) -> Vec<String> {
-    let all = bad.len() <= room.min(MOST_FAILURES);
-    let shown = if all { bad.len() } else { MOST_FAILURES.min(room.saturating_sub(1)) };
+    let all = bad.len() <= room.min(MAX_FAILURES);
+    let shown = if all { bad.len() } else { MAX_FAILURES.min(room.saturating_sub(1)) };
     let line = |row: &&ReportRow| {
         let (verdict, case, engine) = (row.verdict.as_str(), &row.case, row.engine);
         one_line(&format!("{verdict}: {case} {engine} {}: {}", setting(row), row.why))

@@ -53,7 +53,7 @@ fn shown(report: &Report) -> String {
 fn the_screen_is_at_most_thirty_lines_of_a_hundred_columns() {
     for engines in [1, 2, 17, 20, 24, 60] {
         let said = shown(&many(engines));
-        assert!(said.lines().count() <= MOST_LINES, "{engines}: {said}");
+        assert!(said.lines().count() <= MAX_LINES, "{engines}: {said}");
         let widest = said.lines().map(|line| line.chars().count()).max();
         assert!(widest.is_some_and(|widest| widest <= WIDTH), "{engines}: {said}");
         for part in ["advice, non-stiff:", "advice, stiff:", "advice, chaos:", " rows: "] {

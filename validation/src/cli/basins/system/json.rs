@@ -1,6 +1,6 @@
 //! The attractors of a system as JSON.
 
-use super::super::json::{BOX, EntropyJson, POINTS, UncertaintyJson};
+use super::super::json::{BOX_CELLS, EntropyJson, MAX_POINTS, UncertaintyJson};
 use super::Survey;
 use crate::cli::shared::drift;
 use percuss::System;
@@ -99,7 +99,7 @@ impl<'a> Json<'a> {
             basin_entropy: EntropyJson::of(&entropy_of_labels(
                 &basins.labels,
                 plane.columns as usize,
-                BOX,
+                BOX_CELLS,
             )),
         }
     }
@@ -108,7 +108,8 @@ impl<'a> Json<'a> {
 impl<'a> AttractorJson<'a> {
     fn of(survey: &'a Survey, id: usize, attractor: &'a ReturnAttractor) -> Self {
         let points = &attractor.points;
-        let from = if attractor.orbit.is_some() { 0 } else { points.len().saturating_sub(POINTS) };
+        let from =
+            if attractor.orbit.is_some() { 0 } else { points.len().saturating_sub(MAX_POINTS) };
         let label = Label::Attractor(id);
         let orbit = attractor.orbit.iter();
         Self {

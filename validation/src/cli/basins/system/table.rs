@@ -9,12 +9,12 @@ use percuss::dynamics::attractor::Label;
 
 const COLUMNS: [&str; 6] = ["id", "kind", "period", "% of starts", "exponent/return", "mode"];
 
-/// States that are shown of an attractor's first point.
-const STATES: usize = 3;
+/// The most states that are shown of an attractor's first point.
+const MAX_STATES: usize = 3;
 
 pub(super) fn text(survey: &Survey) -> String {
     let basins = &survey.basins;
-    let states = survey.system.states.iter().take(STATES).map(String::as_str);
+    let states = survey.system.states.iter().take(MAX_STATES).map(String::as_str);
     let columns: Vec<&str> = COLUMNS.into_iter().chain(states).collect();
     let width = columns.len();
     let mut table = Table::new();
@@ -85,7 +85,7 @@ fn row(survey: &Survey, id: usize, attractor: &ReturnAttractor) -> Vec<String> {
         mode.unwrap_or_default(),
     ];
     let states = first.map(|it| it.state.as_slice()).unwrap_or_default();
-    row.extend(states.iter().take(STATES).map(|it| format!("{it:.6}")));
+    row.extend(states.iter().take(MAX_STATES).map(|it| format!("{it:.6}")));
     row
 }
 

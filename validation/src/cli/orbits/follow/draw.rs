@@ -21,7 +21,7 @@ pub(super) struct DrawnPoints {
 }
 
 /// The colour of bifurcations, which differs from that of orbits in lightness, too.
-const MARK: Colour = Colour(213, 94, 0);
+const BIFURCATION_COLOUR: Colour = Colour(213, 94, 0);
 
 /// A picture of branches over the parameter.
 pub(super) fn figure(
@@ -74,7 +74,7 @@ struct Span([f64; 2]);
 
 /// A bifurcation lies between two orbits if the way over it is at most this many times as long as
 /// that from one to the other: it is longer where the branch turns.
-const LONGEST_WAY: f64 = 4.0;
+const MAX_DETOUR_RATIO: f64 = 4.0;
 
 impl Span {
     fn of(branch: &[DrawnOrbit]) -> Self {
@@ -93,7 +93,7 @@ impl Span {
         let fitting = fitting.filter(|it| it.points.len() == last.points.len());
         let ways = fitting.map(|it| (self.distance(last, it) + self.distance(it, next), it));
         let (way, nearest) = ways.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
-        (way <= LONGEST_WAY * self.distance(last, next)).then_some(nearest)
+        (way <= MAX_DETOUR_RATIO * self.distance(last, next)).then_some(nearest)
     }
 
     /// The distance of two orbits in shares of the ranges.
@@ -117,7 +117,7 @@ fn marks(found: &DrawnBifurcation) -> Vec<Layer> {
     let mark = |(n, it): (usize, &f64)| Layer::Named {
         at: [found.at.value, *it],
         name: if n == 0 { found.name.clone() } else { String::new() },
-        colour: MARK,
+        colour: BIFURCATION_COLOUR,
     };
     found.at.points.iter().enumerate().map(mark).collect()
 }

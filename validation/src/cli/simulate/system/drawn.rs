@@ -10,10 +10,10 @@ use percuss::system::Observable;
 use std::io::Write;
 
 /// A picture of more events than this shows nothing.
-const MOST_DRAWN: usize = 20_000;
+const MAX_DRAWN_EVENTS: usize = 20_000;
 
 /// The width of the curve.
-const CURVE: f64 = 1.6;
+const CURVE_WIDTH: f64 = 1.6;
 
 pub(super) struct Drawn<'a> {
     pub(super) out: &'a mut dyn Write,
@@ -31,10 +31,10 @@ impl Sink for Drawn<'_> {
     }
 
     fn stop(&mut self, stop: &Row<'_>) -> Result<()> {
-        if self.stops.len() > MOST_DRAWN {
+        if self.stops.len() > MAX_DRAWN_EVENTS {
             bail!(
-                "a picture of more than {MOST_DRAWN} events and samples is not accepted: --output \
-                 of csv, json, npy or npz is, or a shorter run"
+                "a picture of more than {MAX_DRAWN_EVENTS} events and samples is not accepted: \
+                 --output of csv, json, npy or npz is, or a shorter run"
             );
         }
         self.stops.push(affine::Event {
@@ -57,7 +57,7 @@ impl Sink for Drawn<'_> {
         let line = |it: &picture::SampledSegment| Layer::Line {
             points: it.points.iter().map(place).collect(),
             colour: mode_colour(it.mode),
-            width: CURVE,
+            width: CURVE_WIDTH,
             stroke: Stroke::Solid,
         };
         let mut layers: Vec<Layer> = pieces.iter().map(line).collect();

@@ -11,7 +11,7 @@ use percuss::affine::NoReturn;
 use percuss::{Ending, Event, Events};
 
 /// The number of events or samples between two updates of the progress bar.
-const RARELY: u64 = 256;
+const STEPS_PER_UPDATE: u64 = 256;
 
 /// A run under way.
 pub(super) struct Underway<'a, 'p> {
@@ -53,7 +53,7 @@ impl<'a, 'p> Underway<'a, 'p> {
     /// `share` of the run is done, if not more.
     pub(super) fn next(&mut self, share: f64) -> Option<Event<'a, f64>> {
         let event = self.run.next()?;
-        if self.steps.is_multiple_of(RARELY) {
+        if self.steps.is_multiple_of(STEPS_PER_UPDATE) {
             self.plan.show_progress(*event.time(), share);
         }
         self.steps += 1;

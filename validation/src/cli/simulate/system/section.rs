@@ -2,7 +2,7 @@
 
 use super::super::Arguments;
 use crate::cli::shared::parse::SectionChoice;
-use crate::returns::{CountedReturns, MOST_RETURNS, Uncounted, WantedReturns};
+use crate::returns::{CountedReturns, MAX_RETURNS, Uncounted, WantedReturns};
 use anyhow::{Result, anyhow};
 use percuss::{Solver, System};
 
@@ -42,7 +42,7 @@ fn refusal(why: Uncounted, given: &str, every: u32, system: &System) -> anyhow::
             let times = if every > 1 { ", times --every," } else { "" };
             anyhow!(
                 "--transient and --returns{times} make {whole} returns: accepted are at most \
-                 {MOST_RETURNS}"
+                 {MAX_RETURNS}"
             )
         }
         Uncounted::NotForced => anyhow!(
