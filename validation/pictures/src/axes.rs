@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-/// Room around the data, as a share of their extent.
-const MARGIN: f64 = 0.06;
+/// The empty margin around the data, as a share of their extent.
+const MARGIN_SHARE: f64 = 0.06;
 
 /// A range that holds all values with some room; of width 1 where they do not differ.
 pub(super) fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
@@ -13,7 +13,7 @@ pub(super) fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     if low > high {
         return 0.0..1.0;
     }
-    let room = if high > low { MARGIN * (high - low) } else { 0.5 * low.abs().max(1.0) };
+    let room = if high > low { MARGIN_SHARE * (high - low) } else { 0.5 * low.abs().max(1.0) };
     low - room..high + room
 }
 

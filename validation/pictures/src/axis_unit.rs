@@ -5,8 +5,8 @@ use super::axes::around;
 use super::font;
 use super::frame::{Ruler, power_of_ten};
 
-/// Room for a label, in pixels; beyond it stands the name of a vertical axis.
-const ROOM: f64 = 72.0;
+/// The width of the longest label, in pixels; beyond it stands the name of a vertical axis.
+const MAX_LABEL_PIXELS: f64 = 72.0;
 const TEXT: f64 = 20.0;
 
 /// A figure is shown as (value - origin)/10^exponent.
@@ -41,7 +41,8 @@ impl AxisUnit {
 
     fn has_short_labels(&self, from: f64, to: f64) -> bool {
         let ruler = Ruler::between(self.shown(from), self.shown(to));
-        let short = |label: &String| !label.contains('e') && font::width(label, TEXT) <= ROOM;
+        let short =
+            |label: &String| !label.contains('e') && font::width(label, TEXT) <= MAX_LABEL_PIXELS;
         ruler.ticks.iter().all(|(_, label)| short(label))
     }
 

@@ -2,7 +2,7 @@
 
 use super::canvas::{At, Canvas, TextSide};
 use super::colour::{Colour, WHITE};
-use super::fitted::{self, BELOW, MARGIN, NAME_BELOW};
+use super::fitted::{self, BOTTOM_MARGIN, MARGIN, NAME_DISTANCE};
 use super::frame::{Panel, Ruler};
 use super::key::{KeyItem, KeyLayout, key};
 use super::look::Marker;
@@ -52,16 +52,16 @@ pub const fn basin_colours(place: usize) -> (Colour, Colour) {
 }
 
 const SIZE: (u32, u32) = (1200, 980);
-const FROM: At = (140.0, 64.0);
-const TO: At = (900.0, 824.0);
-const KEY: At = (926.0, 84.0);
+const PANEL_FROM: At = (140.0, 64.0);
+const PANEL_TO: At = (900.0, 824.0);
+const KEY_CORNER: At = (926.0, 84.0);
 const TEXT: f64 = 20.0;
 const KEY_TEXT: f64 = TEXT - 3.0;
 
 /// The smallest map with its key, and the room around a map that fills a size.
-const LEAST: (u32, u32) = (360, 200);
+const MIN_SIZE: (u32, u32) = (360, 200);
 /// The width of a key's sample, with the space before its name.
-const KEY_ROOM: f64 = 64.0;
+const KEY_SAMPLE_WIDTH: f64 = 64.0;
 
 impl Drawing for BasinMap {
     fn size(&self) -> (u32, u32) {
@@ -75,14 +75,14 @@ impl Drawing for BasinMap {
             canvas.text(line, at, TEXT - 2.0, TextSide::Left, palette::INK);
         }
         let [x, y] = self.rulers();
-        let panel = Panel { from: FROM, to: TO, x, y };
+        let panel = Panel { from: PANEL_FROM, to: PANEL_TO, x, y };
         let [across, up] = &self.axes;
         self.fill(canvas, &panel, |canvas| panel.draw_over(canvas, across, up));
-        self.key(canvas, KEY, KeyLayout::Column(40.0), str::to_owned);
+        self.key(canvas, KEY_CORNER, KeyLayout::Column(40.0), str::to_owned);
     }
 
     fn least_size(&self) -> (u32, u32) {
-        LEAST
+        MIN_SIZE
     }
 
     /// Draws the map and short names of its colours: a paper has its own caption.
@@ -91,12 +91,12 @@ impl Drawing for BasinMap {
         let names = self.attractors.iter().map(|it| first_line(&it.name));
         let others = self.others().into_iter().map(|it| it.0.to_owned());
         let widths = names.chain(others).map(|it| font::width(&it, KEY_TEXT));
-        let key = KEY_ROOM + widths.fold(0.0, f64::max);
-        let to = (f64::from(size.0) - key - MARGIN, f64::from(size.1) - BELOW);
+        let key = KEY_SAMPLE_WIDTH + widths.fold(0.0, f64::max);
+        let to = (f64::from(size.0) - key - MARGIN, f64::from(size.1) - BOTTOM_MARGIN);
         let panel = fitted::panel(self.rulers(), (0.0, MARGIN), to);
         let [across, up] = &self.axes;
         self.fill(canvas, &panel, |canvas| {
-            panel.draw_named(canvas, (across, NAME_BELOW), (up, panel.from.0 - MARGIN));
+            panel.draw_named(canvas, (across, NAME_DISTANCE), (up, panel.from.0 - MARGIN));
         });
         let at = (to.0 + MARGIN, MARGIN + MARGIN);
         self.key(canvas, at, KeyLayout::Column(30.0), first_line);

@@ -86,22 +86,22 @@ impl TextSide {
 
 /// Units of the coordinates in a pixel: plotters places shapes on whole units, and no eye tells
 /// hundredths apart.
-const UNITS: f64 = 100.0;
+const UNITS_PER_PIXEL: f64 = 100.0;
 /// Half the height of a capital letter, as a share of the text's size.
-const HALF_CAPITAL: f64 = 0.31;
+const HALF_CAPITAL_HEIGHT: f64 = 0.31;
 /// Half the height of a small letter, which plotters puts at a text's place.
-const HALF_SMALL: f64 = 0.235;
+const HALF_SMALL_HEIGHT: f64 = 0.235;
 /// Plotters divides the size of a font by it.
 const FONT_SHARE: f64 = 1.24;
 /// Dots are placed on a grid of so many units, and drawn once where they coincide.
-const DOT_STEP: f64 = 25.0;
-/// Dots in one path: a renderer sorts the edges of a whole path.
-const DOTS_IN_A_PATH: usize = 500;
-/// Lines in one path.
-const LINES_IN_A_PATH: usize = 250;
+const DOT_STEP_UNITS: f64 = 25.0;
+/// The most dots of one path: a renderer sorts the edges of a whole path.
+const MAX_DOTS_PER_PATH: usize = 500;
+/// The most lines of one path.
+const MAX_LINES_PER_PATH: usize = 250;
 
 fn units(pixels: f64) -> i32 {
-    (UNITS * pixels).round() as i32
+    (UNITS_PER_PIXEL * pixels).round() as i32
 }
 
 fn place((x, y): At) -> (i32, i32) {
@@ -204,7 +204,7 @@ impl Canvas {
         colour: Colour,
     ) {
         let lines: Vec<Vec<At>> = lines.into_iter().filter(|line| !line.is_empty()).collect();
-        for lines in lines.chunks(LINES_IN_A_PATH) {
+        for lines in lines.chunks(MAX_LINES_PER_PATH) {
             self.svg.push_str("<path d=\"");
             for line in lines {
                 let mut last = place(line[0]);
@@ -292,13 +292,13 @@ impl Canvas {
 
     /// Fills a small square around each place; `half` is half its width.
     pub(super) fn dots(&mut self, places: impl Iterator<Item = At>, half: f64, colour: Colour) {
-        let step = |value: f64| (UNITS * (value - half) / DOT_STEP).round() as i32;
+        let step = |value: f64| (UNITS_PER_PIXEL * (value - half) / DOT_STEP_UNITS).round() as i32;
         let mut corners: Vec<_> = places.map(|(x, y)| (step(y), step(x))).collect();
         corners.sort_unstable();
         corners.dedup();
-        let (width, step) = (units(2.0 * half), DOT_STEP as i32);
+        let (width, step) = (units(2.0 * half), DOT_STEP_UNITS as i32);
         // Plotters writes an element for each square, and resvg refuses a million elements.
-        for corners in corners.chunks(DOTS_IN_A_PATH) {
+        for corners in corners.chunks(MAX_DOTS_PER_PATH) {
             self.svg.push_str("<path d=\"");
             for (y, x) in corners {
                 let (x, y) = (x * step, y * step);
@@ -319,7 +319,7 @@ impl Canvas {
     }
 
     fn letters(&mut self, text: &str, at: At, size: f64, side: TextSide, colour: Colour) {
-        let at = (at.0, at.1 + (HALF_CAPITAL - HALF_SMALL) * size);
+        let at = (at.0, at.1 + (HALF_CAPITAL_HEIGHT - HALF_SMALL_HEIGHT) * size);
         let size = FONT_SHARE * f64::from(units(font::EM * size));
         let colour = RGBColor::from(colour);
         let style = TextStyle::from((FAMILY, size).into_font())
@@ -330,8 +330,8 @@ impl Canvas {
 
     /// Draws the outlines of letters, whose curves and holes are no shapes of plotters'.
     fn outlines(&mut self, text: &str, at: At, size: f64, side: TextSide, colour: Colour) {
-        let (outline, width) = font::outline(text, UNITS * size);
-        let (x, y) = place((at.0, at.1 + HALF_CAPITAL * size));
+        let (outline, width) = font::outline(text, UNITS_PER_PIXEL * size);
+        let (x, y) = place((at.0, at.1 + HALF_CAPITAL_HEIGHT * size));
         let x = x - (side.share() * width).round() as i32;
         self.add(format_args!(
             "<path transform=\"translate({x} {y})\" fill=\"{colour}\" d=\"{outline}\"/>"

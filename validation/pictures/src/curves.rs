@@ -8,9 +8,10 @@ use super::{Colour, Drawing, Marker, font, palette};
 
 const SIZE: (u32, u32) = (1500, 900);
 const TEXT: f64 = 20.0;
-/// Text of the note, and the height of its lines.
-const NOTE: f64 = 17.0;
-const NOTE_LINE: f64 = 24.0;
+/// The size of the note's text.
+const NOTE_TEXT: f64 = 17.0;
+/// The height of the note's lines.
+const NOTE_LINE_HEIGHT: f64 = 24.0;
 /// Room for names in the key.
 const KEY_WIDTH: f64 = 306.0;
 
@@ -62,12 +63,12 @@ impl Drawing for Curves {
             let at = (130.0, 120.0);
             return canvas.text("nothing was measured", at, TEXT, TextSide::Left, palette::INK);
         };
-        let note = font::wrapped(&self.note, NOTE, f64::from(SIZE.0) - 48.0);
+        let note = font::wrapped(&self.note, NOTE_TEXT, f64::from(SIZE.0) - 48.0);
         for (n, line) in note.iter().enumerate() {
-            let at = (24.0, 62.0 + NOTE_LINE * n as f64);
-            canvas.text(line, at, NOTE, TextSide::Left, palette::INK);
+            let at = (24.0, 62.0 + NOTE_LINE_HEIGHT * n as f64);
+            canvas.text(line, at, NOTE_TEXT, TextSide::Left, palette::INK);
         }
-        let top = 64.0 + NOTE_LINE * note.len() as f64;
+        let top = 64.0 + NOTE_LINE_HEIGHT * note.len() as f64;
         let panel = Panel { from: (130.0, top), to: (1110.0, 816.0), x, y };
         panel.draw(canvas, &self.x.label, &self.y.label);
         self.curves.iter().for_each(|curve| curve.draw(canvas, &panel));

@@ -80,14 +80,14 @@ impl Stage {
 }
 
 const SIZE: (u32, u32) = (1500, 700);
-const WIDE: f64 = 1500.0;
+const WIDTH: f64 = 1500.0;
 const TEXT: f64 = 19.0;
 const TOP: f64 = 164.0;
 const BOTTOM: f64 = 550.0;
-const BAND: f64 = 24.0;
+const BAND_HEIGHT: f64 = 24.0;
 /// An event that only one of the two has; no engine is yellow.
-const WRONG: Colour = Colour(255, 217, 47);
-const TRUTH: Colour = Colour(160, 164, 170);
+const WRONG_COLOUR: Colour = Colour(255, 217, 47);
+const TRUTH_COLOUR: Colour = Colour(160, 164, 170);
 
 impl Drawing for Encounter {
     fn size(&self) -> (u32, u32) {
@@ -97,7 +97,7 @@ impl Drawing for Encounter {
     fn draw(&self, canvas: &mut Canvas) {
         canvas.title(&self.title);
         canvas.text(&self.subtitle, (24.0, 64.0), TEXT, TextSide::Left, palette::INK);
-        let width = WIDE / self.stretches.len().max(1) as f64;
+        let width = WIDTH / self.stretches.len().max(1) as f64;
         for (i, stretch) in self.stretches.iter().enumerate() {
             let left = width * i as f64;
             self.stretch(canvas, stretch, (left + 132.0, left + width - 26.0));
@@ -124,13 +124,13 @@ impl Encounter {
         let place = |t: f64| panel.place((times.scaled(t), 0.0)).0.clamp(left, right);
         for (trail, name, top) in [(&it.truth, "truth", 96.0), (&it.engine, "engine", 126.0)] {
             trail.band(canvas, place, (left, right, top));
-            let at = (left - 10.0, top + BAND / 2.0);
+            let at = (left - 10.0, top + BAND_HEIGHT / 2.0);
             canvas.text(name, at, TEXT, TextSide::Right, palette::INK);
         }
         let curve = |trail: &Trail| -> Vec<At> {
             trail.places(it.from, it.to).filter_map(|(t, v)| at(t, v)).collect()
         };
-        canvas.trace(&curve(&it.truth), 6.0, Stroke::Solid, TRUTH);
+        canvas.trace(&curve(&it.truth), 6.0, Stroke::Solid, TRUTH_COLOUR);
         canvas.trace(&curve(&it.engine), 2.4, Stroke::Solid, self.colour);
         let ends = it.steps.iter().filter_map(|t| at(*t, it.engine.along(it.from, it.to, *t)?));
         ends.for_each(|at| canvas.marker(Marker::Circle, at, 5.0, self.colour));
@@ -167,7 +167,7 @@ impl Encounter {
             move |canvas: &mut Canvas, at: At| canvas.marker(marker, middle(at), size, colour)
         };
         let items = [
-            KeyItem::new("truth", line(6.0, TRUTH)),
+            KeyItem::new("truth", line(6.0, TRUTH_COLOUR)),
             KeyItem::new(&self.engine, line(2.4, self.colour)),
             KeyItem::new("step", mark(Marker::Circle, 5.0, self.colour)),
             KeyItem::new("root finder's look", |canvas, at| {
@@ -219,9 +219,9 @@ impl Trail {
         for (i, (from, Stage { name, colours: (fill, ink) })) in starts.iter().enumerate() {
             let to = starts.get(i + 1).map_or(right, |next| next.0);
             let to = to.max(from + 1.0).min(right);
-            canvas.fill((*from, top), (to, top + BAND), *fill);
+            canvas.fill((*from, top), (to, top + BAND_HEIGHT), *fill);
             if to - from > 11.0 * name.len() as f64 {
-                let middle = ((from + to) / 2.0, top + BAND / 2.0);
+                let middle = ((from + to) / 2.0, top + BAND_HEIGHT / 2.0);
                 canvas.text(name, middle, TEXT - 2.0, TextSide::Middle, *ink);
             }
         }
@@ -253,15 +253,15 @@ impl Factor {
 /// A disc, with a cross where the engine alone has the event.
 fn wrong(canvas: &mut Canvas, at: At, spurious: bool) {
     canvas.marker(Marker::Circle, at, 9.0, palette::INK);
-    canvas.marker(Marker::Circle, at, 7.4, WRONG);
+    canvas.marker(Marker::Circle, at, 7.4, WRONG_COLOUR);
     if spurious {
         canvas.marker(Marker::Cross, at, 4.6, palette::INK);
     }
 }
 
 fn hollow(canvas: &mut Canvas, at: At, colour: Colour) {
-    const HALF: f64 = 6.0;
-    let corner = |(x, y): At| (at.0 + HALF * x, at.1 + HALF * y);
+    const HALF_DIAGONAL: f64 = 6.0;
+    let corner = |(x, y): At| (at.0 + HALF_DIAGONAL * x, at.1 + HALF_DIAGONAL * y);
     let corners = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0)];
     canvas.trace(&corners.map(corner), 1.6, Stroke::Solid, colour);
 }

@@ -30,8 +30,8 @@ pub(super) struct Ruler {
 }
 
 const TEXT: f64 = 20.0;
-/// Ticks are at most about that many.
-const MOST_TICKS: f64 = 8.0;
+/// The largest number of ticks, about.
+const MAX_TICKS: f64 = 8.0;
 
 impl Ruler {
     /// `None` where there is nothing to show.
@@ -53,12 +53,12 @@ impl Ruler {
                 ((low - 0.05).floor(), (high + 0.05).ceil())
             }
         };
-        Some(Self::placed(scale, from, to, MOST_TICKS))
+        Some(Self::placed(scale, from, to, MAX_TICKS))
     }
 
     /// A linear axis from one value to another.
     pub fn between(from: f64, to: f64) -> Self {
-        Self::placed(AxisScale::Linear, from, to, MOST_TICKS)
+        Self::placed(AxisScale::Linear, from, to, MAX_TICKS)
     }
 
     /// The axis with at most about so many ticks.
@@ -106,9 +106,9 @@ fn tick_step(rough: f64, scale: AxisScale) -> f64 {
 
 /// 10 with its exponent raised.
 pub(super) fn power_of_ten(exponent: i64) -> String {
-    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    const RAISED_DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let raised = |c: char| match c.to_digit(10) {
-        Some(digit) => RAISED.get(digit as usize).copied().unwrap_or(c),
+        Some(digit) => RAISED_DIGITS.get(digit as usize).copied().unwrap_or(c),
         None => '⁻',
     };
     format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())

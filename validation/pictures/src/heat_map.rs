@@ -3,9 +3,9 @@
 use super::canvas::{Canvas, TextSide};
 use super::{Colour, Drawing, palette};
 
-const ROW: u32 = 38;
-const HEAD: u32 = 110;
-const LABEL: u32 = 330;
+const ROW_HEIGHT: u32 = 38;
+const HEAD_HEIGHT: u32 = 110;
+const LABEL_WIDTH: u32 = 330;
 const MARGIN: u32 = 24;
 const TEXT: f64 = 19.0;
 
@@ -59,13 +59,14 @@ impl HeatMap {
 
 impl Drawing for HeatMap {
     fn size(&self) -> (u32, u32) {
-        let width = 2 * MARGIN + LABEL + (self.cell() * self.across() as f64).ceil() as u32;
+        let width = 2 * MARGIN + LABEL_WIDTH + (self.cell() * self.across() as f64).ceil() as u32;
         let rows = u32::try_from(self.rows.len()).unwrap_or(0).clamp(1, 400);
-        (width.clamp(900, 4000), HEAD + rows * ROW + MARGIN)
+        (width.clamp(900, 4000), HEAD_HEIGHT + rows * ROW_HEIGHT + MARGIN)
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        let [margin, head, row, label] = [MARGIN, HEAD, ROW, LABEL].map(f64::from);
+        let [margin, head, row, label] =
+            [MARGIN, HEAD_HEIGHT, ROW_HEIGHT, LABEL_WIDTH].map(f64::from);
         let left = margin + label;
         let middle = |i: usize| left + self.cell() * (i as f64 + 0.5);
         canvas.title(&self.title);

@@ -4,12 +4,12 @@ use super::canvas::{Canvas, TextSide};
 use super::frame::{AxisScale, Ruler};
 use super::{Colour, Drawing, palette};
 
-const ROW: u32 = 46;
-const HEAD: u32 = 64;
-const FOOT: u32 = 80;
+const ROW_HEIGHT: u32 = 46;
+const HEAD_HEIGHT: u32 = 64;
+const FOOT_HEIGHT: u32 = 80;
 const TEXT: f64 = 19.0;
-const LEFT: f64 = 350.0;
-const RIGHT: f64 = 1470.0;
+const LEFT_EDGE: f64 = 350.0;
+const RIGHT_EDGE: f64 = 1470.0;
 
 /// A histogram with its name and its colour.
 #[derive(Clone, Debug)]
@@ -47,11 +47,11 @@ impl HistogramRow {
 impl Drawing for Histograms {
     fn size(&self) -> (u32, u32) {
         let rows = u32::try_from(self.rows.len()).unwrap_or(0).clamp(1, 200);
-        (1500, HEAD + rows * ROW + FOOT)
+        (1500, HEAD_HEIGHT + rows * ROW_HEIGHT + FOOT_HEIGHT)
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        let [head, height] = [HEAD, ROW].map(f64::from);
+        let [head, height] = [HEAD_HEIGHT, ROW_HEIGHT].map(f64::from);
         canvas.title(&self.title);
         let edges =
             self.rows.iter().flat_map(HistogramRow::bins).flat_map(|(from, to, _)| [from, to]);
@@ -61,7 +61,7 @@ impl Drawing for Histograms {
             return canvas.text("nothing was measured", at, TEXT, TextSide::Left, palette::INK);
         };
         let bottom = head + self.rows.len() as f64 * height;
-        let across = |place: f64| LEFT + place * (RIGHT - LEFT);
+        let across = |place: f64| LEFT_EDGE + place * (RIGHT_EDGE - LEFT_EDGE);
         for (value, label) in &ruler.ticks {
             let x = across(ruler.fraction(*value));
             canvas.line((x, head), (x, bottom), 1.0, palette::GRID);
@@ -70,8 +70,8 @@ impl Drawing for Histograms {
         for (i, row) in self.rows.iter().enumerate() {
             let base = head + (i + 1) as f64 * height;
             let most = row.bins().map(|bin| bin.2).max().unwrap_or(1) as f64;
-            canvas.line((LEFT, base), (RIGHT, base), 1.0, palette::GRID);
-            let at = (LEFT - 16.0, base - height / 2.0);
+            canvas.line((LEFT_EDGE, base), (RIGHT_EDGE, base), 1.0, palette::GRID);
+            let at = (LEFT_EDGE - 16.0, base - height / 2.0);
             canvas.text(&row.name, at, TEXT, TextSide::Right, palette::INK);
             for (from, to, count) in row.bins() {
                 let tall = ((height - 8.0) * count as f64 / most).max(1.0);
@@ -80,7 +80,7 @@ impl Drawing for Histograms {
                 canvas.fill((from, base - tall), corner, row.colour);
             }
         }
-        let middle = ((LEFT + RIGHT) / 2.0, bottom + 54.0);
+        let middle = ((LEFT_EDGE + RIGHT_EDGE) / 2.0, bottom + 54.0);
         canvas.text(&self.label, middle, TEXT + 1.0, TextSide::Middle, palette::INK);
     }
 }

@@ -28,8 +28,8 @@ pub(super) enum KeyLayout {
 }
 
 /// Height of a line of a name that has several, as a share of the text's size.
-const LINE: f64 = 1.35;
-const SAMPLE: f64 = 40.0;
+const LINE_HEIGHT: f64 = 1.35;
+const SAMPLE_WIDTH: f64 = 40.0;
 
 /// Draws a key from the place of its first sample on.
 pub(super) fn key<'a>(
@@ -43,13 +43,13 @@ pub(super) fn key<'a>(
         sample(canvas, at);
         let mut below = 0.0;
         for line in name.lines() {
-            let place = (at.0 + SAMPLE + 6.0, at.1 + below);
+            let place = (at.0 + SAMPLE_WIDTH + 6.0, at.1 + below);
             canvas.text(line, place, size, TextSide::Left, palette::INK);
-            below += LINE * size;
+            below += LINE_HEIGHT * size;
         }
         match layout {
-            KeyLayout::Row => at.0 += SAMPLE + 30.0 + font::width(name, size),
-            KeyLayout::Column(step) => at.1 += step.max(below + LINE * size / 2.0),
+            KeyLayout::Row => at.0 += SAMPLE_WIDTH + 30.0 + font::width(name, size),
+            KeyLayout::Column(step) => at.1 += step.max(below + LINE_HEIGHT * size / 2.0),
         }
     }
 }

@@ -38,8 +38,8 @@ pub use histograms::{HistogramRow, Histograms};
 pub use look::{Look, Marker, looks};
 pub use motion::DrawnMotion;
 pub use piece::MotionPiece;
-pub use print::{LAYOUT_DPI, Print, USUAL_DPI};
-pub use system_motion::{MOST_STATES, SampledSegment, SystemMotion, sampled};
+pub use print::{DEFAULT_DPI, LAYOUT_DPI, Print};
+pub use system_motion::{MAX_STATES, SampledSegment, SystemMotion, sampled};
 
 use canvas::Letters;
 use resvg::tiny_skia::{Pixmap, Transform};
@@ -85,7 +85,7 @@ pub trait Drawing {
     /// The smallest size at which [`Drawing::draw_within`] is legible, in pixels of the layout.
     fn least_size(&self) -> (u32, u32) {
         let (width, height) = self.size();
-        let least = |it: u32| (f64::from(it) * LEAST_SCALE).ceil() as u32;
+        let least = |it: u32| (f64::from(it) * MIN_SCALE).ceil() as u32;
         (least(width), least(height))
     }
 
@@ -99,7 +99,7 @@ pub trait Drawing {
 }
 
 /// The scale at which letters of a whole picture are as small as those of a formula's indices.
-const LEAST_SCALE: f64 = 0.7;
+const MIN_SCALE: f64 = 0.7;
 
 /// A drawing as an SVG.
 #[must_use]

@@ -13,7 +13,7 @@ use percuss_engines::case::Problem;
 
 const SIZE: (u32, u32) = (1500, 860);
 /// Points drawn for the whole run.
-const POINTS: f64 = 6000.0;
+const RUN_POINTS: f64 = 6000.0;
 const TEXT: f64 = 20.0;
 
 /// A run ready to be drawn.
@@ -105,7 +105,7 @@ impl DrawnMotion {
                 Exit::Switch(_) | Exit::Undecidable => segment.duration(),
                 _ => last.since(&segment.entry().instant, omega).value(),
             };
-            MotionPiece::of(segment, begins.tau(omega) + since, lasts, POINTS * lasts / span)
+            MotionPiece::of(segment, begins.tau(omega) + since, lasts, RUN_POINTS * lasts / span)
         });
         Self {
             title: format!("a = {a}, b = {b}, \u{3be} = {xi}, \u{3c9} = {omega}, g = {g}"),

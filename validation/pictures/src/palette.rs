@@ -41,7 +41,7 @@ const MODES: [Colour; 12] = [
 /// Text and frames.
 pub(super) const INK: Colour = Colour(40, 40, 40);
 /// The colour of jumps at resets.
-pub(super) const SKIPPED: Colour = Colour(150, 150, 150);
+pub(super) const RESET_JUMP: Colour = Colour(150, 150, 150);
 /// Lines behind the data.
 pub(super) const GRID: Colour = Colour(225, 225, 225);
 /// Cells of which it is not known where they lead.

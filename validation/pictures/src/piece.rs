@@ -11,8 +11,8 @@ pub struct MotionPiece {
     pub points: Vec<[f64; 5]>,
 }
 
-/// Points of even the shortest phase.
-const FEWEST: usize = 12;
+/// The fewest points of a phase, however short.
+const MIN_POINTS: usize = 12;
 
 impl MotionPiece {
     /// A phase from where it `begins` for as long as it `lasts`, both in tau, in about so many
@@ -20,7 +20,7 @@ impl MotionPiece {
     #[must_use]
     pub fn of(segment: &Segment, begins: f64, lasts: f64, points: f64) -> Self {
         let count = points.ceil();
-        let count = if count.is_finite() { (count as usize).max(FEWEST) } else { FEWEST };
+        let count = if count.is_finite() { (count as usize).max(MIN_POINTS) } else { MIN_POINTS };
         let point = |i: usize| {
             let elapsed = lasts * (i as f64 / count as f64);
             let at = segment.at(elapsed);

@@ -8,30 +8,30 @@ use super::{DrawError, Drawing, rendered};
 pub const LAYOUT_DPI: f64 = 160.0;
 
 /// Pixels in an inch of a picture whose size is given, where nothing else is said.
-pub const USUAL_DPI: f64 = 300.0;
+pub const DEFAULT_DPI: f64 = 300.0;
 
 /// The most pixels of a PNG.
-const MOST_PIXELS: f64 = 64e6;
+const MAX_PIXELS: f64 = 64e6;
 
-const MM_IN_AN_INCH: f64 = 25.4;
+const MM_PER_INCH: f64 = 25.4;
 
 /// The size of a picture on paper and the density of its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Print {
     /// Width and height in millimetres; without them the drawing has its own size.
     pub size_mm: Option<[f64; 2]>,
-    /// Pixels in an inch; without it [`USUAL_DPI`] where a size is given, else [`LAYOUT_DPI`].
+    /// Pixels in an inch; without it [`DEFAULT_DPI`] where a size is given, else [`LAYOUT_DPI`].
     pub dpi: Option<f64>,
 }
 
 /// A number of layout pixels in millimetres.
 fn millimetres(pixels: u32) -> f64 {
-    f64::from(pixels) * MM_IN_AN_INCH / LAYOUT_DPI
+    f64::from(pixels) * MM_PER_INCH / LAYOUT_DPI
 }
 
 impl Print {
     fn dpi(&self) -> f64 {
-        self.dpi.unwrap_or(if self.size_mm.is_some() { USUAL_DPI } else { LAYOUT_DPI })
+        self.dpi.unwrap_or(if self.size_mm.is_some() { DEFAULT_DPI } else { LAYOUT_DPI })
     }
 
     /// The size on paper of a drawing, and the size of its layout.
@@ -40,7 +40,7 @@ impl Print {
             let size = drawing.size();
             return Ok(Sheet { size, size_mm: Some([millimetres(size.0), millimetres(size.1)]) });
         };
-        let pixels = |mm: f64| (mm / MM_IN_AN_INCH * LAYOUT_DPI).round() as u32;
+        let pixels = |mm: f64| (mm / MM_PER_INCH * LAYOUT_DPI).round() as u32;
         let size = (pixels(size_mm[0]), pixels(size_mm[1]));
         let least = drawing.least_size();
         if size.0 < least.0 || size.1 < least.1 {
@@ -85,11 +85,11 @@ impl Print {
         let sheet = Sheet { size_mm: None, ..self.sheet(drawing)? };
         let size_mm = self.size_mm.unwrap_or([sheet.size.0, sheet.size.1].map(millimetres));
         let dpi = self.dpi();
-        let [width, height] = size_mm.map(|mm| (mm / MM_IN_AN_INCH * dpi).round().max(1.0));
-        if width * height > MOST_PIXELS {
+        let [width, height] = size_mm.map(|mm| (mm / MM_PER_INCH * dpi).round().max(1.0));
+        if width * height > MAX_PIXELS {
             return Err(DrawError(format!(
                 "{width} x {height} pixels are too many: at most {:.0} million are accepted",
-                MOST_PIXELS / 1e6
+                MAX_PIXELS / 1e6
             )));
         }
         let svg = self.drawn(drawing, sheet, Letters::Outlines);
@@ -99,19 +99,19 @@ impl Print {
     }
 }
 
-/// The length of a PNG's signature and of its first chunk, after which the density may stand.
-const HEAD: usize = 33;
+/// The bytes of a PNG's signature and of its first chunk, after which the density may stand.
+const HEAD_BYTES: usize = 33;
 
 /// A PNG that states its pixels per metre.
 fn with_density(png: &[u8], dpi: f64) -> Vec<u8> {
-    let per_metre = (dpi / (MM_IN_AN_INCH / 1000.0)).round() as u32;
+    let per_metre = (dpi / (MM_PER_INCH / 1000.0)).round() as u32;
     let mut chunk = b"pHYs".to_vec();
     chunk.extend(per_metre.to_be_bytes());
     chunk.extend(per_metre.to_be_bytes());
     // The unit of length is the metre.
     chunk.push(1);
     let check = crc32fast::hash(&chunk);
-    let (head, rest) = png.split_at(HEAD.min(png.len()));
+    let (head, rest) = png.split_at(HEAD_BYTES.min(png.len()));
     let mut bytes = head.to_vec();
     // The length counts neither the chunk's name nor its check.
     bytes.extend((chunk.len() as u32 - 4).to_be_bytes());

@@ -1,19 +1,19 @@
 //! A panel that fills a given size: its margins are as large as its labels are.
 
 use super::super::canvas::{At, Canvas, TextSide};
-use super::super::fitted::{self, BELOW, MARGIN, NAME_BELOW};
+use super::super::fitted::{self, BOTTOM_MARGIN, MARGIN, NAME_DISTANCE};
 use super::super::{font, palette};
 use super::layer::{KeyEntry, Layer};
 use super::plot::Plot;
 
 /// The smallest panel with its labels, width and height in pixels.
-pub(super) const LEAST: (u32, u32) = (220, 180);
+pub(super) const MIN_SIZE: (u32, u32) = (220, 180);
 
 const TEXT: f64 = 20.0;
 /// Height of a line of the title or of the key.
-const LINE: f64 = 26.0;
+const LINE_HEIGHT: f64 = 26.0;
 /// The width of a key's sample with the space after a name.
-const KEY_ROOM: f64 = 76.0;
+const KEY_SAMPLE_WIDTH: f64 = 76.0;
 
 impl Plot {
     /// Draws the panel so that it fills a rectangle.
@@ -24,8 +24,8 @@ impl Plot {
         };
         let keys = self.key_rows(width - 2.0 * MARGIN);
         let titles = usize::from(!self.title.is_empty());
-        let head = MARGIN + LINE * (titles + keys.len()) as f64;
-        let to = (corner.0 + width - MARGIN, corner.1 + height - BELOW);
+        let head = MARGIN + LINE_HEIGHT * (titles + keys.len()) as f64;
+        let to = (corner.0 + width - MARGIN, corner.1 + height - BOTTOM_MARGIN);
         let panel = fitted::panel([x, y], (corner.0, corner.1 + head), to);
         let (wide, tall) = (to.0 - panel.from.0, to.1 - panel.from.1);
         let at = (panel.from.0, corner.1 + MARGIN + 0.4 * TEXT);
@@ -37,13 +37,13 @@ impl Plot {
         bare.fill(canvas, &panel, |canvas| {
             panel.draw_named(
                 canvas,
-                (&below, NAME_BELOW),
+                (&below, NAME_DISTANCE),
                 (&beside, panel.from.0 - corner.0 - MARGIN),
             );
         });
-        let first = head - LINE * keys.len() as f64 + 0.4 * TEXT;
+        let first = head - LINE_HEIGHT * keys.len() as f64 + 0.4 * TEXT;
         for (n, row) in keys.into_iter().enumerate() {
-            let at = (corner.0 + MARGIN, corner.1 + first + LINE * n as f64);
+            let at = (corner.0 + MARGIN, corner.1 + first + LINE_HEIGHT * n as f64);
             KeyEntry::draw_row(&row, canvas, at);
         }
     }
@@ -61,7 +61,7 @@ impl Plot {
         });
         let (mut rows, mut used): (Vec<Vec<KeyEntry>>, f64) = (Vec::new(), 0.0);
         for entry in entries.flatten() {
-            let width = KEY_ROOM + font::width(&entry.name, TEXT);
+            let width = KEY_SAMPLE_WIDTH + font::width(&entry.name, TEXT);
             match rows.last_mut() {
                 Some(row) if used + width <= room => row.push(entry.clone()),
                 _ => {

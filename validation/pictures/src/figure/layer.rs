@@ -77,7 +77,7 @@ pub struct KeyEntry {
 
 const TEXT: f64 = 18.0;
 /// Half the width of a mark that has a name.
-const NAMED: f64 = 4.5;
+const HALF_NAMED_MARK: f64 = 4.5;
 
 impl Layer {
     /// Points as small as their number asks for: few are drawn so that they show.
@@ -152,7 +152,11 @@ impl Layer {
 
 /// Draws a mark and its name, on white, up to the right edge of the panel.
 fn named(canvas: &mut Canvas, (x, y): At, name: &str, colour: Colour, right: f64) {
-    canvas.fill((x - NAMED, y - NAMED), (x + NAMED, y + NAMED), colour);
+    canvas.fill(
+        (x - HALF_NAMED_MARK, y - HALF_NAMED_MARK),
+        (x + HALF_NAMED_MARK, y + HALF_NAMED_MARK),
+        colour,
+    );
     let (width, up) = (font::width(name, TEXT), y - 16.0);
     let left = if x + 10.0 + width > right { x - 10.0 - width } else { x + 10.0 };
     if !name.is_empty() {

@@ -14,8 +14,8 @@ use super::{Drawing, font, palette};
 
 const TEXT: f64 = 18.0;
 /// Height of a line of the caption.
-const LINE: u32 = 26;
-const HEAD: u32 = 56;
+const LINE_HEIGHT: u32 = 26;
+const HEAD_HEIGHT: u32 = 56;
 /// Room on either side of the caption.
 const MARGIN: f64 = 24.0;
 
@@ -74,7 +74,7 @@ impl Drawing for Figure {
     fn least_size(&self) -> (u32, u32) {
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let (columns, rows) = (count(self.columns.max(1)), count(self.rows()));
-        (fitted::LEAST.0.saturating_mul(columns), fitted::LEAST.1.saturating_mul(rows))
+        (fitted::MIN_SIZE.0.saturating_mul(columns), fitted::MIN_SIZE.1.saturating_mul(rows))
     }
 
     /// Draws the panels alone: a paper has its own caption.
@@ -91,7 +91,12 @@ impl Drawing for Figure {
     fn size(&self) -> (u32, u32) {
         let (width, height) = self.size_of_panels();
         let lines = u32::try_from(self.lines().len()).unwrap_or(u32::MAX);
-        (width, height.saturating_add(HEAD + 20).saturating_add(LINE.saturating_mul(lines)))
+        (
+            width,
+            height
+                .saturating_add(HEAD_HEIGHT + 20)
+                .saturating_add(LINE_HEIGHT.saturating_mul(lines)),
+        )
     }
 
     fn draw(&self, canvas: &mut Canvas) {
@@ -99,12 +104,12 @@ impl Drawing for Figure {
         let (width, height) = (f64::from(self.panel.0), f64::from(self.panel.1));
         for (i, plot) in self.plots.iter().enumerate() {
             let (row, column) = (i / self.columns.max(1), i % self.columns.max(1));
-            let corner = (width * column as f64, f64::from(HEAD) + height * row as f64);
+            let corner = (width * column as f64, f64::from(HEAD_HEIGHT) + height * row as f64);
             plot.draw(canvas, corner, (width, height));
         }
-        let below = f64::from(HEAD) + height * self.rows() as f64 + 14.0;
+        let below = f64::from(HEAD_HEIGHT) + height * self.rows() as f64 + 14.0;
         for (i, line) in self.lines().iter().enumerate() {
-            let at = (MARGIN, below + f64::from(LINE) * i as f64);
+            let at = (MARGIN, below + f64::from(LINE_HEIGHT) * i as f64);
             canvas.text(line, at, TEXT, TextSide::Left, palette::INK);
         }
     }

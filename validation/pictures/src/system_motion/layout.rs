@@ -6,18 +6,18 @@ use super::{MARGIN, WIDTH};
 /// The corners of a panel, the upper left one first.
 type Corners = (At, At);
 
-/// Room for the labels and the name of a vertical axis.
-const AXIS: f64 = 124.0;
-/// Room for the names of events at the most.
-const WIDEST_NAMES: f64 = 260.0;
+/// The width of the labels and the name of a vertical axis.
+const AXIS_WIDTH: f64 = 124.0;
+/// The largest width of the names of events.
+const MAX_NAMES_WIDTH: f64 = 260.0;
 /// The right edge of what is drawn against time, where the plane of two states stands beside it.
-const MIDDLE: f64 = 850.0;
-/// Between two panels that stand below each other.
-const GAP: f64 = 16.0;
+const TIME_PANEL_RIGHT: f64 = 850.0;
+/// The gap between two panels that stand below each other.
+const PANEL_GAP: f64 = 16.0;
 /// Height of a row of events.
-const ROW: f64 = 26.0;
-/// Room for the labels and the name of a horizontal axis.
-const FOOT: f64 = 78.0;
+const ROW_HEIGHT: f64 = 26.0;
+/// The height of the labels and the name of a horizontal axis.
+const FOOT_HEIGHT: f64 = 78.0;
 
 /// The edges of a picture's panels.
 pub(super) struct Layout {
@@ -35,8 +35,8 @@ impl Layout {
     /// `widest` pixels.
     pub fn new(head: f64, states: usize, events: usize, widest: f64) -> Self {
         Self {
-            left: AXIS.max(widest.min(WIDEST_NAMES) + MARGIN),
-            right: if states > 1 { MIDDLE } else { WIDTH - MARGIN },
+            left: AXIS_WIDTH.max(widest.min(MAX_NAMES_WIDTH) + MARGIN),
+            right: if states > 1 { TIME_PANEL_RIGHT } else { WIDTH - MARGIN },
             top: head,
             panel: match states {
                 0 | 1 => 340.0,
@@ -52,20 +52,20 @@ impl Layout {
 
     /// The panel of a state against time.
     pub fn state(&self, n: usize) -> Corners {
-        let top = self.top + (self.panel + GAP) * n as f64;
+        let top = self.top + (self.panel + PANEL_GAP) * n as f64;
         ((self.left, top), (self.right, top + self.panel))
     }
 
     /// The panel of the events, where there are any.
     pub fn events(&self) -> Option<Corners> {
-        let top = self.top + (self.panel + GAP) * self.states as f64;
-        let bottom = top + ROW * self.events as f64;
+        let top = self.top + (self.panel + PANEL_GAP) * self.states as f64;
+        let bottom = top + ROW_HEIGHT * self.events as f64;
         (self.events > 0).then_some(((self.left, top), (self.right, bottom)))
     }
 
     /// The plane of the first two states, where there are two.
     pub fn plane(&self) -> Option<Corners> {
-        let from = (MIDDLE + AXIS + MARGIN, self.top);
+        let from = (TIME_PANEL_RIGHT + AXIS_WIDTH + MARGIN, self.top);
         (self.states > 1).then_some((from, (WIDTH - MARGIN, self.bottom())))
     }
 
@@ -76,6 +76,6 @@ impl Layout {
     }
 
     pub fn height(&self) -> f64 {
-        self.bottom() + FOOT
+        self.bottom() + FOOT_HEIGHT
     }
 }

@@ -19,21 +19,21 @@ use sampled::{Mark, event_names, marks, pieces};
 use std::collections::BTreeMap;
 
 /// The largest number of states that one picture shows.
-pub const MOST_STATES: usize = 6;
+pub const MAX_STATES: usize = 6;
 
 const WIDTH: f64 = 1500.0;
 const MARGIN: f64 = 24.0;
 const TEXT: f64 = 20.0;
 /// Text of the values of parameters.
-const SMALL: f64 = 17.0;
+const SMALL_TEXT: f64 = 17.0;
 /// Height of a line of text.
-const LINE: f64 = 28.0;
+const LINE_HEIGHT: f64 = 28.0;
 /// The baseline of the title.
-const TITLE: f64 = 30.0;
+const TITLE_BASELINE: f64 = 30.0;
 /// The width of a key's sample with the space after a name.
-const KEY_ROOM: f64 = 70.0;
+const KEY_SAMPLE_WIDTH: f64 = 70.0;
 /// The width of the curves.
-const CURVE: f64 = 2.0;
+const CURVE_WIDTH: f64 = 2.0;
 
 /// The motion of a run between its events, with all states.
 #[must_use]
@@ -66,7 +66,7 @@ impl SystemMotion {
         let events = event_names(system, run);
         let motion = Self {
             title: system.name.clone(),
-            caption: font::wrapped(&values(system), SMALL, WIDTH - 2.0 * MARGIN),
+            caption: font::wrapped(&values(system), SMALL_TEXT, WIDTH - 2.0 * MARGIN),
             states: shown.iter().map(|n| system.states[*n].clone()).collect(),
             modes: system.modes.iter().map(|mode| mode.name.clone()).collect(),
             pieces: pieces(solver, run, shown),
@@ -95,7 +95,8 @@ impl SystemMotion {
     }
 
     fn layout(&self) -> Layout {
-        let head = TITLE + LINE * (1 + self.caption.len() + self.key_rows().len()) as f64;
+        let head =
+            TITLE_BASELINE + LINE_HEIGHT * (1 + self.caption.len() + self.key_rows().len()) as f64;
         let widest = self.events.iter().map(|name| font::width(name, TEXT)).fold(0.0, f64::max);
         Layout::new(head, self.states.len(), self.events.len(), widest)
     }
@@ -107,7 +108,7 @@ impl SystemMotion {
         occurring.dedup();
         let (mut rows, mut used) = (vec![Vec::new()], 0.0);
         for mode in occurring {
-            let width = KEY_ROOM + font::width(&self.modes[mode], TEXT);
+            let width = KEY_SAMPLE_WIDTH + font::width(&self.modes[mode], TEXT);
             let mut last = rows.pop().unwrap_or_default();
             if used + width > WIDTH - 2.0 * MARGIN && !last.is_empty() {
                 rows.push(std::mem::take(&mut last));
@@ -148,7 +149,7 @@ impl SystemMotion {
                 })
             });
             key(canvas, (MARGIN, y), KeyLayout::Row, TEXT, items);
-            y += LINE;
+            y += LINE_HEIGHT;
         }
     }
 
@@ -220,14 +221,14 @@ impl SystemMotion {
         let far = |(a, b): &(At, At)| (a.0 - b.0).hypot(a.1 - b.1) > 1.0;
         let skips = self.marks.iter().map(|mark| (place(&mark.before), place(&mark.after)));
         let skips = skips.filter(far).map(|(from, to)| vec![from, to]);
-        canvas.strokes(skips, 1.0, palette::SKIPPED);
+        canvas.strokes(skips, 1.0, palette::RESET_JUMP);
         let mut lines: BTreeMap<usize, Vec<Vec<At>>> = BTreeMap::new();
         for piece in &self.pieces {
             let places: Vec<At> = piece.points.iter().map(place).collect();
             lines.entry(piece.mode).or_default().push(simplified(&places));
         }
         for (mode, lines) in lines {
-            canvas.strokes(lines, CURVE, palette::mode(mode).0);
+            canvas.strokes(lines, CURVE_WIDTH, palette::mode(mode).0);
         }
         let size = match self.marks.len() {
             0..60 => 7.0,
@@ -264,10 +265,10 @@ impl Drawing for SystemMotion {
         let layout = self.layout();
         canvas.title(&self.title);
         for (n, line) in self.caption.iter().enumerate() {
-            let at = (MARGIN, TITLE + LINE * (n + 1) as f64);
-            canvas.text(line, at, SMALL, super::canvas::TextSide::Left, palette::INK);
+            let at = (MARGIN, TITLE_BASELINE + LINE_HEIGHT * (n + 1) as f64);
+            canvas.text(line, at, SMALL_TEXT, super::canvas::TextSide::Left, palette::INK);
         }
-        self.key(canvas, TITLE + LINE * (1 + self.caption.len()) as f64);
+        self.key(canvas, TITLE_BASELINE + LINE_HEIGHT * (1 + self.caption.len()) as f64);
         self.histories(canvas, &layout);
         self.event_rows(canvas, &layout);
         self.plane(canvas, &layout);

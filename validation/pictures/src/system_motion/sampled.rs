@@ -4,16 +4,17 @@
 use percuss::affine::{Event, Solver, System, What};
 use percuss::number::Number;
 
-/// Points of the whole run.
-const POINTS: f64 = 6000.0;
+/// The fewest points of the whole run.
+const MIN_POINTS: f64 = 6000.0;
 /// Points in 2 pi units of the system's time, unless that makes too many.
-const POINTS_A_TURN: f64 = 40.0;
-const MOST_POINTS: f64 = 200_000.0;
-/// Points of even the shortest piece.
-const FEWEST: f64 = 8.0;
-/// Names of events that have a row of their own.
-const MOST_NAMES: usize = 12;
-const OTHERS: &str = "other events";
+const POINTS_PER_TURN: f64 = 40.0;
+/// The most points of the whole run.
+const MAX_POINTS: f64 = 200_000.0;
+/// The fewest points of a piece, however short.
+const MIN_PIECE_POINTS: f64 = 8.0;
+/// The most rows of events by name, of which the last has the others where there are more.
+const MAX_NAMES: usize = 12;
+const OTHER_EVENTS: &str = "other events";
 
 /// The motion between two events: time and the states that are shown, several times.
 pub struct SampledSegment {
@@ -43,9 +44,9 @@ pub(super) fn event_names<T: Number>(system: &System, run: &[Event<T>]) -> Vec<S
     }
     let occurs = |name: &&str| run.iter().any(|event| name_of(system, event) == Some(*name));
     let mut names: Vec<String> = named.into_iter().filter(occurs).map(str::to_owned).collect();
-    if names.len() > MOST_NAMES {
-        names.truncate(MOST_NAMES - 1);
-        names.push(OTHERS.to_owned());
+    if names.len() > MAX_NAMES {
+        names.truncate(MAX_NAMES - 1);
+        names.push(OTHER_EVENTS.to_owned());
     }
     names
 }
@@ -69,11 +70,11 @@ pub(super) fn pieces<T: Number>(
         _ => 0.0,
     };
     let turns = whole / (std::f64::consts::TAU * solver.system().time_scale);
-    let wanted = (POINTS_A_TURN * turns).clamp(POINTS, MOST_POINTS);
+    let wanted = (POINTS_PER_TURN * turns).clamp(MIN_POINTS, MAX_POINTS);
     let piece = |ends: &[Event<T>]| {
         let lasts = between(&ends[0], &ends[1]);
         let share = lasts.to_f64().abs() / whole;
-        let count = (wanted * share).ceil().max(FEWEST);
+        let count = (wanted * share).ceil().max(MIN_PIECE_POINTS);
         let point = |n: u32| {
             let time = ends[0].time.after(lasts * T::exact(f64::from(n) / count));
             let state = solver.state_at(&ends[0], &time);
@@ -95,7 +96,7 @@ pub(super) fn marks<T: Number>(
     let mark = |ends: &[Event<T>]| {
         let (begin, event) = (&ends[0], &ends[1]);
         let name = name_of(solver.system(), event)?;
-        let row = names.iter().position(|it| it == name).unwrap_or(MOST_NAMES - 1);
+        let row = names.iter().position(|it| it == name).unwrap_or(MAX_NAMES - 1);
         let time = event.time.value();
         let before = solver.state_at(begin, &event.time);
         Some(Mark {

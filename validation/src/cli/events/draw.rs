@@ -4,7 +4,7 @@ use super::progress::RunEnd;
 use super::rows::{Rows, Sink};
 use crate::cli::shared::names;
 use crate::cli::shared::picture::PictureFormat;
-use crate::picture::{self, MOST_STATES, SystemMotion};
+use crate::picture::{self, MAX_STATES, SystemMotion};
 use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};
 use percuss::affine::{self, Solver, System, Time, What};
@@ -17,7 +17,7 @@ const MAX_DRAWN_EVENTS: usize = 20_000;
 /// The indices of the states that `--states` names, or of the first ones.
 pub(super) fn shown(system: &System, states: Option<&str>) -> Result<Vec<usize>> {
     let Some(states) = states else {
-        return Ok((0..system.states.len().min(MOST_STATES)).collect());
+        return Ok((0..system.states.len().min(MAX_STATES)).collect());
     };
     let mut shown = Vec::new();
     for name in states.split(',').map(str::trim) {
@@ -36,8 +36,8 @@ pub(super) fn shown(system: &System, states: Option<&str>) -> Result<Vec<usize>>
         };
         shown.push(index);
     }
-    if shown.len() > MOST_STATES {
-        bail!("--states {states} is not accepted: at most {MOST_STATES} states are");
+    if shown.len() > MAX_STATES {
+        bail!("--states {states} is not accepted: at most {MAX_STATES} states are");
     }
     Ok(shown)
 }

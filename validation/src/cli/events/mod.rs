@@ -17,7 +17,7 @@ use super::shared::parse::{self, Typed};
 use super::shared::picture::PictureFormat;
 use super::shared::system_choice::SystemFlags;
 use super::{DONE, OUT_OF_BOUNDS, note};
-use crate::picture::MOST_STATES;
+use crate::picture::MAX_STATES;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
 use percuss::affine::BITS;
@@ -112,8 +112,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     })?;
     bar.iter().for_each(Bar::finish_and_clear);
     let all = system.states.len();
-    if !pictures.is_empty() && shown.len() == MOST_STATES && all > MOST_STATES {
-        note(&format!("{MOST_STATES} of {all} states are shown: --states chooses"));
+    if !pictures.is_empty() && shown.len() == MAX_STATES && all > MAX_STATES {
+        note(&format!("{MAX_STATES} of {all} states are shown: --states chooses"));
     }
     end.notes.iter().for_each(|it| note(it));
     Ok(if end.undecided { OUT_OF_BOUNDS } else { DONE })
