@@ -1,6 +1,6 @@
 //! The events of a run that is measured in returns, ended as the command `simulate` ends them.
 
-use crate::collect::{End, Kept, Limits, STOPPED, row};
+use crate::collect::{End, Kept, Limits, STOPPED_ENDING, row};
 use percuss::{Ending, Event, Events};
 use percuss_validation::returns::{CountedReturns, ReturnCount};
 
@@ -157,8 +157,8 @@ impl<E> Walk<'_, '_, E> {
 
     /// Ends a run that has as many events as it may have.
     fn stop(&mut self) -> Result<(), E> {
-        self.end.name = Some(STOPPED.to_owned());
+        self.end.name = Some(STOPPED_ENDING.to_owned());
         let last = self.last.take();
-        (self.keep)(last.map(|last| Kept { name: STOPPED.to_owned(), ..last }))
+        (self.keep)(last.map(|last| Kept { name: STOPPED_ENDING.to_owned(), ..last }))
     }
 }

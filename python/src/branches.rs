@@ -3,7 +3,7 @@
 use crate::arrays::table;
 use crate::dynamics::check_period;
 use crate::failure::value;
-use crate::long_work::{Progress, SHARES, interruptible};
+use crate::long_work::{Progress, WORK_PARTS, interruptible};
 use crate::oscillator::Oscillator;
 use crate::returns::check_returns;
 use crate::section::Section;
@@ -80,7 +80,7 @@ pub(crate) fn follow<'py>(
     let family = Family::new(*oscillator.model.parameters(), parameter, instant);
     let map = family.map(from).map_err(value)?;
     family.map(to).map_err(value)?;
-    let branch = interruptible(py, &Progress { told, all: SHARES }, |stop| {
+    let branch = interruptible(py, &Progress { told, all: WORK_PARTS }, |stop| {
         let guess = match from_start {
             true => oscillator.entry.point(),
             false => {
@@ -150,7 +150,7 @@ pub(crate) fn system_follow<'py>(
     at(ends[1]).map_err(value)?;
     let solver = first.solver::<f64>().map_err(value)?;
     let map = section.map(&solver)?;
-    let branch = interruptible(py, &Progress { told, all: SHARES }, |stop| {
+    let branch = interruptible(py, &Progress { told, all: WORK_PARTS }, |stop| {
         let (guess, _) = returns::guess(&map, transient)?;
         let family = ReturnFamily::new(section.section(), section.longest, &at);
         let told = &mut |share| stop.share(share);

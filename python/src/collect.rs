@@ -3,14 +3,14 @@
 use crate::gradient::{ByName, by_name};
 use percuss::{Answer, Ending, Event, Events, Proved};
 
-/// The number of digits of which a time needs one.
-const FEW: usize = 6;
+/// The most digits of a time that are counted, of which it needs one.
+const COUNTED_DIGITS: usize = 6;
 
 /// The ending of a run that has as many events as it may have.
-pub(crate) const STOPPED: &str = "stopped";
+pub(crate) const STOPPED_ENDING: &str = "stopped";
 
 /// The ending of a run whose time has no digit left.
-const NO_DIGITS: &str = "no-digits";
+const NO_DIGITS_ENDING: &str = "no-digits";
 
 /// The limits of a run besides its time.
 #[derive(Clone, Copy)]
@@ -72,13 +72,13 @@ pub(crate) trait Value: Clone + Send + Sync + 'static {
 impl Value for Proved {
     fn is_known(&self, time_scale: f64) -> bool {
         // A time next to zero has few digits though it is known well.
-        self.error() <= f64::EPSILON * time_scale || self.digits(FEW) != Some(0)
+        self.error() <= f64::EPSILON * time_scale || self.digits(COUNTED_DIGITS) != Some(0)
     }
 
     fn enclosing_decimals(&self) -> [Option<String>; 2] {
         /// The digits that the command shows of the times of an accumulation.
-        const DIGITS: u8 = 30;
-        [self.lower(DIGITS), self.upper(DIGITS)]
+        const END_DIGITS: u8 = 30;
+        [self.lower(END_DIGITS), self.upper(END_DIGITS)]
     }
 }
 
@@ -111,13 +111,13 @@ where
     while limits.count.is_none_or(|wanted| passed < wanted) {
         let Some(event) = events.next() else { break };
         if event.ending().is_none() && limits.most.is_some_and(|most| passed >= most) {
-            end.name = Some(STOPPED.to_owned());
-            keep(Kept { name: STOPPED.to_owned(), ..last })?;
+            end.name = Some(STOPPED_ENDING.to_owned());
+            keep(Kept { name: STOPPED_ENDING.to_owned(), ..last })?;
             break;
         }
         passed += 1;
         if !event.time().is_known(limits.time_scale) {
-            end.name = Some(NO_DIGITS.to_owned());
+            end.name = Some(NO_DIGITS_ENDING.to_owned());
             break;
         }
         last = row(&event, event.name().to_owned(), names);

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 /// The exit code of a run that was refused.
-const REFUSED: u8 = 2;
+const REFUSED_EXIT_CODE: u8 = 2;
 
 /// Runs the command with these words, of which the first is its name, and gives its exit code.
 #[pyfunction]
@@ -15,7 +15,7 @@ pub(crate) fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
         let code = percuss_validation::cli::run(words);
         // Python does not write out what a library's own stdout holds.
         let written = std::io::stdout().flush();
-        let number = (0..REFUSED).find(|it| ExitCode::from(*it) == code);
-        if written.is_err() { REFUSED } else { number.unwrap_or(REFUSED) }
+        let number = (0..REFUSED_EXIT_CODE).find(|it| ExitCode::from(*it) == code);
+        if written.is_err() { REFUSED_EXIT_CODE } else { number.unwrap_or(REFUSED_EXIT_CODE) }
     })
 }

@@ -12,13 +12,13 @@ use pyo3::IntoPyObject;
 use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyfunction};
 
 /// The most points of a diagram.
-const MOST_POINTS: u64 = 10_000_000;
+const MAX_POINTS: u64 = 10_000_000;
 
 /// Refuses a diagram that has nothing to show, or more points than are kept.
 pub(crate) fn check_points(steps: u32, each: u32) -> PyResult<()> {
-    if steps == 0 || u64::from(steps) * u64::from(each) > MOST_POINTS {
+    if steps == 0 || u64::from(steps) * u64::from(each) > MAX_POINTS {
         return Err(value(format!(
-            "steps = {steps} is not accepted: 1 or more are, and at most {MOST_POINTS} points"
+            "steps = {steps} is not accepted: 1 or more are, and at most {MAX_POINTS} points"
         )));
     }
     Ok(())

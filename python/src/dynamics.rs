@@ -2,7 +2,7 @@
 
 use crate::arrays::table;
 use crate::failure::value;
-use crate::long_work::{Progress, SHARES, attended, interruptible};
+use crate::long_work::{Progress, WORK_PARTS, attended, interruptible};
 use crate::oscillator::{MAX_PERIODS, Oscillator};
 use numpy::PyArray2;
 use percuss::dynamics::batches::Stationarity;
@@ -15,7 +15,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyfunction};
 
 /// The longest period of an orbit that is looked for.
-pub(crate) const MOST_PERIODS_OF_AN_ORBIT: u32 = 10_000;
+pub(crate) const MAX_ORBIT_PERIODS: u32 = 10_000;
 
 /// Refuses a run that is too long, or that has nothing to tell.
 pub(crate) fn check_periods(transient: u64, periods: u64) -> PyResult<()> {
@@ -114,10 +114,10 @@ pub(crate) fn lyapunov(
 
 /// Refuses a period of an orbit that is not looked for.
 pub(crate) fn check_period(period: u32) -> PyResult<()> {
-    if (1..=MOST_PERIODS_OF_AN_ORBIT).contains(&period) {
+    if (1..=MAX_ORBIT_PERIODS).contains(&period) {
         return Ok(());
     }
-    Err(value(format!("period = {period} is not accepted: 1 to {MOST_PERIODS_OF_AN_ORBIT} are")))
+    Err(value(format!("period = {period} is not accepted: 1 to {MAX_ORBIT_PERIODS} are")))
 }
 
 /// A periodic orbit.
@@ -155,7 +155,7 @@ pub(crate) fn orbits<'py>(
 ) -> PyResult<Vec<FoundOrbit<'py>>> {
     check_period(period)?;
     let map = StrobeMap::new(oscillator.model, oscillator.entry.instant);
-    let found = interruptible(py, &Progress { told, all: SHARES }, |stop| {
+    let found = interruptible(py, &Progress { told, all: WORK_PARTS }, |stop| {
         if !from_start {
             return Ok(scan(&map, period, &mut |share| stop.share(share)));
         }

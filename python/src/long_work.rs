@@ -10,10 +10,10 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The time between two looks at Python's signals.
-const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// The number of steps between two looks at the clock.
-const STEPS: u32 = 16;
+const STEPS_PER_CLOCK_READING: u32 = 16;
 
 /// Looks at Python's signals now and then, from the thread that was called from Python.
 pub(crate) struct Patience {
@@ -29,11 +29,11 @@ impl Patience {
     /// A step of the work is done.
     pub(crate) fn step(&mut self) -> PyResult<()> {
         self.steps += 1;
-        if self.steps < STEPS {
+        if self.steps < STEPS_PER_CLOCK_READING {
             return Ok(());
         }
         self.steps = 0;
-        if self.last.elapsed() < BETWEEN_LOOKS {
+        if self.last.elapsed() < SIGNAL_INTERVAL {
             return Ok(());
         }
         self.last = Instant::now();
@@ -63,7 +63,7 @@ impl Here<'_> {
     /// Whether the work is to go on, of which so many parts are done.
     fn goes_on(&self, done: u64) -> bool {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        if last.elapsed() < BETWEEN_LOOKS {
+        if last.elapsed() < SIGNAL_INTERVAL {
             return true;
         }
         let told = Python::attach(|py| {
@@ -104,14 +104,14 @@ impl Stop<'_> {
         self.look();
     }
 
-    /// This share of work in [`SHARES`] parts is done by now.
+    /// This share of work in [`WORK_PARTS`] parts is done by now.
     pub(crate) fn share(&self, share: f64) {
-        self.reached((share * SHARES as f64) as u64);
+        self.reached((share * WORK_PARTS as f64) as u64);
     }
 }
 
 /// The number of parts of work that has no parts of its own.
-pub(crate) const SHARES: u64 = 1000;
+pub(crate) const WORK_PARTS: u64 = 1000;
 
 /// A function of Python that is told how many of all parts are done, if there is one.
 #[derive(Default)]
@@ -147,7 +147,7 @@ pub(crate) fn interruptible<T: Send>(
                 drop(sender.send(result));
             });
             loop {
-                match receiver.recv_timeout(BETWEEN_LOOKS) {
+                match receiver.recv_timeout(SIGNAL_INTERVAL) {
                     Ok(result) => return Ok(result),
                     Err(RecvTimeoutError::Disconnected) => {
                         return Ok(Err(Box::new(Interrupted) as _));

@@ -9,19 +9,19 @@ use pyo3::IntoPyObject;
 use pyo3::prelude::{Bound, PyResult, Python, pyclass, pymethods};
 
 /// Forcing periods after which a run that counts events stops.
-const USUAL_MAX_PERIODS: u64 = 1_000_000;
+const DEFAULT_MAX_PERIODS: u64 = 1_000_000;
 
 /// The most forcing periods of a run.
 pub(crate) const MAX_PERIODS: u64 = 1_000_000_000;
 
 /// The largest forcing angle of a time that is still reduced exactly.
-const LARGEST_ANGLE: f64 = 4e21;
+const MAX_ANGLE_RADIANS: f64 = 4e21;
 
 /// The phase of the row at which a run ends.
-const END: &str = "end";
+const END_PHASE: &str = "end";
 
 /// The phase of the row from which on a run is not decided.
-const UNDECIDABLE: &str = "undecidable";
+const UNDECIDABLE_PHASE: &str = "undecidable";
 
 /// The oscillator at a start.
 #[pyclass(frozen, module = "percuss._percuss")]
@@ -67,7 +67,7 @@ impl Oscillator {
     fn horizon(&self, tau: f64) -> PyResult<Instant> {
         let (omega, start) = (self.omega(), self.entry.instant);
         // Written so that a NaN is refused.
-        let representable = (omega * tau).abs() <= LARGEST_ANGLE;
+        let representable = (omega * tau).abs() <= MAX_ANGLE_RADIANS;
         let horizon = if representable { Instant::at(omega, tau, 0) } else { start };
         let span = horizon.since(&start, omega).value();
         if representable && horizon >= start && span <= MAX_PERIODS as f64 * self.model.period() {
@@ -122,7 +122,7 @@ impl Oscillator {
         };
         let sample = last.at_instant(&instant);
         let state = [sample.state.p, sample.state.y, sample.state.q, sample.v];
-        let phase = if undecided { UNDECIDABLE } else { END };
+        let phase = if undecided { UNDECIDABLE_PHASE } else { END_PHASE };
         table.add(phase, instant.tau(omega), state);
     }
 }
@@ -185,7 +185,7 @@ impl Oscillator {
         let horizon = match (until, count, periods) {
             (Some(tau), None, None) => self.horizon(tau)?,
             (None, None, Some(periods)) => after(periods),
-            (None, Some(_), None) => after(max_periods.unwrap_or(USUAL_MAX_PERIODS)),
+            (None, Some(_), None) => after(max_periods.unwrap_or(DEFAULT_MAX_PERIODS)),
             _ => {
                 return Err(crate::failure::arguments(
                     "a run needs its length: accepted is one of until, count and periods",

@@ -3,7 +3,7 @@
 use crate::failure::value;
 use crate::long_work::{Progress, interruptible};
 use percuss_programs::files::{Answerer, CaseFile, FileEngine};
-use percuss_programs::{NAMES, is_name};
+use percuss_programs::{ACCEPTED_NAMES, is_name};
 use percuss_validation::case;
 use percuss_validation::engine::{
     Accuracy, Class, Declaration, Engine, Failure, Limits, Outcome, REFERENCE, Stepping, Task, Work,
@@ -104,7 +104,8 @@ impl Answers {
     fn answerer(&self) -> PyResult<Answerer> {
         if !is_name(&self.name) || self.name.starts_with(REFERENCE) {
             return Err(value(format!(
-                "name = {:?} is not accepted: {NAMES} that does not begin with {REFERENCE} is",
+                "name = {:?} is not accepted: {ACCEPTED_NAMES} that does not begin with \
+                 {REFERENCE} is",
                 self.name
             )));
         }
@@ -158,8 +159,8 @@ fn class(word: &str) -> PyResult<Class> {
 
 /// A text that lasts as long as the process, each once.
 fn lasting(text: &str) -> &'static str {
-    static KEPT: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
-    let Ok(mut kept) = KEPT.lock() else { return "" };
+    static KEPT_TEXTS: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let Ok(mut kept) = KEPT_TEXTS.lock() else { return "" };
     if let Some(known) = kept.get(text) {
         return known;
     }

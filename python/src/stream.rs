@@ -12,10 +12,10 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 /// The number of rows that are made ahead at most.
-const AHEAD: usize = 256;
+const MAX_ROWS_AHEAD: usize = 256;
 
 /// The time between two looks at Python's signals.
-const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
 enum Message {
     Row(Kept<Proved>),
@@ -67,7 +67,7 @@ fn run(shared: &Shared, asked: &Asked, rows: &SyncSender<Message>) {
 
 impl Stream {
     pub(crate) fn start(shared: Arc<Shared>, asked: Asked, digits: usize) -> PyResult<Self> {
-        let (sender, receiver) = sync_channel(AHEAD);
+        let (sender, receiver) = sync_channel(MAX_ROWS_AHEAD);
         let own = Arc::clone(&shared);
         let thread = std::thread::Builder::new().name("percuss-run".to_owned());
         thread.spawn(move || run(&own, &asked, &sender))?;
@@ -80,7 +80,7 @@ impl Stream {
         loop {
             let rows = self.rows.lock();
             let rows = rows.map_err(|_| PyRuntimeError::new_err("the run was given up"))?;
-            match rows.recv_timeout(BETWEEN_LOOKS) {
+            match rows.recv_timeout(SIGNAL_INTERVAL) {
                 Ok(message) => return Ok(Some(message)),
                 Err(RecvTimeoutError::Disconnected) => return Ok(None),
                 Err(RecvTimeoutError::Timeout) => {}

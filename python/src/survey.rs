@@ -1,7 +1,7 @@
 //! The oscillator's attractors and their basins.
 
 use crate::arrays::table;
-use crate::dynamics::MOST_PERIODS_OF_AN_ORBIT;
+use crate::dynamics::MAX_ORBIT_PERIODS;
 use crate::failure::value;
 use crate::long_work::{Progress, interruptible};
 use crate::oscillator::{MAX_PERIODS, Oscillator};
@@ -12,10 +12,10 @@ use pyo3::IntoPyObject;
 use pyo3::prelude::{Bound, Py, PyAny, PyResult, Python, pyfunction};
 
 /// The most cells along a side of a grid.
-const MOST_CELLS: u32 = 65_536;
+const MAX_CELLS_PER_SIDE: u32 = 65_536;
 
 /// The most cells of a grid.
-const MOST_STARTS: u64 = 1 << 28;
+const MAX_CELLS: u64 = 1 << 28;
 
 /// The attractor that each start of a grid reaches.
 #[derive(IntoPyObject)]
@@ -48,11 +48,11 @@ pub(crate) fn check_grid(
     transient: u64,
     max_period: u32,
 ) -> PyResult<()> {
-    let is_side = |it: u32| (1..=MOST_CELLS).contains(&it);
-    if !(is_side(columns) && is_side(rows) && u64::from(columns) * u64::from(rows) <= MOST_STARTS) {
+    let is_side = |it: u32| (1..=MAX_CELLS_PER_SIDE).contains(&it);
+    if !(is_side(columns) && is_side(rows) && u64::from(columns) * u64::from(rows) <= MAX_CELLS) {
         return Err(value(format!(
-            "grid = ({columns}, {rows}) is not accepted: 1 to {MOST_CELLS} each, and at most \
-             {MOST_STARTS} starts, are"
+            "grid = ({columns}, {rows}) is not accepted: 1 to {MAX_CELLS_PER_SIDE} each, and at \
+             most {MAX_CELLS} starts, are"
         )));
     }
     if !(1..=MAX_PERIODS).contains(&transient) {
@@ -60,9 +60,9 @@ pub(crate) fn check_grid(
             "transient = {transient} is not accepted: 1 to {MAX_PERIODS} are"
         )));
     }
-    if !(1..=MOST_PERIODS_OF_AN_ORBIT).contains(&max_period) {
+    if !(1..=MAX_ORBIT_PERIODS).contains(&max_period) {
         return Err(value(format!(
-            "max_period = {max_period} is not accepted: 1 to {MOST_PERIODS_OF_AN_ORBIT} are"
+            "max_period = {max_period} is not accepted: 1 to {MAX_ORBIT_PERIODS} are"
         )));
     }
     Ok(())

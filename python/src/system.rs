@@ -9,17 +9,17 @@ use crate::section::Section;
 use crate::stream::Stream;
 use percuss::SystemError;
 use percuss::affine::{BITS, LONGEST, SystemFile};
-use percuss_validation::returns::{CountedReturns, MOST_RETURNS, Strobes, Uncounted};
+use percuss_validation::returns::{CountedReturns, MAX_RETURNS, Strobes, Uncounted};
 use percuss_validation::systems::{SYSTEMS, named};
 use pyo3::prelude::{PyRef, PyResult, Python, pyclass, pyfunction, pymethods};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The most bits that a run may take.
-const MOST_BITS: u32 = BITS[BITS.len() - 1];
+const MAX_BITS: u32 = BITS[BITS.len() - 1];
 
 /// The most significant digits that may be asked for.
-const MOST_DIGITS: usize = 300;
+const MAX_DIGITS: usize = 300;
 
 /// A piecewise-affine system.
 #[pyclass(frozen, module = "percuss._percuss")]
@@ -66,14 +66,12 @@ impl System {
                 return Err(value(format!("{name} = 0 is not accepted: 1 or more is")));
             }
         }
-        if !(1..=MOST_DIGITS).contains(&digits) {
-            return Err(value(format!(
-                "digits = {digits} is not accepted: 1 to {MOST_DIGITS} are"
-            )));
+        if !(1..=MAX_DIGITS).contains(&digits) {
+            return Err(value(format!("digits = {digits} is not accepted: 1 to {MAX_DIGITS} are")));
         }
-        let bits = max_bits.unwrap_or(MOST_BITS);
-        if !(BITS[0]..=MOST_BITS).contains(&bits) {
-            let [least, most] = [BITS[0], MOST_BITS];
+        let bits = max_bits.unwrap_or(MAX_BITS);
+        if !(BITS[0]..=MAX_BITS).contains(&bits) {
+            let [least, most] = [BITS[0], MAX_BITS];
             return Err(value(format!("max_bits = {bits} is not accepted: {least} to {most} are")));
         }
         let direction = if backward { -1.0 } else { 1.0 };
@@ -110,7 +108,7 @@ impl System {
             value(match why {
                 Uncounted::TooMany(whole) => format!(
                     "transient = {left_out} and returns make {whole} returns: at most \
-                     {MOST_RETURNS} are accepted"
+                     {MAX_RETURNS} are accepted"
                 ),
                 Uncounted::NotForced => format!(
                     "returns without a section are not accepted: {} is not forced, so that no \
@@ -282,7 +280,7 @@ impl System {
         backward: bool,
         returns: Option<(Option<u64>, u64, PyRef<'_, Section>)>,
     ) -> PyResult<Rows> {
-        let mut asked = self.asked((until, count, max_events), (MOST_DIGITS, None), backward)?;
+        let mut asked = self.asked((until, count, max_events), (MAX_DIGITS, None), backward)?;
         let wanted = returns.as_ref().and_then(|it| it.0);
         let given = [until.is_some(), count.is_some(), wanted.is_some()];
         one_length(&given, "until, count and returns")?;

@@ -17,8 +17,8 @@ static const double ROUNDING = 1024 * DBL_EPSILON;
  * of a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly. */
 static const double SIMPLE = 0.1, MULTIPLE = 10;
 /* So many events in one instant end a run. */
-static const int MOST_AT_ONCE = 64;
-static const double ONE_INSTANT = 8 * DBL_EPSILON;
+static const int MAX_SIMULTANEOUS_EVENTS = 64;
+static const double INSTANT_TOLERANCE = 8 * DBL_EPSILON;
 
 void percuss_wide(const percuss_course *course, double t, const double *z, double *w) {
     double theta = course->omega * t + course->phi;
@@ -185,16 +185,16 @@ void percuss_pass(percuss_course *course, double t, int event, const double *z, 
     percuss_report(course, t, event, follows, z, after);
     percuss_differentiate(course, t, event, z);
     struct percuss_private *own = course->own;
-    own->crowd = t - course->t <= ONE_INSTANT * t ? own->crowd + 1 : 1;
+    own->crowd = t - course->t <= INSTANT_TOLERANCE * t ? own->crowd + 1 : 1;
     course->t = t;
     course->mode = follows;
     memcpy(course->z, after, course->size * sizeof *after);
-    if (own->crowd >= MOST_AT_ONCE) course->ended = "no-progress";
+    if (own->crowd >= MAX_SIMULTANEOUS_EVENTS) course->ended = "no-progress";
 }
 
 bool percuss_goes_on(const percuss_course *course) {
     bool is_over = course->ended || course->failure[0];
-    return !is_over && course->span - course->t > 2 * ONE_INSTANT * course->span;
+    return !is_over && course->span - course->t > 2 * INSTANT_TOLERANCE * course->span;
 }
 
 void percuss_fail(percuss_course *course, const char *why, ...) {

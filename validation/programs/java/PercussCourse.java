@@ -13,8 +13,8 @@ final class PercussCourse {
     private static final double SIMPLE = 0.1, MULTIPLE = 10;
     /** So many events in one instant end a run, and so many stretches in so little of a run are one
      *  event that is found again and again. */
-    private static final int MOST_AT_ONCE = 64, MOST_STRETCHES = 200;
-    private static final double ONE_INSTANT = 8 * Math.ulp(1.0), NO_PROGRESS = 1e-9;
+    private static final int MAX_SIMULTANEOUS_EVENTS = 64, MOST_STRETCHES = 200;
+    private static final double INSTANT_TOLERANCE = 8 * Math.ulp(1.0), NO_PROGRESS = 1e-9;
 
     /** What is asked for, by its names in a request. */
     static final class Run {
@@ -187,11 +187,11 @@ final class PercussCourse {
         double[] after = system.after(event, time, state);
         int follows = system.follows(event, time, after, plainly);
         report(time, place, follows, state, after);
-        crowd = time - t <= ONE_INSTANT * time ? crowd + 1 : 1;
+        crowd = time - t <= INSTANT_TOLERANCE * time ? crowd + 1 : 1;
         t = time;
         mode = follows;
         z = after;
-        if (crowd >= MOST_AT_ONCE) ended = "no-progress";
+        if (crowd >= MAX_SIMULTANEOUS_EVENTS) ended = "no-progress";
     }
 
     /** Whether the run has not come to its end; asked once a stretch. */
@@ -203,7 +203,7 @@ final class PercussCourse {
         } else if (stretches > MOST_STRETCHES) {
             throw new IllegalStateException("events at " + t + " are found again and again");
         }
-        boolean goes = ended == null && run.span - t > 2 * ONE_INSTANT * run.span;
+        boolean goes = ended == null && run.span - t > 2 * INSTANT_TOLERANCE * run.span;
         if (goes) sampleHere();
         return goes;
     }

@@ -20,8 +20,8 @@ import Pkg
 
 const SciMLBase = OrdinaryDiffEq.SciMLBase
 const LONGEST_STEP = 0.125
-const MOST_AT_ONCE = 64
-const ONE_INSTANT = 8 * eps()
+const MAX_SIMULTANEOUS_EVENTS = 64
+const INSTANT_TOLERANCE = 8 * eps()
 const HIDDEN = 0.1
 const METHODS = Dict(
     "tsit5" => (Tsit5, "Tsitouras 5(4)", "explicit", 5),
@@ -120,9 +120,9 @@ function pass(course, t, place, z)
     holds(it) = it["when"] === nothing || sum(row(it["when"]) .* after) > 0
     follows = first(Iterators.filter(holds, event.successors))["mode"] + 1
     report(course, t, place, follows, z, before)
-    course.crowd = t - course.t <= ONE_INSTANT * t ? course.crowd + 1 : 1
+    course.crowd = t - course.t <= INSTANT_TOLERANCE * t ? course.crowd + 1 : 1
     course.t, course.mode, course.z = t, follows, z
-    course.crowd >= MOST_AT_ONCE && (course.ended = "no-progress")
+    course.crowd >= MAX_SIMULTANEOUS_EVENTS && (course.ended = "no-progress")
 end
 
 # Runs to the first event that ends the mode, or to the horizon.
@@ -181,7 +181,7 @@ function make(course)
     setup = course.run["setup"]
     name = replace(setup, "-default" => "")
     span = course.run["span"]
-    while course.ended === nothing && span - course.t > 2 * ONE_INSTANT * span
+    while course.ended === nothing && span - course.t > 2 * INSTANT_TOLERANCE * span
         stretch(course, METHODS[name][1], setup != name)
     end
 end

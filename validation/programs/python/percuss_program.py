@@ -20,8 +20,8 @@ SIMPLE, MULTIPLE = 0.1, 10
 # So many stretches in so little of a run are one event that is found again and again.
 MOST_STRETCHES, NO_PROGRESS = 200, 1e-9
 # So many events in one instant end a run.
-MOST_AT_ONCE = 64
-ONE_INSTANT = 8 * np.finfo(float).eps
+MAX_SIMULTANEOUS_EVENTS = 64
+INSTANT_TOLERANCE = 8 * np.finfo(float).eps
 
 
 class Failure(Exception):
@@ -282,9 +282,9 @@ class Course:
             return
         follows, after = (switch or self.system.switch)(self.mode, event, t, z)
         self.report(t, event, follows, after, z)
-        self.crowd = self.crowd + 1 if t - self.t <= ONE_INSTANT * t else 1
+        self.crowd = self.crowd + 1 if t - self.t <= INSTANT_TOLERANCE * t else 1
         self.t, self.mode, self.z = t, follows, after
-        if self.crowd >= MOST_AT_ONCE:
+        if self.crowd >= MAX_SIMULTANEOUS_EVENTS:
             self.ended = "no-progress"
 
     def goes_on(self):
@@ -294,7 +294,7 @@ class Course:
             self.stretches, self.progress = 0, self.t
         if self.stretches > MOST_STRETCHES:
             raise Failure(f"events at {self.t} are found again and again")
-        return self.ended is None and self.span - self.t > 2 * ONE_INSTANT * self.span
+        return self.ended is None and self.span - self.t > 2 * INSTANT_TOLERANCE * self.span
 
     def answer(self, took):
         ended = self.ended or "horizon"

@@ -4,8 +4,8 @@
 # described in docs/PROTOCOL.md; what it counts from 0 is counted from 1 here.
 
 ROUNDING <- 1024 * .Machine$double.eps
-ONE_INSTANT <- 8 * .Machine$double.eps
-MOST_AT_ONCE <- 64
+INSTANT_TOLERANCE <- 8 * .Machine$double.eps
+MAX_SIMULTANEOUS_EVENTS <- 64
 # So many stretches in so little of a run are one event that is found again and again.
 MOST_STRETCHES <- 200
 NO_PROGRESS <- 1e-9
@@ -169,11 +169,11 @@ pass <- function(course, t, place, z, plainly = FALSE) {
     if (holds) break
   }
   report(course, t, place, it$mode, z, before)
-  course$crowd <- if (t - course$t <= ONE_INSTANT * t) course$crowd + 1 else 1
+  course$crowd <- if (t - course$t <= INSTANT_TOLERANCE * t) course$crowd + 1 else 1
   course$t <- t
   course$mode <- it$mode
   course$z <- z
-  if (course$crowd >= MOST_AT_ONCE) course$ended <- "no-progress"
+  if (course$crowd >= MAX_SIMULTANEOUS_EVENTS) course$ended <- "no-progress"
 }
 
 # Whether the run has not come to its end; asked once a stretch.
@@ -186,7 +186,7 @@ goes_on <- function(course) {
   if (course$stretches > MOST_STRETCHES) {
     stop(sprintf("events at %.17g are found again and again", course$t))
   }
-  is.null(course$ended) && course$run$span - course$t > 2 * ONE_INSTANT * course$run$span
+  is.null(course$ended) && course$run$span - course$t > 2 * INSTANT_TOLERANCE * course$run$span
 }
 
 answer_run <- function(course, seconds) {

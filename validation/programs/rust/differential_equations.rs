@@ -14,7 +14,7 @@ mod percuss_program;
 
 use differential_equations::prelude::*;
 use differential_equations_numbers::{
-    Dual, Equations, MOST_NAMES, Number, derivatives, without_derivatives,
+    Dual, Equations, MAX_NAMES, Number, derivatives, without_derivatives,
 };
 use percuss_program::{Course, Setup, serve};
 use serde_json::json;
@@ -166,8 +166,8 @@ fn differentiated(course: &mut Course, filter: fn(Dual) -> Dual) -> Result<(), B
 
 fn make(course: &mut Course) -> Result<(), Box<dyn Error>> {
     let names = course.run.gradients.len();
-    if names > MOST_NAMES {
-        return Err(format!("{names} names; this program takes at most {MOST_NAMES}").into());
+    if names > MAX_NAMES {
+        return Err(format!("{names} names; this program takes at most {MAX_NAMES}").into());
     }
     match (course.run.setup.as_str(), course.run.gradients.is_empty()) {
         ("rkv655e-saltation", _) => differential_equations_saltation::make(course),

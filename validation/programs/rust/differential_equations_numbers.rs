@@ -9,10 +9,10 @@ use num_dual::{Derivative, DualSVec64};
 use std::rc::Rc;
 
 /// Dual numbers of the library's example have so many derivatives; more than any case asks for.
-pub const MOST_NAMES: usize = 12;
+pub const MAX_NAMES: usize = 12;
 
 /// A number with its derivatives by names.
-pub type Dual = DualSVec64<MOST_NAMES>;
+pub type Dual = DualSVec64<MAX_NAMES>;
 
 /// A number that a run is made in.
 pub trait Number: Real {
@@ -39,7 +39,7 @@ impl Number for f64 {
 
 impl Number for Dual {
     fn of(value: f64, by: impl Iterator<Item = f64>) -> Self {
-        let mut all = [0.0; MOST_NAMES];
+        let mut all = [0.0; MAX_NAMES];
         all.iter_mut().zip(by).for_each(|(all, by)| *all = by);
         let depends = all.iter().any(|by| *by != 0.0);
         Self::new(value, Derivative::new(depends.then(|| all.into())))
@@ -51,8 +51,8 @@ impl Number for Dual {
 }
 
 /// The derivatives of a dual number.
-pub fn derivatives(number: &Dual) -> [f64; MOST_NAMES] {
-    number.eps.0.map_or([0.0; MOST_NAMES], Into::into)
+pub fn derivatives(number: &Dual) -> [f64; MAX_NAMES] {
+    number.eps.0.map_or([0.0; MAX_NAMES], Into::into)
 }
 
 /// The number without its derivatives, as the library's example has it for step sizes.

@@ -11,10 +11,10 @@ use std::fmt;
 use std::time::Duration;
 
 /// The distance beyond the horizon at which rounding may put an event, relative to the whole run.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+const HORIZON_TOLERANCE: f64 = 16.0 * f64::EPSILON;
 /// The time by which a run's reported time may exceed the wait for its answer: two clocks differ by
 /// less.
-const CLOCKS: Duration = Duration::from_millis(10);
+const CLOCK_TOLERANCE: Duration = Duration::from_millis(10);
 
 /// An error in an answer, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -138,7 +138,7 @@ fn ended_at(reply: &RunReply, ended: Ending, events: &[Event], task: &Task) -> R
     let usual = if ended == Ending::Horizon { task.span } else { last };
     let time = reply.ended_at.unwrap_or(usual);
     // Written so that a NaN is refused.
-    if (last..=task.span * (1.0 + ROUNDING)).contains(&time) {
+    if (last..=task.span * (1.0 + HORIZON_TOLERANCE)).contains(&time) {
         return Ok(time.min(task.span));
     }
     let what = format!("ended at {time:?}; accepted is {last:?} to {:?}", task.span);
@@ -168,7 +168,7 @@ fn events(replies: &[EventReply], task: &Task, limits: &Limits) -> Result<Vec<Ev
         let what = format!("gave {} events; accepted are {}", replies.len(), limits.events);
         return Err(AnswerPart::Run.wrong(what));
     }
-    let (size, latest) = (task.state.len(), task.span * (1.0 + ROUNDING));
+    let (size, latest) = (task.state.len(), task.span * (1.0 + HORIZON_TOLERANCE));
     let (mut mode, mut earliest) = (task.mode, 0.0);
     let mut events = Vec::with_capacity(replies.len());
     for (n, reply) in replies.iter().enumerate() {
@@ -241,7 +241,7 @@ fn work(reply: &RunReply, limits: &Limits) -> Result<Work, Wrong> {
 
 fn own_time(reply: &RunReply, took: Duration) -> Result<Option<Duration>, Wrong> {
     let Some(own) = reply.own_ns else { return Ok(None) };
-    let most = took + took / 100 + CLOCKS;
+    let most = took + took / 100 + CLOCK_TOLERANCE;
     if !(0.0..=most.as_nanos() as f64).contains(&own) {
         return Err(AnswerPart::Run.wrong(format!(
             "says that it took {own} ns of its own; accepted is 0 to the {} that its answer took",

@@ -35,5 +35,5 @@ mod wire;
 
 pub use engine::{NotStarted, ProgramEngine};
 pub use process::end_all;
-pub use programs_file::{NAMES, Program, is_name, read, shortcomings};
+pub use programs_file::{ACCEPTED_NAMES, Program, is_name, read, shortcomings};
 pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp};

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use toml::Spanned;
 
-/// The default time within which a program has to answer.
-const USUAL_TIMEOUT: f64 = 60.0;
-/// The longest time that a file may give a program for an answer.
-const LONGEST_TIMEOUT: f64 = 86_400.0;
+/// The default time within which a program has to answer, in seconds.
+const DEFAULT_TIMEOUT_SECONDS: f64 = 60.0;
+/// The longest time that a file may give a program for an answer, in seconds.
+const MAX_TIMEOUT_SECONDS: f64 = 86_400.0;
 /// The accepted names of programs, set-ups and engines in files.
-pub const NAMES: &str =
+pub const ACCEPTED_NAMES: &str =
     "a name of 1 to 40 characters: lower-case letters, digits, '-', '_', '.', '+'";
 
 /// A program that can be run as an engine, as its file names it.
@@ -100,7 +100,7 @@ impl ProgramsFile<'_> {
         let missing = |key: &str, what: &str| {
             self.error(begin, &format!("{key} is missing; accepted is {what}"))
         };
-        let name = wire.name.ok_or_else(|| missing("name", NAMES))?;
+        let name = wire.name.ok_or_else(|| missing("name", ACCEPTED_NAMES))?;
         let command =
             wire.command.ok_or_else(|| missing("command", "a list: a program, its arguments"))?;
         let name = self.name(&name, others)?;
@@ -115,7 +115,7 @@ impl ProgramsFile<'_> {
             self.error(given.span().start, &format!("name {name:?} is not accepted: {why}"))
         };
         if !is_name(name) {
-            return Err(refused(NAMES));
+            return Err(refused(ACCEPTED_NAMES));
         }
         if others.iter().any(|other| other.name == *name) {
             return Err(refused("another program has it"));
@@ -135,11 +135,13 @@ impl ProgramsFile<'_> {
     }
 
     fn timeout(&self, given: Option<Spanned<f64>>) -> Result<Duration, FileError> {
-        let Some(given) = given else { return Ok(Duration::from_secs_f64(USUAL_TIMEOUT)) };
+        let Some(given) = given else {
+            return Ok(Duration::from_secs_f64(DEFAULT_TIMEOUT_SECONDS));
+        };
         let seconds = *given.as_ref();
-        if !(0.001..=LONGEST_TIMEOUT).contains(&seconds) {
+        if !(0.001..=MAX_TIMEOUT_SECONDS).contains(&seconds) {
             let what = format!(
-                "timeout_s = {seconds} is not accepted: 0.001 to {LONGEST_TIMEOUT} seconds"
+                "timeout_s = {seconds} is not accepted: 0.001 to {MAX_TIMEOUT_SECONDS} seconds"
             );
             return Err(self.error(given.span().start, &what));
         }

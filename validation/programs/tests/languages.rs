@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Engines that no set-up makes right, as measured on these two runs.
-const WRONG: [&str; 6] = [
+const WRONG_ENGINES: [&str; 6] = [
     // The root's state comes with a time that is not the root's, the end of the step.
     "desolve-radau",
     // Times of events in the oscillator are off by more than the 200 tolerances that others stay
@@ -33,9 +33,9 @@ const WRONG: [&str; 6] = [
 const TOLERANCE: Accuracy = Accuracy::Tolerance(1e-8);
 const SPAN: f64 = 3.9;
 const SAMPLES: u32 = 50;
-/// By how much a state after a reset may differ from the reset of the state before it: of doubles
-/// near 1 that are written in decimals, a few units of the last place.
-const WRITTEN: f64 = 1e-15;
+/// The relative difference of a state after a reset from the reset of the state before it: of
+/// doubles near 1 that are written in decimals, a few units of the last place.
+const DECIMAL_TOLERANCE: f64 = 1e-15;
 
 /// A ball with e = 1/2 that is thrown up from the floor; where it is highest is counted.
 fn ball() -> Task {
@@ -87,7 +87,7 @@ fn check_before(found: &Event) -> Result<(), String> {
     let before = found.before.ok_or("it has no state before its reset")?;
     let expected = if found.event == 0 { [0.0, -0.5 * before[1]] } else { [before[0], before[1]] };
     let error = (0..2).map(|i| (found.state[i] - expected[i]).abs()).fold(0.0, f64::max);
-    if error <= WRITTEN { Ok(()) } else { Err(format!("its state before is {before:?}")) }
+    if error <= DECIMAL_TOLERANCE { Ok(()) } else { Err(format!("its state before is {before:?}")) }
 }
 
 fn check_ball(outcome: &Outcome, unit: f64) -> Result<(), String> {
@@ -174,7 +174,7 @@ fn programs_that_experts_set_up_are_right() {
     let programs = percuss_programs::read(&path).expect("the file is right");
     let truth = answer(exact(), &oscillator(), Accuracy::Exact, &Limits::default());
     let truth = truth.expect("the exact solver runs it");
-    let is_excused = |name: &str| name.ends_with("-default") || WRONG.contains(&name);
+    let is_excused = |name: &str| name.ends_with("-default") || WRONG_ENGINES.contains(&name);
     let (mut wrong, mut right) = (Vec::new(), 0);
     for program in programs {
         let engines = match program.start() {
@@ -189,7 +189,9 @@ fn programs_that_experts_set_up_are_right() {
             let checked = check(&engine, &truth);
             println!("{name}: {checked:?}");
             match checked {
-                Ok(()) if WRONG.contains(&name) => wrong.push(format!("{name} is right now")),
+                Ok(()) if WRONG_ENGINES.contains(&name) => {
+                    wrong.push(format!("{name} is right now"))
+                }
                 Ok(()) => right += 1,
                 Err(why) if !is_excused(name) => wrong.push(format!("{name}: {why}")),
                 Err(_) => {}

@@ -15,8 +15,10 @@ use crate::suite::{self, PreparedCase, Scored, Status, Suite};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use percuss_programs::files::{Answerer, EVENTS, FileEngine, GRADIENTS, SAMPLES};
-use percuss_programs::{NAMES, is_name};
+use percuss_programs::files::{
+    Answerer, EVENTS_ENDING, FileEngine, GRADIENTS_ENDING, SAMPLES_ENDING,
+};
+use percuss_programs::{ACCEPTED_NAMES, is_name};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -105,7 +107,7 @@ fn name(text: &str) -> Result<String, String> {
     if is_name(text) && !text.starts_with(REFERENCE) {
         return Ok(text.to_owned());
     }
-    Err(format!("accepted is {NAMES} that does not begin with {REFERENCE}"))
+    Err(format!("accepted is {ACCEPTED_NAMES} that does not begin with {REFERENCE}"))
 }
 
 /// A text that fits where it is shown.
@@ -220,14 +222,15 @@ fn answered(folder: &Path) -> Result<BTreeSet<String>> {
     let unreadable = |error: std::io::Error| {
         let folder = folder.display();
         anyhow!(
-            "--answers {folder}: {error}; accepted is a folder of CASE{EVENTS} and CASE{SAMPLES}"
+            "--answers {folder}: {error}; accepted is a folder of CASE{EVENTS_ENDING} and \
+             CASE{SAMPLES_ENDING}"
         )
     };
     let mut cases = BTreeSet::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         let name = entry.map_err(unreadable)?.file_name();
         let name = name.to_string_lossy();
-        let mut endings = [EVENTS, SAMPLES, GRADIENTS].into_iter();
+        let mut endings = [EVENTS_ENDING, SAMPLES_ENDING, GRADIENTS_ENDING].into_iter();
         let case = endings.find_map(|ending| name.strip_suffix(ending));
         cases.extend(case.map(str::to_owned));
     }
@@ -248,7 +251,7 @@ fn check_names(
         let folder = arguments.answers.display();
         bail!(
             "--answers {folder}: there is no answer to a case that is asked for; accepted are \
-             CASE{EVENTS} and CASE{SAMPLES}"
+             CASE{EVENTS_ENDING} and CASE{SAMPLES_ENDING}"
         );
     }
     let listed = match &arguments.judged.chosen.cases {

@@ -8,11 +8,11 @@ pub const FILE: &str = "CHANGELOG.md";
 /// The kinds of changes, as <https://keepachangelog.com/en/1.1.0/> names them.
 const KINDS: [&str; 6] = ["Added", "Changed", "Deprecated", "Removed", "Fixed", "Security"];
 
-/// How a line begins whose change breaks what scripts or programs rely on.
-const BREAKING: &str = "- **Breaking:** ";
+/// The beginning of a line whose change breaks what scripts or programs rely on.
+const BREAKING_PREFIX: &str = "- **Breaking:** ";
 
 /// The most characters that a line on one change has.
-const LONGEST_LINE: usize = 200;
+const MAX_LINE_CHARACTERS: usize = 200;
 
 const HEADING: &str = "## [Unreleased]\n";
 const LINK: &str = "[Unreleased]: ";
@@ -54,7 +54,10 @@ impl<'a> Changelog<'a> {
             ensure!(kind.is_some(), "{line:?} stands before any `### `");
             ensure!(line.starts_with("- "), "{line:?} is no change: one line each, with `- `");
             let length = line.chars().count();
-            ensure!(length <= LONGEST_LINE, "{line:?} has {length} characters of {LONGEST_LINE}");
+            ensure!(
+                length <= MAX_LINE_CHARACTERS,
+                "{line:?} has {length} characters of {MAX_LINE_CHARACTERS}"
+            );
             changes += 1;
         }
         ensure!(changes > 0, "`### {}` has no changes", kind.unwrap_or_default());
@@ -68,7 +71,7 @@ impl<'a> Changelog<'a> {
 
     /// Whether a change breaks what scripts or programs rely on.
     pub fn breaks(&self) -> bool {
-        self.unreleased.lines().any(|line| line.starts_with(BREAKING))
+        self.unreleased.lines().any(|line| line.starts_with(BREAKING_PREFIX))
     }
 
     /// How many changes there are of each kind: `Added 2, Changed 1`.

@@ -32,14 +32,15 @@ pub fn run(root: &Folder, arguments: &Arguments) -> Result<()> {
             check(root, &baseline, may_break)
         }
         None => {
-            println!("{NO_VERSION}");
+            println!("{NO_VERSION_NOTE}");
             Ok(())
         }
     }
 }
 
 /// What is said where there is no baseline.
-pub const NO_VERSION: &str = "no version is tagged: there is no interface to hold this one against";
+pub const NO_VERSION_NOTE: &str =
+    "no version is tagged: there is no interface to hold this one against";
 
 /// The tag of the highest version before the present commit.
 pub fn last_release(root: &Folder) -> Result<Option<String>> {
@@ -71,11 +72,11 @@ pub fn check(root: &Folder, baseline: &str, may_break: bool) -> Result<()> {
     let status = root.status("cargo", &arguments)?;
     match status.code() {
         Some(0) => Ok(()),
-        Some(BREAKS) if may_break => {
+        Some(BREAKING_EXIT_CODE) if may_break => {
             println!("accepted: {} says **Breaking:**, or the version may break", changelog::FILE);
             Ok(())
         }
-        Some(BREAKS) => bail!(
+        Some(BREAKING_EXIT_CODE) => bail!(
             "the interface breaks beside {baseline}, and no line of {} says **Breaking:**",
             changelog::FILE
         ),
@@ -84,7 +85,7 @@ pub fn check(root: &Folder, baseline: &str, may_break: bool) -> Result<()> {
 }
 
 /// The exit code of `cargo semver-checks` where the interface breaks.
-const BREAKS: i32 = 100;
+const BREAKING_EXIT_CODE: i32 = 100;
 
 #[cfg(test)]
 mod tests {

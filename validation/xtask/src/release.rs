@@ -48,7 +48,7 @@ pub struct Arguments {
 }
 
 /// The folder in which packed packages are compiled.
-const TRIAL: &str = "target/trial";
+const TRIAL_FOLDER: &str = "target/trial";
 
 /// What a version changes.
 struct Plan {
@@ -164,7 +164,7 @@ fn hold_interface(root: &Folder, may_break: bool) -> Result<()> {
     match interface::last_release(root)? {
         Some(baseline) => interface::check(root, &baseline, may_break),
         None => {
-            println!("{}", interface::NO_VERSION);
+            println!("{}", interface::NO_VERSION_NOTE);
             Ok(())
         }
     }
@@ -191,12 +191,12 @@ fn write(root: &Folder, arguments: &Arguments, plan: &Plan, step: &impl Fn(&str)
 fn packages(root: &Folder, version: &Version) -> Result<()> {
     forget_unpacked(version)?;
     // What an earlier trial of the same version compiled there, cargo would take for the new one's.
-    let target = root.path(TRIAL);
+    let target = root.path(TRIAL_FOLDER);
     if target.exists() {
         std::fs::remove_dir_all(&target).with_context(|| target.display().to_string())?;
     }
     let what = ["publish", "--workspace", "--dry-run", "--locked", "--allow-dirty"];
-    root.run("cargo", &[&what[..], &["--target-dir", TRIAL]].concat())
+    root.run("cargo", &[&what[..], &["--target-dir", TRIAL_FOLDER]].concat())
         .context("a package cannot be published (cargo before 1.90 can try none)")
 }
 

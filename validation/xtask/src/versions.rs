@@ -11,7 +11,7 @@ use toml_edit::{DocumentMut, Item, TableLike, value};
 const ROOT: &str = "Cargo.toml";
 const CITATION: &str = "CITATION.cff";
 /// Pages on what was.
-const ARCHIVE: &str = "docs/archive/";
+const ARCHIVE_FOLDER: &str = "docs/archive/";
 
 /// The version that the workspace has now.
 pub fn current(root: &Folder) -> Result<Version> {
@@ -51,7 +51,7 @@ pub fn edits(root: &Folder, old: &Version, new: &Version, day: &str) -> Result<V
         edits.push(Edit::of(root, path, |text| lock(text, &packages, new))?);
     }
     for path in root.output("git", &["ls-files", "*.md"])?.lines() {
-        if path != changelog::FILE && !path.starts_with(ARCHIVE) {
+        if path != changelog::FILE && !path.starts_with(ARCHIVE_FOLDER) {
             edits.push(Edit::of(root, path, |text| Ok(page(text, old, new)))?);
         }
     }

@@ -19,8 +19,8 @@ use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 /// So many events in one instant end a run.
-const MOST_AT_ONCE: usize = 64;
-const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
+const MAX_SIMULTANEOUS_EVENTS: usize = 64;
+const INSTANT_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
 /// A row over (z, cos theta, sin theta, 1).
 pub type Row = Vec<f64>;
@@ -278,7 +278,7 @@ impl Course {
 
     /// Whether the run has not come to its end.
     pub fn goes_on(&self) -> bool {
-        self.ended.is_none() && self.run.span - self.t > 2.0 * ONE_INSTANT * self.run.span
+        self.ended.is_none() && self.run.span - self.t > 2.0 * INSTANT_TOLERANCE * self.run.span
     }
 
     /// Counts a step, and ends a run that goes beyond its limits.
@@ -320,9 +320,9 @@ impl Course {
         }
         let mode = self.mode();
         let successors = &mode.events()[event].successors;
-        self.crowd = if t - self.t <= ONE_INSTANT * t { self.crowd + 1 } else { 1 };
+        self.crowd = if t - self.t <= INSTANT_TOLERANCE * t { self.crowd + 1 } else { 1 };
         self.t = t;
-        if self.crowd > 100 * MOST_AT_ONCE {
+        if self.crowd > 100 * MAX_SIMULTANEOUS_EVENTS {
             return Err(format!("events at {t} are found again and again").into());
         }
         if successors.is_empty() {
@@ -342,7 +342,7 @@ impl Course {
         self.mode = successors.iter().find(holds).ok_or("no mode follows")?.mode;
         self.add(t, event, &z, &after);
         self.z = after;
-        if self.crowd >= MOST_AT_ONCE {
+        if self.crowd >= MAX_SIMULTANEOUS_EVENTS {
             self.ended = Some("no-progress");
         }
         Ok(())

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 /// A stretch that is shorter than this, relative to its end, moves no digit of a derivative;
 /// libraries refuse an end that is as near as that.
-const NO_STRETCH: f64 = 1e3 * f64::EPSILON;
+const MIN_STRETCH_SHARE: f64 = 1e3 * f64::EPSILON;
 
 fn until(event: &Event) -> Until {
     let next = event.successors.iter().map(|it| (it.when.clone(), it.mode)).collect();
@@ -113,7 +113,7 @@ pub fn make(
     if !course.run.gradients.is_empty() && outcome.ended == Ending::Horizon {
         let (modes, first) = course.modes();
         let by_stretch = |stretch: &Stretch<'_>, states| {
-            if stretch.end - stretch.begin <= NO_STRETCH * stretch.end {
+            if stretch.end - stretch.begin <= MIN_STRETCH_SHARE * stretch.end {
                 return Ok(states);
             }
             along(course, stretch, states)

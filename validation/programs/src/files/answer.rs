@@ -3,7 +3,7 @@
 use super::gradients::gradients;
 use super::layout::Layout;
 use super::rows::sample_times;
-use super::table::{Cells, EVENTS, GRADIENTS, SAMPLES, Table};
+use super::table::{Cells, EVENTS_ENDING, GRADIENTS_ENDING, SAMPLES_ENDING, Table};
 use crate::answer::{AnswerPart, Wrong, checked};
 use crate::text::plain;
 use crate::wire::{BoundedList, Count, EventReply, RunReply, StateReply};
@@ -14,8 +14,9 @@ use percuss_engines::system::{System, Values};
 use std::path::Path;
 use std::time::Duration;
 
-/// How far from the instant asked for a sample's time may be written, relative to the horizon.
-const SAME_TIME: f64 = 1e-9;
+/// The distance of a sample's written time from the instant asked for, relative to the horizon, up
+/// to which the two are one.
+const TIME_TOLERANCE: f64 = 1e-9;
 
 /// Reads what was answered to a case and holds it against its task. The files of samples and of
 /// derivatives may be missing, and the latter is read where the task asks for them.
@@ -29,12 +30,12 @@ pub(super) fn answer(
     limits: &Limits,
 ) -> Result<Outcome, String> {
     let file = |ending: &str| folder.join(format!("{case}{ending}"));
-    let events = Table::read(&file(EVENTS))?;
+    let events = Table::read(&file(EVENTS_ENDING))?;
     let optional = |ending: &str| {
         Some(file(ending)).filter(|it| it.exists()).map(|it| Table::read(&it)).transpose()
     };
-    let samples = optional(SAMPLES)?;
-    let derivatives = if task.gradients.is_some() { optional(GRADIENTS)? } else { None };
+    let samples = optional(SAMPLES_ENDING)?;
+    let derivatives = if task.gradients.is_some() { optional(GRADIENTS_ENDING)? } else { None };
     let derivatives = derivatives.map(|it| gradients(&it, task, limits)).transpose()?;
     let told = Told::read(&events, task, limits)?;
     let is_whole = matches!(told.ended, None | Some((Ending::Horizon, ..)));
@@ -165,7 +166,7 @@ fn read_samples(
         let Some(wanted) = asked.get(samples.len()) else {
             return Err(format!("one sample more than the {} accepted", asked.len()));
         };
-        if (time - wanted).abs() > SAME_TIME * task.span {
+        if (time - wanted).abs() > TIME_TOLERANCE * task.span {
             let given = plain(cells.word(0));
             return Err(format!("time is {given:?}; accepted is {}", shortest(*wanted)));
         }

@@ -1,7 +1,7 @@
 //! Answers in files, as an engine that gives them again.
 
 use super::answer::answer;
-use super::table::{EVENTS, SAMPLES};
+use super::table::{EVENTS_ENDING, SAMPLES_ENDING};
 use percuss_engines::engine::{
     Accuracy, Class, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role,
     Stepping, Task,
@@ -66,7 +66,7 @@ impl Engine for FileEngine {
 
     fn available(&self) -> Result<(), String> {
         let file = |ending| format!("{}{ending}", self.case);
-        let [events, samples] = [EVENTS, SAMPLES].map(file);
+        let [events, samples] = [EVENTS_ENDING, SAMPLES_ENDING].map(file);
         if [&events, &samples].into_iter().any(|it| self.folder.join(it).exists()) {
             return Ok(());
         }

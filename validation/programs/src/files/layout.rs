@@ -7,16 +7,16 @@ use percuss_engines::system::System;
 use std::borrow::Cow;
 
 /// The columns that `percuss events` prints before those of the states.
-pub const PRINTED: [&str; 4] = ["n", "time", "event", "mode"];
+pub const EVENT_COLUMNS: [&str; 4] = ["n", "time", "event", "mode"];
 
 /// The columns that `percuss events --samples` prints before those of the states.
-pub const PRINTED_SAMPLE: [&str; 2] = ["time", "mode"];
+pub const SAMPLE_COLUMNS: [&str; 2] = ["time", "mode"];
 
 /// The column of a state in what `percuss events` prints: its name, unless that is another
 /// column's.
 #[must_use]
 pub fn printed_column(state: &str) -> Cow<'_, str> {
-    if PRINTED.contains(&state) { format!("state.{state}").into() } else { state.into() }
+    if EVENT_COLUMNS.contains(&state) { format!("state.{state}").into() } else { state.into() }
 }
 
 /// The places of the parts of an event or a sample in a line.
@@ -41,7 +41,7 @@ impl Layout {
     pub(super) fn of_events(table: &Table, system: &System) -> Result<Self, String> {
         let answer = || Self::answer(&["time", "event", "mode"], system);
         let with_before = answer().with_before(system);
-        Self::named(table, [answer(), with_before, Self::printed(&PRINTED, system)])
+        Self::named(table, [answer(), with_before, Self::printed(&EVENT_COLUMNS, system)])
     }
 
     /// The layout of a file of samples, which its header names.
@@ -51,7 +51,7 @@ impl Layout {
     pub(super) fn of_samples(table: &Table, system: &System) -> Result<Self, String> {
         Self::named(
             table,
-            [Self::answer(&["time"], system), Self::printed(&PRINTED_SAMPLE, system)],
+            [Self::answer(&["time"], system), Self::printed(&SAMPLE_COLUMNS, system)],
         )
     }
 
@@ -106,9 +106,9 @@ mod tests {
         assert_eq!(answer.columns, ["time", "n", "y", "q", "v"]);
         let with_before = answer.with_before(&system);
         assert_eq!((with_before.state, with_before.before), (1, Some(5)));
-        let printed = Layout::printed(&PRINTED_SAMPLE, &system);
+        let printed = Layout::printed(&SAMPLE_COLUMNS, &system);
         assert_eq!(printed.columns, ["time", "mode", "state.n", "y", "q", "v"]);
-        let printed = Layout::printed(&PRINTED, &system);
+        let printed = Layout::printed(&EVENT_COLUMNS, &system);
         assert_eq!((printed.time, printed.state), (1, 4));
     }
 }

@@ -14,5 +14,5 @@ mod tests;
 
 pub use case::CaseFile;
 pub use engine::{Answerer, FileEngine};
-pub use layout::{PRINTED, PRINTED_SAMPLE, printed_column};
-pub use table::{EVENTS, GRADIENTS, SAMPLES};
+pub use layout::{EVENT_COLUMNS, SAMPLE_COLUMNS, printed_column};
+pub use table::{EVENTS_ENDING, GRADIENTS_ENDING, SAMPLES_ENDING};

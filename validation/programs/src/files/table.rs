@@ -6,16 +6,16 @@ use std::io::Read;
 use std::path::Path;
 
 /// The ending of the name of a file of events, after the case's name.
-pub const EVENTS: &str = ".events.csv";
+pub const EVENTS_ENDING: &str = ".events.csv";
 /// The ending of the name of a file of samples, after the case's name.
-pub const SAMPLES: &str = ".samples.csv";
+pub const SAMPLES_ENDING: &str = ".samples.csv";
 
 /// The ending of the name of a file of derivatives, after the case's name.
-pub const GRADIENTS: &str = ".gradients.csv";
+pub const GRADIENTS_ENDING: &str = ".gradients.csv";
 
 /// The largest file that is read: 100000 events of the largest system, at 25 characters a number,
 /// are half as much.
-const MOST_BYTES: u64 = 64 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 
 /// A file that was read, with its name for errors.
 pub(super) struct Table {
@@ -45,9 +45,9 @@ impl Table {
         }
         let mut bytes = Vec::new();
         let file = File::open(path).map_err(unreadable)?;
-        file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(refused(&format!("it is larger than the {MOST_BYTES} bytes accepted")));
+        file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+        if bytes.len() as u64 > MAX_BYTES {
+            return Err(refused(&format!("it is larger than the {MAX_BYTES} bytes accepted")));
         }
         match String::from_utf8(bytes) {
             Ok(text) => Ok(Self { shown, text }),

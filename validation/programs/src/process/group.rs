@@ -28,7 +28,7 @@ pub(super) enum ProgramExit {
 }
 
 /// The time between two looks at a program that is about to end.
-const PAUSE: Duration = Duration::from_millis(5);
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 impl Group {
     /// Starts a program in a group of its own, with a mark in its environment that the processes it
@@ -57,7 +57,7 @@ impl Group {
         let until = Instant::now() + wait;
         loop {
             match ended(&mut self.leader) {
-                None if Instant::now() < until => std::thread::sleep(PAUSE),
+                None if Instant::now() < until => std::thread::sleep(POLL_INTERVAL),
                 exit => return exit,
             }
         }

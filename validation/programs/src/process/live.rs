@@ -1,6 +1,6 @@
 //! The programs that run now, which have to be ended before this process ends.
 
-use super::sweep::MARK;
+use super::sweep::MARK_VARIABLE;
 use std::collections::BTreeMap;
 use std::io;
 use std::process::{Child, Command};
@@ -30,7 +30,7 @@ pub(super) fn start(command: &mut Command) -> io::Result<Child> {
     if live.is_over {
         return Err(io::Error::other("no program is started any more"));
     }
-    let child = command.env(MARK, &mark).spawn()?;
+    let child = command.env(MARK_VARIABLE, &mark).spawn()?;
     live.programs.insert(child.id(), mark);
     Ok(child)
 }

@@ -18,11 +18,11 @@ use streams::{OutputLine, Streams};
 
 /// The longest line that is read: an answer of so many events and samples as are accepted is
 /// shorter.
-const MOST_LINE: usize = 32 << 20;
+const MAX_LINE_BYTES: usize = 32 << 20;
 /// The time within which a program has to say that it waits for the next request.
-const READY: Duration = Duration::from_secs(10);
+const READY_TIMEOUT: Duration = Duration::from_secs(10);
 /// The time within which a program whose output has ended has to end itself.
-const EXIT_WAIT: Duration = Duration::from_millis(500);
+const EXIT_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// A program that runs. It is ended, with all that it has started, when this is dropped.
 pub(crate) struct Process {
@@ -72,7 +72,7 @@ impl Process {
 
     /// Asks after an answer whether the program waits for the next request.
     pub(crate) fn still_ready(&mut self, wait: Duration) -> Result<(), String> {
-        self.ready(wait.min(READY)).map_err(|why| format!("after its answer: {why}"))
+        self.ready(wait.min(READY_TIMEOUT)).map_err(|why| format!("after its answer: {why}"))
     }
 
     /// Whether the program has written something since its last answer, or has ended.
@@ -97,7 +97,7 @@ impl Process {
         match line {
             Some(OutputLine::Text(line)) => decode(&line, self.asked),
             Some(OutputLine::TooLong) => {
-                Err(format!("wrote a line of more than {MOST_LINE} bytes"))
+                Err(format!("wrote a line of more than {MAX_LINE_BYTES} bytes"))
             }
             Some(OutputLine::Unfinished(count)) => {
                 Err(self.ended(&format!("in a line of {count} bytes that is not whole")))
@@ -109,7 +109,7 @@ impl Process {
 
     /// Why there is no answer from a program whose output has ended.
     fn ended(&mut self, how: &str) -> String {
-        let what = match self.group.exit(EXIT_WAIT) {
+        let what = match self.group.exit(EXIT_TIMEOUT) {
             Some(ProgramExit::Code(code)) => format!("ended {how}, with exit code {code}"),
             Some(ProgramExit::Signal(signal)) => format!("ended {how}, killed by signal {signal}"),
             Some(ProgramExit::Unknown) => format!("ended {how}"),
@@ -135,7 +135,7 @@ impl Process {
 
     /// A reason with the last that the program wrote to its standard error.
     fn with_complaint(&self, what: String) -> String {
-        match last_line(&self.streams.complaint(EXIT_WAIT)) {
+        match last_line(&self.streams.complaint(EXIT_TIMEOUT)) {
             Some(line) => format!("{what}; it said: {line}"),
             None => what,
         }

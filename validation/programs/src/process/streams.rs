@@ -1,7 +1,7 @@
 //! The standard streams of a program, each with a thread of its own: no program can block its
 //! reader by not reading, or by writing to its standard error, and none fills the memory.
 
-use super::MOST_LINE;
+use super::MAX_LINE_BYTES;
 use super::group::Pipes;
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read, Write};
@@ -12,8 +12,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
-/// How much is kept of what a program writes to its standard error: the end of it.
-const MOST_COMPLAINT: usize = 4096;
+/// The most bytes that are kept of what a program writes to its standard error: the end of it.
+const MAX_COMPLAINT_BYTES: usize = 4096;
 
 /// A line of a program's output.
 #[derive(Debug)]
@@ -129,7 +129,7 @@ fn read_line(reader: &mut impl BufRead, partial: &AtomicUsize) -> OutputLine {
         }
         let end = bytes.iter().position(|byte| *byte == b'\n');
         let count = end.unwrap_or(bytes.len());
-        if line.len() + count > MOST_LINE {
+        if line.len() + count > MAX_LINE_BYTES {
             return OutputLine::TooLong;
         }
         line.extend_from_slice(&bytes[..count]);
@@ -144,14 +144,14 @@ fn read_line(reader: &mut impl BufRead, partial: &AtomicUsize) -> OutputLine {
 /// Reads all that is written, so that the program is never blocked, and keeps the end of it. `done`
 /// is dropped when there is no more.
 fn keep_end(mut stderr: ChildStderr, kept: &Mutex<VecDeque<u8>>, done: Sender<()>) {
-    let mut bytes = [0; MOST_COMPLAINT];
+    let mut bytes = [0; MAX_COMPLAINT_BYTES];
     while let Ok(count) = stderr.read(&mut bytes) {
         if count == 0 {
             break;
         }
         let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.extend(&bytes[..count]);
-        let surplus = kept.len().saturating_sub(MOST_COMPLAINT);
+        let surplus = kept.len().saturating_sub(MAX_COMPLAINT_BYTES);
         kept.drain(..surplus);
     }
     drop(done);
@@ -183,10 +183,10 @@ mod tests {
         let partial = AtomicUsize::new(0);
         let mut reader = BufReader::new(io::repeat(b'x'));
         assert!(matches!(read_line(&mut reader, &partial), OutputLine::TooLong));
-        let whole = [b"x".repeat(MOST_LINE), b"\n".to_vec()].concat();
+        let whole = [b"x".repeat(MAX_LINE_BYTES), b"\n".to_vec()].concat();
         let OutputLine::Text(line) = read_line(&mut whole.as_slice(), &partial) else {
             unreachable!()
         };
-        assert_eq!(line.len(), MOST_LINE);
+        assert_eq!(line.len(), MAX_LINE_BYTES);
     }
 }

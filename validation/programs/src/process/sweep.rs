@@ -10,12 +10,12 @@ use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 /// The variable that marks the processes of a program.
-pub(super) const MARK: &str = "PERCUSS_PROGRAM";
+pub(super) const MARK_VARIABLE: &str = "PERCUSS_PROGRAM";
 
-/// How long is looked for processes that are left.
-const LONGEST: Duration = Duration::from_secs(5);
-/// How long a process that was killed may be there before it is looked for again.
-const PAUSE: Duration = Duration::from_millis(1);
+/// The time for which processes that are left are looked for.
+const SWEEP_TIMEOUT: Duration = Duration::from_secs(5);
+/// The time that a process that was killed may still be there before it is looked for again.
+const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
 /// A process as the system shows it.
 struct ProcessStatus {
@@ -28,8 +28,8 @@ struct ProcessStatus {
 /// Ends a program: the process of this number, which nobody has waited for yet, and those that
 /// bear the mark.
 pub(super) fn end(id: u32, mark: &str) {
-    let mark = format!("{MARK}={mark}");
-    let until = Instant::now() + LONGEST;
+    let mark = format!("{MARK_VARIABLE}={mark}");
+    let until = Instant::now() + SWEEP_TIMEOUT;
     // Whose parents are about to go.
     let mut known = descendants(id);
     loop {
@@ -51,7 +51,7 @@ pub(super) fn end(id: u32, mark: &str) {
         if (left.is_empty() && known.is_empty()) || Instant::now() > until {
             return;
         }
-        std::thread::sleep(PAUSE);
+        std::thread::sleep(POLL_INTERVAL);
     }
 }
 

@@ -6,7 +6,7 @@ use percuss_engines::system::{CheckedSystem, Direction, Mode, Rates, Row, System
 use serde::Serialize;
 
 /// The part of its time after which a program is to give up by itself, before it is ended.
-const BY_ITSELF: f64 = 0.9;
+const OWN_TIME_SHARE: f64 = 0.9;
 
 /// A request, one line of JSON.
 #[derive(Serialize)]
@@ -168,7 +168,7 @@ impl<'a> RunAsk<'a> {
             limits: LimitsAsk {
                 calls: limits.calls,
                 events: limits.events,
-                wall_s: BY_ITSELF * limits.wall.as_secs_f64(),
+                wall_s: OWN_TIME_SHARE * limits.wall.as_secs_f64(),
             },
             gradients: task.gradients.iter().flat_map(|it| it.iter()).map(RatesAsk::of).collect(),
         }

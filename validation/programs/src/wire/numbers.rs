@@ -8,7 +8,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 /// The largest whole number of which an f64 holds every smaller one.
-const MOST_COUNTED: f64 = 9_007_199_254_740_992.0;
+const MAX_COUNT: f64 = 9_007_199_254_740_992.0;
 
 /// A number that counts, 0 to 2^53. Some languages write 3 as 3.0 or 3e0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub(crate) struct Count(pub(crate) u64);
 impl<'de> Deserialize<'de> for Count {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let value = f64::deserialize(deserializer)?;
-        if value.fract() == 0.0 && (0.0..=MOST_COUNTED).contains(&value) {
+        if value.fract() == 0.0 && (0.0..=MAX_COUNT).contains(&value) {
             Ok(Self(value as u64))
         } else {
             Err(D::Error::custom(format!("{value:?} is no count: accepted is 0, 1, 2, ...")))
@@ -25,24 +25,24 @@ impl<'de> Deserialize<'de> for Count {
     }
 }
 
-/// A list of at most `MOST` items.
+/// A list of at most `MAX` items.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct BoundedList<T, const MOST: usize>(pub(crate) Vec<T>);
+pub(crate) struct BoundedList<T, const MAX: usize>(pub(crate) Vec<T>);
 
-struct Items<T, const MOST: usize>(PhantomData<T>);
+struct Items<T, const MAX: usize>(PhantomData<T>);
 
-impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for Items<T, MOST> {
-    type Value = BoundedList<T, MOST>;
+impl<'de, T: Deserialize<'de>, const MAX: usize> Visitor<'de> for Items<T, MAX> {
+    type Value = BoundedList<T, MAX>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a list of at most {MOST}")
+        write!(f, "a list of at most {MAX}")
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Self::Value, A::Error> {
         let mut list = Vec::new();
         while let Some(item) = items.next_element()? {
-            if list.len() == MOST {
-                return Err(A::Error::custom(format!("a list of more than {MOST}")));
+            if list.len() == MAX {
+                return Err(A::Error::custom(format!("a list of more than {MAX}")));
             }
             list.push(item);
         }
@@ -50,7 +50,7 @@ impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for Items<T, MOST
     }
 }
 
-impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for BoundedList<T, MOST> {
+impl<'de, T: Deserialize<'de>, const MAX: usize> Deserialize<'de> for BoundedList<T, MAX> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_seq(Items(PhantomData))
     }

@@ -7,11 +7,11 @@ use percuss_engines::engine::{Class, Ending, SteppingKind};
 use serde::Deserialize;
 
 /// The most events and samples of an answer.
-const MOST_ROWS: usize = 100_000;
+const MAX_ROWS: usize = 100_000;
 /// The most names by which derivatives are answered.
-const MOST_NAMES: usize = 1000;
+const MAX_NAMES: usize = 1000;
 /// The most set-ups of a program.
-const MOST_SET_UPS: usize = 64;
+const MAX_SET_UPS: usize = 64;
 
 /// The content of an answer.
 #[derive(Clone, Debug)]
@@ -90,8 +90,8 @@ pub enum EventsBy {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RunReply {
-    pub(crate) events: BoundedList<EventReply, MOST_ROWS>,
-    pub(crate) samples: BoundedList<StateReply, MOST_ROWS>,
+    pub(crate) events: BoundedList<EventReply, MAX_ROWS>,
+    pub(crate) samples: BoundedList<StateReply, MAX_ROWS>,
     pub(crate) end: StateReply,
     #[serde(default, with = "EndingWord")]
     pub(crate) ended: Ending,
@@ -102,7 +102,7 @@ pub(crate) struct RunReply {
     #[serde(default)]
     pub(crate) own_ns: Option<f64>,
     #[serde(default)]
-    pub(crate) gradients: BoundedList<GradientReply, MOST_NAMES>,
+    pub(crate) gradients: BoundedList<GradientReply, MAX_NAMES>,
 }
 
 /// The derivatives of a run by a name, as a program answers them.
@@ -112,7 +112,7 @@ pub(crate) struct GradientReply {
     pub(crate) wrt: String,
     /// A list for all events, or none where there are those of the end alone.
     #[serde(default)]
-    pub(crate) events: BoundedList<EventGradientReply, MOST_ROWS>,
+    pub(crate) events: BoundedList<EventGradientReply, MAX_ROWS>,
     pub(crate) end: StateReply,
 }
 
@@ -166,7 +166,7 @@ fn yes() -> bool {
 }
 
 fn set_ups<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<SetUp>, D::Error> {
-    Ok(BoundedList::<SetUp, MOST_SET_UPS>::deserialize(deserializer)?.0)
+    Ok(BoundedList::<SetUp, MAX_SET_UPS>::deserialize(deserializer)?.0)
 }
 
 /// What every answer begins with; the rest of it may be of another version.
@@ -261,9 +261,9 @@ fn parse<'de, T: Deserialize<'de>>(text: &'de str) -> Result<T, String> {
 
 /// The text around a column of a line.
 fn near(text: &str, column: usize) -> String {
-    const AROUND: usize = 20;
+    const SHOWN_BYTES: usize = 20;
     let bytes = text.as_bytes();
-    let from = column.saturating_sub(AROUND).min(bytes.len());
-    let to = (column + AROUND).min(bytes.len());
+    let from = column.saturating_sub(SHOWN_BYTES).min(bytes.len());
+    let to = (column + SHOWN_BYTES).min(bytes.len());
     format!(", near {:?}", plain(&String::from_utf8_lossy(&bytes[from..to])))
 }

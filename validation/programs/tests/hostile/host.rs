@@ -10,7 +10,7 @@ use std::process::Command;
 use std::time::Duration;
 
 /// Kinds that would fill the memory, if it were not bounded.
-const LARGE: [&str; 8] = [
+const LARGE_KINDS: [&str; 8] = [
     "line-without-end",
     "lines-without-end",
     "empty-lines-without-end",
@@ -20,15 +20,15 @@ const LARGE: [&str; 8] = [
     "deep",
     "megabytes-of-complaints",
 ];
-/// What a host may take, in KiB: a few of the longest lines.
-const MOST: u64 = 300 << 10;
+/// The most memory that a host may take, in KiB: a few of the longest lines.
+const MAX_KIB: u64 = 300 << 10;
 
 /// The tests that need a host.
 pub fn trials() -> Vec<Trial> {
     let memory = |kind: &'static str| {
         Trial::test(format!("memory_of_{kind}"), move || memory_is_bounded(kind))
     };
-    let mut trials: Vec<Trial> = LARGE.into_iter().map(memory).collect();
+    let mut trials: Vec<Trial> = LARGE_KINDS.into_iter().map(memory).collect();
     trials.push(Trial::test("all_programs_end_with_their_host", all_programs_end));
     trials
 }
@@ -64,8 +64,8 @@ fn memory_is_bounded(kind: &str) -> Result<(), Failed> {
         *it == kind && matches!(expected, ExpectedEnd::Row(_) | ExpectedEnd::Right)
     });
     let peak: u64 = hosted(kind)?.parse()?;
-    if !is_kind || peak == 0 || peak > MOST {
-        return Err(format!("it takes {peak} KiB; accepted are {MOST}").into());
+    if !is_kind || peak == 0 || peak > MAX_KIB {
+        return Err(format!("it takes {peak} KiB; accepted are {MAX_KIB}").into());
     }
     Ok(())
 }

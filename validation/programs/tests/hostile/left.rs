@@ -2,12 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-/// What is left is given so long to end: it has been told.
-const PATIENCE: Duration = Duration::from_secs(20);
+/// The time within which what is left has to end: it has been told.
+const END_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// The processes of a word that have not ended when they had time to.
 pub fn left(token: &str) -> Vec<u32> {
-    let until = Instant::now() + PATIENCE;
+    let until = Instant::now() + END_TIMEOUT;
     loop {
         let found = processes(token);
         if found.is_empty() || Instant::now() > until {

@@ -10,10 +10,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How long a program may take that is right; a machine may be busy.
-const ENOUGH: Duration = Duration::from_secs(120);
-/// How long a program may take that is too late.
-const SHORT: Duration = Duration::from_secs(1);
+/// The time that a program may take that is right; a machine may be busy.
+const LONG_TIMEOUT: Duration = Duration::from_secs(120);
+/// The time that a program may take that is too late.
+const SHORT_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Runs the tests.
 pub fn test() {
@@ -78,12 +78,17 @@ pub fn run(engine: &ProgramEngine, wall: Duration) -> Result<Outcome, Failure> {
 
 fn check(kind: &str, expected: ExpectedEnd) -> Result<(), String> {
     let token = format!("token-{kind}-{}", std::process::id());
-    let timeout = if matches!(expected, ExpectedEnd::LateStart(_)) { SHORT } else { ENOUGH };
+    let timeout =
+        if matches!(expected, ExpectedEnd::LateStart(_)) { SHORT_TIMEOUT } else { LONG_TIMEOUT };
     let started = program(kind, &token, timeout).start();
     match (started, expected) {
         (Ok(engines), ExpectedEnd::Right) => rows(kind, &engines, None, &token)?,
-        (Ok(engines), ExpectedEnd::Row(why)) => rows(kind, &engines, Some((why, ENOUGH)), &token)?,
-        (Ok(engines), ExpectedEnd::Late(why)) => rows(kind, &engines, Some((why, SHORT)), &token)?,
+        (Ok(engines), ExpectedEnd::Row(why)) => {
+            rows(kind, &engines, Some((why, LONG_TIMEOUT)), &token)?
+        }
+        (Ok(engines), ExpectedEnd::Late(why)) => {
+            rows(kind, &engines, Some((why, SHORT_TIMEOUT)), &token)?
+        }
         (Err(not @ NotStarted::Unavailable { .. }), ExpectedEnd::Unavailable(why)) => {
             no_rows(not, why)?;
         }
@@ -105,13 +110,13 @@ fn check(kind: &str, expected: ExpectedEnd) -> Result<(), String> {
 /// Several threads run one engine, beside others whose program ends again and again.
 fn runs_side_by_side() -> Result<(), String> {
     let token = format!("token-side-by-side-{}", std::process::id());
-    let engines = program("exits", &token, ENOUGH).start().map_err(|not| not.to_string())?;
+    let engines = program("exits", &token, LONG_TIMEOUT).start().map_err(|not| not.to_string())?;
     let [good, odd] = engines.as_slice() else { return Err(format!("{}", engines.len())) };
     let one = |thread: usize| -> Result<(), String> {
         for _ in 0..5 {
             match thread % 2 {
-                0 => is_right(run(good, ENOUGH), "beside others")?,
-                _ => drop(run(odd, ENOUGH).err().ok_or("the odd row is right")?),
+                0 => is_right(run(good, LONG_TIMEOUT), "beside others")?,
+                _ => drop(run(odd, LONG_TIMEOUT).err().ok_or("the odd row is right")?),
             }
         }
         Ok(())
@@ -133,9 +138,9 @@ fn rows(
     token: &str,
 ) -> Result<(), String> {
     let [good, odd] = engines else { return Err(format!("{} engines", engines.len())) };
-    is_right(run(good, ENOUGH), "before")?;
+    is_right(run(good, LONG_TIMEOUT), "before")?;
     let Some((why, wall)) = expected else {
-        let outcome = run(odd, ENOUGH);
+        let outcome = run(odd, LONG_TIMEOUT);
         let lacks = |it: &Outcome| match kind {
             "no-work" => it.own_time.is_none(),
             "no-states-before" => it.events.iter().all(|event| event.before.is_none()),
@@ -161,7 +166,7 @@ fn rows(
     if !goes_on && !left(token).is_empty() {
         return Err("a process is left after its row".to_owned());
     }
-    is_right(run(good, ENOUGH), "after")
+    is_right(run(good, LONG_TIMEOUT), "after")
 }
 
 /// A request of more bytes than a pipe holds.
@@ -196,7 +201,7 @@ fn no_rows(not: NotStarted, why: &str) -> Result<(), String> {
     if engine.available().is_err() != is_absent || engine.declaration().name != "program" {
         return Err(format!("available: {:?}", engine.available()));
     }
-    match run(&engine, ENOUGH) {
+    match run(&engine, LONG_TIMEOUT) {
         Err(Failure { reason, .. }) if reason.contains(why) => Ok(()),
         other => Err(format!("{other:?}")),
     }

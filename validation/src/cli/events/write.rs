@@ -4,7 +4,7 @@ use super::progress::RunEnd;
 use super::rows::{EventRow, Rows, SampleRow, Sink};
 use crate::cli::shared::output::json_value;
 use anyhow::Result;
-use percuss_programs::files::{PRINTED, PRINTED_SAMPLE, printed_column};
+use percuss_programs::files::{EVENT_COLUMNS, SAMPLE_COLUMNS, printed_column};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::io::Write;
@@ -27,7 +27,7 @@ impl Csv<'_> {
 
 impl Sink for Csv<'_> {
     fn begin(&mut self, rows: &Rows<'_>) -> Result<()> {
-        let own = if rows.samples.is_some() { &PRINTED_SAMPLE[..] } else { &PRINTED[..] };
+        let own = if rows.samples.is_some() { &SAMPLE_COLUMNS[..] } else { &EVENT_COLUMNS[..] };
         let states = rows.system.states.iter().map(|name| printed_column(name));
         let names: Vec<_> = own.iter().map(|name| Cow::from(*name)).chain(states).collect();
         self.line(names.iter().map(AsRef::as_ref))

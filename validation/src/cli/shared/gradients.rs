@@ -8,7 +8,7 @@ use crate::gradients::{
 };
 use crate::report::GradientEntry;
 use anyhow::{Result, anyhow};
-use percuss_programs::files::{FileEngine, GRADIENTS};
+use percuss_programs::files::{FileEngine, GRADIENTS_ENDING};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -58,7 +58,7 @@ pub(in crate::cli) fn cases(
 
 /// Those of the chosen cases of derivatives to which a folder has answers.
 pub(in crate::cli) fn answered(chosen: &CaseFlags, folder: &Path) -> Result<Vec<GradientCase>> {
-    cases(chosen, |name| folder.join(format!("{name}{GRADIENTS}")).exists())
+    cases(chosen, |name| folder.join(format!("{name}{GRADIENTS_ENDING}")).exists())
 }
 
 /// The verdicts on the answers in files to these cases, made at one tolerance.

@@ -15,7 +15,7 @@ use anyhow::{Context, Result, ensure};
 use sources::Sources;
 
 /// The folder of the book: `src` has its sources, `html` its pages.
-const BOOK: &str = "target/book";
+const BOOK_FOLDER: &str = "target/book";
 
 /// Build the book of all pages into target/book/html
 ///
@@ -29,10 +29,10 @@ pub fn run(root: &Folder, Arguments {}: &Arguments) -> Result<()> {
     let mut sources = Sources::collect(root)?;
     ensure!(root.succeeds("mdbook", &["--version"]), "needs `cargo install mdbook --locked`");
     sources.generate(root)?;
-    let book = root.path(BOOK);
+    let book = root.path(BOOK_FOLDER);
     if book.exists() {
-        std::fs::remove_dir_all(&book).with_context(|| BOOK.to_owned())?;
+        std::fs::remove_dir_all(&book).with_context(|| BOOK_FOLDER.to_owned())?;
     }
     sources.write(root, &book)?;
-    root.run("mdbook", &["build", BOOK])
+    root.run("mdbook", &["build", BOOK_FOLDER])
 }

@@ -14,13 +14,13 @@ const SUMMARY: &str = "docs/SUMMARY.md";
 const FOLDERS: [&str; 3] = ["", "docs", "docs/archive"];
 
 /// The folder whose files that are no pages the book has too, such as pictures.
-const SHOWN: &str = "docs";
+const FILE_FOLDER: &str = "docs";
 
 /// The settings of mdBook, by their names in the repository and in the book's folder.
 const SETTINGS: [[&str; 2]; 2] = [["docs/book.toml", "book.toml"], ["docs/wide.css", "wide.css"]];
 
 /// The page that the book opens with, and its name there: mdBook renames it, and not what links it.
-const FIRST: [&str; 2] = ["README.md", "index.md"];
+const FIRST_PAGE: [&str; 2] = ["README.md", "index.md"];
 
 /// The branch whose files links lead to.
 const BRANCH: &str = "main";
@@ -37,7 +37,7 @@ pub struct Sources {
 impl Sources {
     /// Reads the pages; fails where one has no place, or a link leads nowhere.
     pub fn collect(root: &Folder) -> Result<Self> {
-        let folder = Path::new(SHOWN);
+        let folder = Path::new(FILE_FOLDER);
         let summary = root.read(SUMMARY)?;
         let order = links::targets(&summary)?;
         let order: Vec<PathBuf> = order.iter().map(|page| below_root(folder, page)).collect();
@@ -119,7 +119,7 @@ impl Sources {
             ensure!(leads, "the link to {target} leads to no heading");
             return Ok(named(target));
         }
-        if path.starts_with(SHOWN) && there.is_file() {
+        if path.starts_with(FILE_FOLDER) && there.is_file() {
             self.shown.insert(path);
             return Ok(target.to_owned());
         }
@@ -142,7 +142,7 @@ fn shown(path: &Path) -> String {
 
 /// The path of a page as the book names it.
 fn named(page: &str) -> String {
-    page.replace(FIRST[0], FIRST[1])
+    page.replace(FIRST_PAGE[0], FIRST_PAGE[1])
 }
 
 /// The path from the root of what is linked from a folder.
@@ -211,11 +211,11 @@ mod tests {
         (folder, root)
     }
 
-    const WHOLE: &str = "[r](../README.md)\n\n- [a](A.md)\n";
+    const SOUND_README: &str = "[r](../README.md)\n\n- [a](A.md)\n";
 
     #[test]
     fn what_the_book_has_not_is_on_the_site() {
-        let (_held, root) = repository(WHOLE, "[a](docs/A.md) [c](Cargo.toml#L1) [d](docs)");
+        let (_held, root) = repository(SOUND_README, "[a](docs/A.md) [c](Cargo.toml#L1) [d](docs)");
         let sources = Sources::collect(&root).unwrap();
         let text = "[a](docs/A.md) [c](https://site/blob/main/Cargo.toml#L1) \
                     [d](https://site/tree/main/docs)";
@@ -226,8 +226,12 @@ mod tests {
     fn errors_name_the_page() {
         for (summary, page, error) in [
             ("[r](../README.md)\n", "", "docs/A.md has no place in docs/SUMMARY.md"),
-            (WHOLE, "[b](docs/B.md)", "README.md: the link to docs/B.md leads nowhere"),
-            (WHOLE, "[b](docs/A.md#c)", "README.md: the link to docs/A.md#c leads to no heading"),
+            (SOUND_README, "[b](docs/B.md)", "README.md: the link to docs/B.md leads nowhere"),
+            (
+                SOUND_README,
+                "[b](docs/A.md#c)",
+                "README.md: the link to docs/A.md#c leads to no heading",
+            ),
             ("[r](../README.md)\n\n- [a](A.md)\n- [a](A.md)\n", "", "names a page twice"),
         ] {
             let (_held, root) = repository(summary, page);

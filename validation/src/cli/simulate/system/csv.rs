@@ -4,7 +4,7 @@ use super::plan::PlannedRun;
 use super::sink::{Row, RunEnd, Sink};
 use crate::number::Shortest;
 use anyhow::Result;
-use percuss_programs::files::{PRINTED, PRINTED_SAMPLE, printed_column};
+use percuss_programs::files::{EVENT_COLUMNS, SAMPLE_COLUMNS, printed_column};
 use std::io::Write;
 
 pub(super) struct Csv<'a> {
@@ -21,7 +21,7 @@ impl<'a> Csv<'a> {
 
 impl Sink for Csv<'_> {
     fn begin(&mut self, plan: &PlannedRun<'_>) -> Result<()> {
-        let own = if plan.samples.is_some() { &PRINTED_SAMPLE[..] } else { &PRINTED[..] };
+        let own = if plan.samples.is_some() { &SAMPLE_COLUMNS[..] } else { &EVENT_COLUMNS[..] };
         write!(self.out, "{}", own.join(","))?;
         for state in &plan.system().states {
             write!(self.out, ",{}", printed_column(state))?;
