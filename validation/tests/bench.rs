@@ -25,16 +25,17 @@ fn exact_solver() -> &'static dyn Engine {
 
 /// Faults that a run of a few dozen events shows; a dropped hundredth or a digit lost after 1e8
 /// cycles need longer ones.
-const SHOWN: [&str; 5] = ["wrong-omega", "wrong-xi", "wrong-drift", "wrong-arctan", "wrong-impact"];
+const SHOWN_FAULTS: [&str; 5] =
+    ["wrong-omega", "wrong-xi", "wrong-drift", "wrong-arctan", "wrong-impact"];
 
 #[test]
 fn a_wrong_answer_has_no_time() {
     let case = case("impact-into-progression");
     let faulty = wrong().iter().map(|it| it.engine);
-    let faulty = faulty.filter(|it| SHOWN.contains(&it.declaration().name));
+    let faulty = faulty.filter(|it| SHOWN_FAULTS.contains(&it.declaration().name));
     let engines: Vec<EnteredEngine> =
         [exact_solver(), CONTROL].into_iter().chain(faulty).map(EnteredEngine).collect();
-    assert_eq!(engines.len(), 2 + SHOWN.len());
+    assert_eq!(engines.len(), 2 + SHOWN_FAULTS.len());
     let asked: Vec<(&dyn Contestant, Accuracy)> =
         engines.iter().map(|it| (it as &dyn Contestant, Accuracy::Exact)).collect();
     let results = contest_at(&case, &asked, 2, &|| ());
@@ -165,12 +166,12 @@ fn binary() -> String {
     assert_cmd::cargo::cargo_bin("percuss").display().to_string()
 }
 
-const ONE: [&str; 2] = ["-b", "^switches/critical-xi-1$"];
+const ONE_BENCHMARK: [&str; 2] = ["-b", "^switches/critical-xi-1$"];
 
 #[test]
 fn a_binary_is_compared_with_itself() {
     let own = binary();
-    let output = run(&[&["bench", "compare", &own, &own], &ONE[..]].concat());
+    let output = run(&[&["bench", "compare", &own, &own], &ONE_BENCHMARK[..]].concat());
     let said = text(&output.stdout);
     // Whether it passes is for a check that takes its time: docs/PERFORMANCE.md.
     assert!(matches!(output.status.code(), Some(0 | 1)), "{}", text(&output.stderr));
@@ -184,7 +185,7 @@ fn a_binary_is_compared_with_itself() {
 fn twice_the_work_fails() {
     let own = binary();
     let slowed = ["bench", "compare", &own, &own, "--slowdown", "1"];
-    let output = run(&[&slowed, &ONE[..]].concat());
+    let output = run(&[&slowed, &ONE_BENCHMARK[..]].concat());
     assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
     assert!(text(&output.stdout).trim_end().ends_with(",fail"));
 }

@@ -127,15 +127,17 @@ fn the_help_of_every_verb_has_an_example_that_works() {
 /// seven columns and fills its lines, keeps examples and words apart.
 #[test]
 fn help_fits_where_it_is_shown() {
-    const TERMINAL: usize = 80;
-    const MANUAL: usize = 72;
+    /// The columns of a terminal, which no line of the help exceeds.
+    const TERMINAL_COLUMNS: usize = 80;
+    /// The columns of the examples below the help, which manual pages indent.
+    const EXAMPLE_COLUMNS: usize = 72;
     let widest = |text: String| text.lines().map(|line| line.chars().count()).max();
     for verb in command().get_subcommands() {
         let about = verb.get_long_about().map(ToString::to_string).unwrap_or_default();
         let after = verb.get_after_long_help().map(ToString::to_string).unwrap_or_default();
         let (_, answer) = about.split_once("\n\n").unwrap_or_default();
-        assert!(widest(answer.to_owned()) <= Some(TERMINAL), "{}", verb.get_name());
-        assert!(widest(after) <= Some(MANUAL), "{}", verb.get_name());
+        assert!(widest(answer.to_owned()) <= Some(TERMINAL_COLUMNS), "{}", verb.get_name());
+        assert!(widest(after) <= Some(EXAMPLE_COLUMNS), "{}", verb.get_name());
     }
 }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
-const SURVEY: [&str; 11] = [
+const SURVEY_COMMAND: [&str; 11] = [
     "basins",
     "--grid",
     "7x4",
@@ -124,7 +124,7 @@ fn a_section_is_the_table() {
 fn basins_hold_what_the_json_says() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("b.npz");
-    let json = stdout(&[&SURVEY[..], &["--output", path.to_str().unwrap()]].concat());
+    let json = stdout(&[&SURVEY_COMMAND[..], &["--output", path.to_str().unwrap()]].concat());
     let said: serde_json::Value = serde_json::from_str(&json).unwrap();
     let mut archive = archive(&path);
     let mut names: Vec<_> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
@@ -161,7 +161,7 @@ fn basins_hold_what_the_json_says() {
         let (p, y) = (p[cell % 7], y[cell / 7]);
         let window = format!("{:?},{:?},{:?},{:?}", p - 1e-9, p + 1e-9, y - 1e-9, y + 1e-9);
         let single = ["attractors", "--grid", "1x1", "--window", &window];
-        let single = stdout(&[&single[..], &SURVEY[5..]].concat());
+        let single = stdout(&[&single[..], &SURVEY_COMMAND[5..]].concat());
         let single: serde_json::Value = serde_json::from_str(&single).unwrap();
         let found = &single["attractors"][0];
         let expected = &said["attractors"][usize::try_from(*label).unwrap()];
@@ -176,7 +176,7 @@ fn threads_change_nothing() {
     for threads in ["1", "2", "5"] {
         let path = folder.path().join(format!("{threads}.npz"));
         let more = ["--threads", threads, "--output", path.to_str().unwrap()];
-        let json = stdout(&[&SURVEY[..], &more].concat());
+        let json = stdout(&[&SURVEY_COMMAND[..], &more].concat());
         seen.push((json, std::fs::read(path).unwrap()));
     }
     assert!(seen.windows(2).all(|pair| pair[0] == pair[1]));
@@ -196,7 +196,7 @@ fn pictures_are_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     stdout(&["poincare", "--transient", "9", "--periods", "99", "--output", &path("s.png")]);
-    stdout(&[&SURVEY[..], &["--output", &path("b.png")]].concat());
+    stdout(&[&SURVEY_COMMAND[..], &["--output", &path("b.png")]].concat());
     let bifurcation = [
         "bifurcation",
         "--parameter",

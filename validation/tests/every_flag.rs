@@ -82,7 +82,7 @@ const BRANCH: [&str; 10] = [
 ];
 
 /// The verbs of the dynamics that take a SYSTEM.
-const OF_SYSTEMS: &[&str] =
+const SYSTEM_VERBS: &[&str] =
     &["poincare", "lyapunov", "bifurcation", "attractors", "basins", "orbit", "continue"];
 
 /// The verbs that a row is for (all where empty), a flag, values that are refused, and what the
@@ -106,7 +106,7 @@ const ROWS: &[Row] = &[
     (&[], "--y", NUMBERS, "-1e9 to 1e9"),
     (&[], "--q", NUMBERS, "-1e9 to 1e9"),
     (&[], "--v", NUMBERS, "-1e9 to 1e9"),
-    (&[], "--cycle", INTEGERS_BUT_NEGATIVE, "-2^53"),
+    (&[], "--cycle", ODD_INTEGERS, "-2^53"),
     (&[], "--cycle", &["9007199254740993", "-9007199254740993"], "-2^53 <= cycle <= 2^53"),
     (&[], "--phase", WORDS, "no-contact, contact, progression"),
     (&[], "--problem", &["/no/such.toml", "/"], "accepted is a readable file"),
@@ -137,19 +137,19 @@ const ROWS: &[Row] = &[
     (&["simulate"], "--returns", INTEGERS, "0 to 1000000000"),
     (&["simulate"], "--transient", INTEGERS, "0 to 1000000000"),
     (&["new"], "NAME", &["", "Mine", "a b", "a--b", "../a"], "joined by hyphens"),
-    (OF_SYSTEMS, "--start", &["/no/such.toml"], "without SYSTEM"),
-    (OF_SYSTEMS, "--mode", &["flight"], "without SYSTEM"),
+    (SYSTEM_VERBS, "--start", &["/no/such.toml"], "without SYSTEM"),
+    (SYSTEM_VERBS, "--mode", &["flight"], "without SYSTEM"),
     (&["simulate"], "--every", INTEGERS, "1 to 1000000000"),
     (&["simulate"], "--every", &["2"], "without SYSTEM"),
     (&["simulate"], "--max-time", NUMBERS, "accepted is a positive number"),
     (&["simulate"], "--max-time", &["5"], "without SYSTEM"),
     (&["simulate"], "--section", &["", "1,5", "-inf", "a@", "strobe:x"], "-1e15 to 1e15"),
     (&["simulate"], "--section", &["0.5", "impact"], "without SYSTEM"),
-    (OF_SYSTEMS, "--every", INTEGERS, "1 to 1000000000"),
-    (OF_SYSTEMS, "--every", &["2"], "without SYSTEM"),
-    (OF_SYSTEMS, "--max-time", NUMBERS, "accepted is a positive number"),
-    (OF_SYSTEMS, "--max-time", &["0", "-1"], "accepted is a positive number"),
-    (OF_SYSTEMS, "--max-time", &["5"], "without SYSTEM"),
+    (SYSTEM_VERBS, "--every", INTEGERS, "1 to 1000000000"),
+    (SYSTEM_VERBS, "--every", &["2"], "without SYSTEM"),
+    (SYSTEM_VERBS, "--max-time", NUMBERS, "accepted is a positive number"),
+    (SYSTEM_VERBS, "--max-time", &["0", "-1"], "accepted is a positive number"),
+    (SYSTEM_VERBS, "--max-time", &["5"], "without SYSTEM"),
     (&["poincare", "lyapunov", "bifurcation"], "--returns", INTEGERS, "1 to 1000000000"),
     (&["poincare", "lyapunov", "bifurcation"], "--returns", &["3"], "without SYSTEM"),
     (
@@ -254,7 +254,7 @@ const ROWS: &[Row] = &[
 ];
 
 /// Odd values of a cycle's number, which may be negative.
-const INTEGERS_BUT_NEGATIVE: &[&str] = &["1e300", "1.5", "nan", "x", "", "18446744073709551616"];
+const ODD_INTEGERS: &[&str] = &["1e300", "1.5", "nan", "x", "", "18446744073709551616"];
 
 /// The rows of a flag of a verb: its own, or else those of all verbs.
 fn rows(verb: &str, flag: &str) -> Vec<&'static Row> {

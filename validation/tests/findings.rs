@@ -7,8 +7,8 @@ use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// What the page promises of each program.
-const MOST_LINES: usize = 40;
+/// The most lines of a program that the page shows, which it promises.
+const MAX_LINES: usize = 40;
 /// The libraries as crates, of which a program uses one.
 const LIBRARIES: [&str; 3] = ["diffsol", "ode_solvers", "differential_equations"];
 
@@ -66,7 +66,7 @@ fn every_program_is_short_shown_and_of_one_library() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         let text = read(&path);
-        assert!(text.lines().count() <= MOST_LINES, "{name} has over {MOST_LINES} lines");
+        assert!(text.lines().count() <= MAX_LINES, "{name} has over {MAX_LINES} lines");
         assert!(page.contains(&format!("--example {name}`")), "{name} is on neither page");
         let used = LIBRARIES.iter().filter(|it| text.contains(&format!("use {it}::"))).count();
         assert!(used == 1 && !text.contains("percuss"), "{name} is not of one library alone");

@@ -15,10 +15,10 @@ use percuss_validation::truth::{DoubleDouble, Library, Replay, Truth, TruthRow};
 /// Allowed difference, as a share of the largest growth so far: both are products of matrices in
 /// f64 (4e-12 is the most in regular motion; where a growth passes through a minimum, less of its
 /// own digits are left).
-const AGREEMENT: f64 = 1e-11;
+const GROWTH_TOLERANCE: f64 = 1e-11;
 /// Allowed difference in chaos, where the rows are off by eps times the growth, and the derivatives
 /// by some times that (8 where most): a grazing impact bends them.
-const BENT: f64 = 20.0 * f64::EPSILON;
+const CHAOS_TOLERANCE: f64 = 20.0 * f64::EPSILON;
 
 const CASES: [&str; 12] = [
     "chaos-from-rest",
@@ -59,7 +59,7 @@ fn products_of_the_solver_agree_with_matrix_exponentials() {
             largest = theirs.into_iter().fold(largest, f64::max);
             for (a, b) in ours.into_iter().zip(theirs) {
                 let apart = (a - b).abs() / largest;
-                let allowed = AGREEMENT + BENT * largest;
+                let allowed = GROWTH_TOLERANCE + CHAOS_TOLERANCE * largest;
                 assert!(apart <= allowed, "{name}: {what}: {ours:?} and {theirs:?}");
                 worst = worst.max(apart);
             }
@@ -101,7 +101,7 @@ fn products_of_the_solver_agree_with_matrix_exponentials() {
 const STEP: f64 = 1e-11;
 /// Derivatives of the run in f64 carry eps times the growth along the run so far; the differences
 /// carry STEP^2 times a third derivative, which grows with the cube of the growth.
-const DIFFERENCE: f64 = 1e-10;
+const DIFFERENCE_TOLERANCE: f64 = 1e-10;
 
 /// tau, p, y, q and v of every event of a run in 106 bits.
 fn events(
@@ -170,7 +170,10 @@ fn the_solvers_products_are_what_differences_in_106_bits_say() {
                 let (ours, theirs) = (rows[row][column], difference.to_f64());
                 let size = rows[row].iter().fold(1.0, |size: f64, slope| size.max(slope.abs()));
                 let apart = (ours - theirs).abs() / size;
-                assert!(apart <= DIFFERENCE, "switch {n}: {row} by {column}: {ours} {theirs}");
+                assert!(
+                    apart <= DIFFERENCE_TOLERANCE,
+                    "switch {n}: {row} by {column}: {ours} {theirs}"
+                );
                 worst = worst.max(apart);
             }
         }

@@ -17,9 +17,9 @@ const PERIODS: u32 = 200;
 
 /// A run may fall short of what its growth predicts by ln(20)/0.37 periods, if its error is twenty
 /// units of eps x growth; four periods are measured.
-const SHORT: f64 = 8.0;
+const MAX_LOSS_PERIODS: f64 = 8.0;
 /// Errors are seldom along the direction that grows most: the median run gains two periods.
-const MEDIAN_GAIN: std::ops::RangeInclusive<f64> = 0.0..=4.0;
+const MEDIAN_GAIN_PERIODS: std::ops::RangeInclusive<f64> = 0.0..=4.0;
 
 fn chaos() -> Case {
     exact::case("chaos-from-rest")
@@ -38,8 +38,8 @@ fn the_exact_solver_lasts_as_long_as_the_truths_growth_lets_it() {
     println!("least gain: {least}");
     assert_eq!((test.undecided, found.failed, found.runs.len()), (0, 0, STARTS));
     assert!(found.runs.iter().all(|run| !run.outlasts), "{:?}", found.runs);
-    assert!(least >= -SHORT, "{least}");
-    assert!(MEDIAN_GAIN.contains(&found.gained.median), "{:?}", found.gained);
+    assert!(least >= -MAX_LOSS_PERIODS, "{least}");
+    assert!(MEDIAN_GAIN_PERIODS.contains(&found.gained.median), "{:?}", found.gained);
     // The truth is the better one by far wherever the solver is judged.
     for (run, trusted) in found.runs.iter().zip(test.trusted()) {
         assert!(trusted > run.valid, "{run:?}: {trusted}");
@@ -51,7 +51,7 @@ fn the_exact_solver_lasts_as_long_as_the_truths_growth_lets_it() {
 /// of rounding.
 #[test]
 fn the_truth_lasts_as_long_as_it_says() {
-    const ROOM: f64 = 20.0 * 1e-5;
+    const STATE_TOLERANCE: f64 = 20.0 * 1e-5;
     let test = HorizonTest::new(&chaos(), 20, 250).expect("it is made");
     let (problem, trusted) = (exact::problem(&chaos()), test.trusted());
     let mut sorted = trusted.clone();
@@ -59,7 +59,7 @@ fn the_truth_lasts_as_long_as_it_says() {
     println!("the truth lasts {sorted:?} periods");
     for (start, periods) in far_apart(&problem, 20, 250).iter().zip(&trusted) {
         let apart = apart_after(start, u64::from(*periods));
-        assert!(apart <= ROOM, "{apart:e} after {periods} periods");
+        assert!(apart <= STATE_TOLERANCE, "{apart:e} after {periods} periods");
     }
     assert!(sorted[0] > 100 && sorted[10] > 150, "{sorted:?}");
 }

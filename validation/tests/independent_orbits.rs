@@ -11,7 +11,7 @@ const ORBIT_TOLERANCE: f64 = 1e-12;
 /// Eight digits of a bifurcation's value.
 const VALUE_TOLERANCE: f64 = 1e-8;
 /// A branch is followed this share of the way to a bifurcation beyond it.
-const BEYOND: f64 = 0.02;
+const OVERSHOOT_SHARE: f64 = 0.02;
 
 type Row = BTreeMap<String, String>;
 
@@ -105,7 +105,7 @@ fn bifurcations_are_confirmed_to_eight_digits_and_within_their_errors() {
         let (name, known) = (&row["parameter"], numbers(&row["value"])[0]);
         let own = row["set"].split_whitespace().find_map(|it| it.strip_prefix(&format!("{name}=")));
         let from = numbers(own.expect("the parameter's value"))[0];
-        let to = known + BEYOND * (known - from);
+        let to = known + OVERSHOOT_SHARE * (known - from);
         let way = [format!("--parameter={name}"), format!("--from={from}"), format!("--to={to}")];
         let found = answer("continue", row, name, &way);
         let all = found["bifurcations"].as_array().expect("bifurcations");

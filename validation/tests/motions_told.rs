@@ -6,11 +6,11 @@ use serde_json::Value;
 use std::path::Path;
 
 /// An orbit of period 240, which chaos of thousands of periods precedes.
-const LONG: [&str; 10] =
+const LONG_ORBIT: [&str; 10] =
     ["--a", "0.42", "--b", "0.18", "--xi", "0.08", "--g", "0.05", "--omega", "0.74"];
 
 /// Values of b on both sides of zero, below which the mass never returns.
-const ESCAPES: &str = "bifurcation --a 0.42 --xi 0.08 --g 0.05 --omega 0.9 --parameter b \
+const ESCAPES_COMMAND: &str = "bifurcation --a 0.42 --xi 0.08 --g 0.05 --omega 0.9 --parameter b \
                        --from -0.05 --to 0.5 --steps 400 --transient 300 --periods 60";
 
 fn words(line: &str) -> Vec<&str> {
@@ -31,7 +31,7 @@ fn json(text: &str) -> Value {
 #[test]
 fn values_that_escape_are_left_out_and_counted() {
     for how in ["--carry", "--reset"] {
-        let (csv, told) = said(&[&words(ESCAPES)[..], &[how]].concat());
+        let (csv, told) = said(&[&words(ESCAPES_COMMAND)[..], &[how]].concat());
         let shown = rows(&csv);
         // 37 of the 400 values are below zero.
         assert_eq!(shown.len(), (400 - 37) * 60, "{how}");
@@ -40,7 +40,7 @@ fn values_that_escape_are_left_out_and_counted() {
         assert_eq!(told.lines().count(), 1, "{told}");
         assert_eq!(told.contains("starts from the last that did not"), how == "--carry");
     }
-    let all = ESCAPES.replace("--to 0.5", "--to -0.01");
+    let all = ESCAPES_COMMAND.replace("--to 0.5", "--to -0.01");
     let (csv, told) = said(&words(&all));
     assert_eq!(csv, "parameter,n,p,y,q,drift_per_period,drift_standard_error\n");
     assert!(told.contains("400 of 400 values escape"), "{told}");
@@ -70,7 +70,7 @@ fn the_drift_of_a_diagram_has_its_error() {
 fn a_run_over_the_end_of_a_transient_is_told() {
     let lyapunov = |transient: &str, periods: &str| {
         let length = ["--transient", transient, "--periods", periods];
-        let (shown, told) = said(&[&["lyapunov"], &LONG[..], &length].concat());
+        let (shown, told) = said(&[&["lyapunov"], &LONG_ORBIT[..], &length].concat());
         (json(&shown), told)
     };
     let (over, told) = lyapunov("500", "64000");
@@ -89,7 +89,7 @@ fn a_run_over_the_end_of_a_transient_is_told() {
 
 fn surveyed(more: &[&str]) -> Value {
     let survey = ["attractors", "--grid", "3x2", "--window", "-1,1,-1,1", "--transient", "200"];
-    json(&stdout(&[&survey[..], &LONG, more].concat()))
+    json(&stdout(&[&survey[..], &LONG_ORBIT, more].concat()))
 }
 
 #[test]
@@ -125,7 +125,7 @@ fn starts_that_are_not_recognised_are_described() {
     assert!(examples.iter().any(chaotic), "{examples:?}");
     let survey = ["attractors", "--grid", "3x2", "--window", "-1,1,-1,1", "--transient", "200"];
     let more = ["--max-period", "239", "--format", "table"];
-    let table = stdout(&[&survey[..], &LONG, &more].concat());
+    let table = stdout(&[&survey[..], &LONG_ORBIT, &more].concat());
     assert_eq!(table.matches("unresolved: p = ").count(), 3, "{table}");
     assert!(table.contains("does not repeat within 239 periods"), "{table}");
 }

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 /// Digits that do not depend on the platform: the last ones are those of its sine and exponential,
 /// times the orbit's sensitivity.
-const STABLE: f64 = 1e-10;
+const PLATFORM_TOLERANCE: f64 = 1e-10;
 
 fn json(arguments: &[&str], code: i32) -> (Value, String) {
     let output = run(arguments);
@@ -25,7 +25,11 @@ fn assert_near(found: &Value, wanted: &[f64]) {
     let found = numbers(found);
     assert_eq!(found.len(), wanted.len(), "{found:?}");
     for (found, wanted) in found.iter().zip(wanted) {
-        approx::assert_abs_diff_eq!(*found, *wanted, epsilon = STABLE * (1.0 + wanted.abs()));
+        approx::assert_abs_diff_eq!(
+            *found,
+            *wanted,
+            epsilon = PLATFORM_TOLERANCE * (1.0 + wanted.abs())
+        );
     }
 }
 

@@ -128,12 +128,13 @@ fn decimal(cell: &str, places: u32) -> i128 {
 /// Whether a proved number of 25 digits rounds to a cell that may have fewer.
 fn is_rounded(cell: &str, proved: &str) -> bool {
     /// Numbers of up to 99 have 36 places in 128 bits.
-    const PLACES: u32 = 36;
+    const DECIMAL_PLACES: u32 = 36;
     let (number, exponent) = cell.split_once('e').unwrap_or((cell, "0"));
     let own = number.split_once('.').map_or(0, |(_, part)| part.len() as i32);
     let exponent: i32 = exponent.parse().expect("an exponent");
-    let unit = 10_i128.pow(u32::try_from(PLACES as i32 + exponent - own).expect("enough places"));
-    2 * (decimal(cell, PLACES) - decimal(proved, PLACES)).abs() <= unit
+    let unit =
+        10_i128.pow(u32::try_from(DECIMAL_PLACES as i32 + exponent - own).expect("enough places"));
+    2 * (decimal(cell, DECIMAL_PLACES) - decimal(proved, DECIMAL_PLACES)).abs() <= unit
 }
 
 #[test]

@@ -97,7 +97,7 @@ fn the_control_passes_where_the_faults_do_not() {
     }
     let failed = |wrong: WrongEngine| -> usize {
         let cases = [&others, &grazes].into_iter();
-        let all = cases.flat_map(|cases| findings(&[wrong], cases, AS_LARGE));
+        let all = cases.flat_map(|cases| findings(&[wrong], cases, LARGE_UNIT_STANDARD));
         all.flat_map(|it| it.gates.into_values()).map(|trip| trip.failed).sum()
     };
     let usual = failed(control);
@@ -111,10 +111,11 @@ fn the_control_passes_where_the_faults_do_not() {
 }
 
 /// The exact solver's bounds, restarts included, with room for what steps and bisection lose.
-const AS_LARGE: Standard = Standard { engine: "exact", accuracy: Accuracy::Exact, unit: 1e-9 };
+const LARGE_UNIT_STANDARD: Standard =
+    Standard { engine: "exact", accuracy: Accuracy::Exact, unit: 1e-9 };
 
 /// Cases with every kind of event, one of which restarts.
-const INTEGRATED: [&str; 6] = [
+const INTEGRATED_CASES: [&str; 6] = [
     "chaos-from-rest",
     "critical-xi-1",
     "fast-forcing",
@@ -125,7 +126,7 @@ const INTEGRATED: [&str; 6] = [
 
 #[test]
 fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
-    let cases = exact::prepared(|name| INTEGRATED.contains(&name), Some(Suite::Quick));
+    let cases = exact::prepared(|name| INTEGRATED_CASES.contains(&name), Some(Suite::Quick));
     for standard in Standard::of_faulty() {
         let found = findings(&anywhere(faulty()), &cases, standard);
         for finding in &found {
@@ -203,7 +204,7 @@ fn events_of_one_instant_are_a_set_where_their_order_is_free() {
 /// Mistakes that at least 95 % of the answers show in which they spoil anything. Late times alone
 /// and states off after events show from 300 tolerances on: after a restart right multistep methods
 /// err by up to 100.
-const CAUGHT: [Variant; 16] = [
+const CAUGHT_VARIANTS: [Variant; 16] = [
     Variant::Late(10.0),
     Variant::Late(100.0),
     Variant::TimesLate(300.0),
@@ -223,7 +224,7 @@ const CAUGHT: [Variant; 16] = [
 ];
 
 /// Mistakes that as many answers of methods other than multistep ones show.
-const CAUGHT_OF_ONE_STEP: [Variant; 2] = [Variant::TimesLate(30.0), Variant::Noise(10.0)];
+const CAUGHT_ONE_STEP_VARIANTS: [Variant; 2] = [Variant::TimesLate(30.0), Variant::Noise(10.0)];
 
 /// The kinds of mistakes that fewer than 95 % of the answers show.
 fn too_few(tallies: &[Tally]) -> Vec<String> {
@@ -239,14 +240,14 @@ fn too_few(tallies: &[Tally]) -> Vec<String> {
 fn wrong_answers_are_caught_where_no_limit_was_set() {
     let cases = exact::prepared(|_| true, None);
     let classes = defaults().expect("the limits are read").classes;
-    let variants = [&CAUGHT[..], &CAUGHT_OF_ONE_STEP].concat();
+    let variants = [&CAUGHT_VARIANTS[..], &CAUGHT_ONE_STEP_VARIANTS].concat();
     let mut made = trials(&cases, 1e-6, &classes, &variants);
     assert!(made.len() > 200, "{}", made.len());
     let condemned: Vec<_> =
         made.iter().filter(|it| it.is_condemned).map(|it| (it.engine, &it.case)).collect();
     assert!(condemned.is_empty(), "{condemned:?}");
-    assert_eq!(too_few(&tallies(&made, &variants)[..CAUGHT.len()]), Vec::<String>::new());
+    assert_eq!(too_few(&tallies(&made, &variants)[..CAUGHT_VARIANTS.len()]), Vec::<String>::new());
     made.retain(|it| it.engine != "diffsol-bdf");
     assert!(made.len() > 150, "{}", made.len());
-    assert_eq!(too_few(&tallies(&made, &variants)[CAUGHT.len()..]), Vec::<String>::new());
+    assert_eq!(too_few(&tallies(&made, &variants)[CAUGHT_VARIANTS.len()..]), Vec::<String>::new());
 }

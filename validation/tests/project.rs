@@ -159,7 +159,7 @@ fn sources(folder: &Path, found: &mut Vec<(PathBuf, &'static [&'static str])>) {
 /// Formatters keep code within this width and leave comments alone.
 #[test]
 fn comments_are_at_most_100_columns_wide() {
-    const WIDTH: usize = 100;
+    const MAX_COLUMNS: usize = 100;
     let mut found = Vec::new();
     sources(&root(), &mut found);
     assert!(!found.is_empty(), "no sources are found");
@@ -168,7 +168,7 @@ fn comments_are_at_most_100_columns_wide() {
         let text = std::fs::read_to_string(&path).expect("the source is text");
         let lines = text.lines().enumerate().filter(|(_, line)| {
             let begins = |mark: &&str| line.trim_start().starts_with(mark);
-            marks.iter().any(begins) && line.chars().count() > WIDTH
+            marks.iter().any(begins) && line.chars().count() > MAX_COLUMNS
         });
         wide.extend(lines.map(|(n, _)| format!("{}:{}", path.display(), n + 1)));
     }

@@ -11,9 +11,9 @@ use percuss_validation::cli::command;
 use percuss_validation::integrators::all;
 use std::path::PathBuf;
 
-const MOST_LINES: usize = 150;
+const MAX_LINES: usize = 150;
 /// The commands to copy end before this line.
-const FIRST_SCREEN: usize = 40;
+const FIRST_SCREEN_LINES: usize = 40;
 const BEGIN: &str = "<!-- begin: five set-ups -->\n";
 const END: &str = "<!-- end: five set-ups -->";
 
@@ -40,11 +40,11 @@ fn commands(page: &str) -> Vec<(usize, Vec<String>)> {
 fn it_is_short_and_its_commands_come_first() {
     let readme = transcripts::read(&page());
     let lines = readme.lines().count();
-    assert!(lines <= MOST_LINES, "{lines} lines");
+    assert!(lines <= MAX_LINES, "{lines} lines");
     let commands = commands(&readme);
     assert!(commands.len() >= 3, "{commands:?}");
     for (line, words) in commands {
-        assert!(line < FIRST_SCREEN, "{words:?} is on line {line}");
+        assert!(line < FIRST_SCREEN_LINES, "{words:?} is on line {line}");
         let parsed = command().try_get_matches_from(&words);
         assert!(parsed.is_ok(), "{words:?}: {:?}", parsed.err());
         // All engines on all cases are a job of their own in CI.

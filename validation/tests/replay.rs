@@ -10,14 +10,14 @@ use percuss_validation::engine::{OscillatorTask, SampleGrid};
 use percuss_validation::truth::{DoubleDouble, Library, Truth, TruthRow, Undecided};
 
 /// The tables hold 25 significant digits, rounded to nearest, and at most 60 decimals.
-const HALF_A_DIGIT: f64 = 0.5e-24;
+const PRINTED_TOLERANCE: f64 = 0.5e-24;
 /// They are read into two words in a dozen roundings.
-const READING: f64 = 16.0 * DoubleDouble::UNIT;
+const READING_TOLERANCE: f64 = 16.0 * DoubleDouble::UNIT;
 
 /// k of |error| <= k u (1 + |value| + time) growth events, beyond the tables' own rounding, with
 /// u = 2^-106. Ten-odd roundings per event would let it be ten; 0.13 is reached, where 25 digits do
 /// not hide it.
-const ROUNDINGS: f64 = 1.0;
+const MAX_ROUNDINGS: f64 = 1.0;
 
 struct Worst {
     units: f64,
@@ -37,7 +37,7 @@ fn units(found: TwoWord, proved: TwoWord, time: f64) -> f64 {
     let value = proved.value().abs();
     let error = found.minus(proved).value().abs();
     // Not a maximum, which would drop a NaN.
-    let printed = HALF_A_DIGIT * value + READING * value + 0.5e-60;
+    let printed = PRINTED_TOLERANCE * value + READING_TOLERANCE * value + 0.5e-60;
     let left = if error <= printed { 0.0 } else { error - printed };
     left / (DoubleDouble::UNIT * (1.0 + value + time))
 }
@@ -116,7 +116,7 @@ fn every_proved_digit_of_every_case_is_met() {
         }
     }
     println!("{events} events, {samples} samples: {:.2} at {}", worst.units, worst.place);
-    assert!(worst.units <= ROUNDINGS, "{:.2} roundings: {}", worst.units, worst.place);
+    assert!(worst.units <= MAX_ROUNDINGS, "{:.2} roundings: {}", worst.units, worst.place);
 }
 
 /// The first flight of a graze with its start moved by `shift`, which moves the margin as far.

@@ -1,7 +1,7 @@
 //! `report.html` and the pictures beside it, full, empty, and with numbers that are not finite.
 
 use crate::support;
-use crate::support::synthetic::{NASTY, evidence, report, row};
+use crate::support::synthetic::{UNESCAPED_TEXT, evidence, report, row};
 use percuss_validation::report::{
     CaseNote, Report, ReportEvidence, ReportRow, ScreenParts, exporters, pictures, screen,
 };
@@ -66,7 +66,7 @@ fn nothing_is_loaded_and_nothing_gets_out_of_its_place() {
     assert!(html.contains("default-src 'none'"));
     // One script element for the data and one for the scripts, whatever the rows say.
     assert_eq!((html.matches("<script").count(), html.matches("</script>").count()), (2, 2));
-    assert!(!html.contains(NASTY) && !html.contains("<!--"));
+    assert!(!html.contains(UNESCAPED_TEXT) && !html.contains("<!--"));
 }
 
 #[test]

@@ -53,7 +53,7 @@ const VERDICTS: &[(&str, &str)] = &[
 ];
 
 /// Items that take seconds.
-const LIGHT: [&str; 6] = ["--only", "figure-2", "--only", "table-1", "--only", "figure-5"];
+const QUICK_ITEMS: [&str; 6] = ["--only", "figure-2", "--only", "table-1", "--only", "figure-5"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -87,7 +87,7 @@ fn every_claim_has_one_item_and_the_papers_words() {
 fn pictures_data_and_claims_are_written_and_agree_for_any_number_of_threads() {
     let folders = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
     for (folder, threads) in folders.iter().zip(["1", "2"]) {
-        let done = reproduce(folder.path(), &[&LIGHT[..], &["--threads", threads]].concat());
+        let done = reproduce(folder.path(), &[&QUICK_ITEMS[..], &["--threads", threads]].concat());
         assert!(done.status.success(), "{}", text(&done.stderr));
         assert!(text(&done.stdout).contains("table1-closed  differs"));
     }
@@ -118,7 +118,7 @@ fn pictures_data_and_claims_are_written_and_agree_for_any_number_of_threads() {
 #[test]
 fn the_documented_claims_are_what_is_found() {
     let folder = tempfile::tempdir().unwrap();
-    let done = reproduce(folder.path(), &LIGHT);
+    let done = reproduce(folder.path(), &QUICK_ITEMS);
     assert!(done.status.success(), "{}", text(&done.stderr));
     let found = by_id(&json(&folder.path().join("claims.json")));
     assert_eq!(found.len(), 7);
@@ -208,7 +208,7 @@ fn what_is_not_accepted_is_named() {
     assert!(text(&nowhere.stderr).contains("--out"));
     let file = folder.path().join("a-file");
     std::fs::write(&file, "").unwrap();
-    let onto_a_file = reproduce(&file, &LIGHT);
+    let onto_a_file = reproduce(&file, &QUICK_ITEMS);
     assert_eq!(onto_a_file.status.code(), Some(2));
     assert!(text(&onto_a_file.stderr).contains("accepted is a writable folder"));
     assert_eq!(run(&["reproduce", "--out", "x", "--xi", "0.1"]).status.code(), Some(2));

@@ -12,17 +12,18 @@ use percuss_validation::score::{Restart, RestartTest};
 
 /// Largest median of the runs with an impact, in eps (1 + |value|) x growth: twice the largest
 /// median measured (1.0, fast forcing; 0.35 in chaos). The last addition alone makes a quarter.
-const MEDIAN: f64 = 2.0;
+const MAX_MEDIAN: f64 = 2.0;
 /// The promise of ten roundings; 4.9 is the largest of 430,000 runs (fast forcing), 2.7 in chaos.
-const LARGEST: f64 = 10.0;
+const MAX_UNITS: f64 = 10.0;
 
 /// The mass never strikes the slider again on these attractors.
-const WITHOUT_IMPACT: [&str; 3] = ["never-returns", "never-stops", "rests-for-ever"];
+const CASES_WITHOUT_IMPACT: [&str; 3] = ["never-returns", "never-stops", "rests-for-ever"];
 
 /// How a motion is solved.
 type Run = dyn Fn(&Task) -> Result<Outcome, Failure> + Sync;
 
-const AS_EXACT: (Accuracy, f64) = (Accuracy::Exact, f64::EPSILON);
+/// The accuracy of the exact solver, and its unit of error.
+const EXACT_ACCURACY: (Accuracy, f64) = (Accuracy::Exact, f64::EPSILON);
 
 fn on_attractor(case: &Case, count: usize) -> RestartTest {
     RestartTest::on_attractor(case, count).expect("it is of the oscillator")
@@ -30,7 +31,7 @@ fn on_attractor(case: &Case, count: usize) -> RestartTest {
 
 fn restarts(case: &Case, count: usize) -> (RestartTest, Restart) {
     let test = on_attractor(case, count);
-    let restart = test.score(AS_EXACT, exact::run);
+    let restart = test.score(EXACT_ACCURACY, exact::run);
     (test, restart)
 }
 
@@ -44,7 +45,7 @@ fn every_case(count: usize) {
 }
 
 fn holds_its_digits(case: &Case, test: &RestartTest, how: &str, run: &Run) {
-    let restart = test.score(AS_EXACT, run);
+    let restart = test.score(EXACT_ACCURACY, run);
     let count = test.runs.len() + test.undecided;
     let Restart { with_impact, units, absolute, .. } = &restart;
     println!(
@@ -66,14 +67,14 @@ fn holds_its_digits(case: &Case, test: &RestartTest, how: &str, run: &Run) {
     );
     let unhappy = (restart.undecided, restart.failed, restart.wrong_sequences);
     assert_eq!((restart.runs, unhappy), (count, (0, 0, 0)), "{}", case.name);
-    if WITHOUT_IMPACT.contains(&case.name.as_str()) {
+    if CASES_WITHOUT_IMPACT.contains(&case.name.as_str()) {
         assert_eq!(*with_impact, 0, "{}", case.name);
         return;
     }
     assert!(*with_impact > 0, "{}", case.name);
-    assert!(units.median <= MEDIAN, "{}: median {}", case.name, units.median);
+    assert!(units.median <= MAX_MEDIAN, "{}: median {}", case.name, units.median);
     for max in [units.max, restart.drift_units.max, restart.time_units.max] {
-        assert!(max <= LARGEST, "{}: max {max}", case.name);
+        assert!(max <= MAX_UNITS, "{}: max {max}", case.name);
     }
 }
 
@@ -146,14 +147,14 @@ fn starts_lie_in_every_phase_and_runs_end_at_a_strobe() {
 #[test]
 fn an_error_of_a_few_eps_is_seen() {
     let (test, honest) = restarts(&exact::case("chaos-from-rest"), 200);
-    let faulty = test.score(AS_EXACT, |task| {
+    let faulty = test.score(EXACT_ACCURACY, |task| {
         let mut outcome = exact::run(task)?;
         for value in outcome.end.iter_mut() {
             *value += 1e-13;
         }
         Ok(outcome)
     });
-    assert!(faulty.units.median > 10.0 * honest.units.median && faulty.units.max > LARGEST);
+    assert!(faulty.units.median > 10.0 * honest.units.median && faulty.units.max > MAX_UNITS);
 }
 
 /// Runs that give no result count as failed; where there is no other, no error was measured.
@@ -168,17 +169,17 @@ fn failures_are_counted() {
 /// A restart that is right but for its drift is off: the drift is scored with p, y and q.
 #[test]
 fn an_error_of_the_drift_alone_is_seen() {
-    const OFF: f64 = 1e-11;
+    const STATE_ERROR: f64 = 1e-11;
     let cases = embedded().expect("the cases are read");
     let case = cases.iter().find(|case| case.name == "table1-from-rest").expect("the case");
     let test = on_attractor(case, 20);
     let drifted = |task: &Task| {
         let mut outcome = exact::run(task)?;
-        outcome.end[3] += OFF;
+        outcome.end[3] += STATE_ERROR;
         Ok(outcome)
     };
-    let restart = test.score(AS_EXACT, drifted);
+    let restart = test.score(EXACT_ACCURACY, drifted);
     assert!(restart.with_impact > 0);
-    assert!(restart.units.median > LARGEST, "{}", restart.units.median);
+    assert!(restart.units.median > MAX_UNITS, "{}", restart.units.median);
     assert_eq!((restart.failed, restart.wrong_sequences), (0, 0));
 }

@@ -13,9 +13,9 @@ use percuss_validation::suite::{PreparedCase, Suite};
 
 /// The bound of the oscillator's restarts, in eps (1 + |value|) x growth; 1.4 is the largest median
 /// of any case.
-const MEDIAN: f64 = 2.0;
+const MAX_MEDIAN: f64 = 2.0;
 /// The promise of ten roundings; 8.0 is the largest of all.
-const LARGEST: f64 = 10.0;
+const MAX_UNITS: f64 = 10.0;
 
 fn one(name: &str) -> PreparedCase {
     probed_systems(|it| it == name).pop().expect("the case")
@@ -37,14 +37,15 @@ fn exactly(task: &Task) -> Result<Outcome, Failure> {
     answer(named(REFERENCE), task, Accuracy::Exact, &Limits::default())
 }
 
-const AS_EXACT: (Accuracy, f64) = (Accuracy::Exact, f64::EPSILON);
+/// The accuracy of the exact solver, and its unit of error.
+const EXACT_ACCURACY: (Accuracy, f64) = (Accuracy::Exact, f64::EPSILON);
 
 #[test]
 fn the_exact_solver_keeps_its_digits_on_every_case() {
     let mut with_events = 0;
     for case in probed_systems(|_| true) {
         let name = &case.case.name;
-        let restart = scored(&case, AS_EXACT, exactly);
+        let restart = scored(&case, EXACT_ACCURACY, exactly);
         let Restart { units, time_units, runs, undecided, .. } = &restart;
         println!(
             "{name:28} {runs:3} {undecided} median {:.3} max {:.2} time {:.3} {:.2}",
@@ -55,9 +56,9 @@ fn the_exact_solver_keeps_its_digits_on_every_case() {
             continue;
         }
         with_events += 1;
-        assert!(units.median <= MEDIAN, "{name}: median {}", units.median);
-        assert!(units.max <= LARGEST, "{name}: {}", units.max);
-        assert!(time_units.max <= LARGEST, "{name}: time {}", time_units.max);
+        assert!(units.median <= MAX_MEDIAN, "{name}: median {}", units.median);
+        assert!(units.max <= MAX_UNITS, "{name}: {}", units.max);
+        assert!(time_units.max <= MAX_UNITS, "{name}: time {}", time_units.max);
     }
     assert!(with_events > 60, "{with_events}");
 }
@@ -84,10 +85,10 @@ fn a_start_that_is_off_is_seen() {
 #[test]
 fn failures_and_missed_events_are_counted() {
     let case = one("buck-periodic");
-    let failing = scored(&case, AS_EXACT, |_| Err(Failure::new("tired")));
+    let failing = scored(&case, EXACT_ACCURACY, |_| Err(Failure::new("tired")));
     assert_eq!((failing.failed, failing.with_impact), (20, 20));
     assert!(failing.units.max.is_nan());
-    let missing = scored(&case, AS_EXACT, |task| {
+    let missing = scored(&case, EXACT_ACCURACY, |task| {
         let mut outcome = exactly(task)?;
         outcome.events.pop();
         Ok(outcome)
@@ -121,7 +122,7 @@ fn starts_that_rounding_puts_beside_a_guard_are_not_asked_for() {
     let test = test(&prepared[0]);
     let failing = |run: &&RestartRun| exactly(&run.task).is_err();
     assert_eq!(test.runs.iter().filter(failing).count(), 1);
-    let restart = test.score_first(usize::MAX, AS_EXACT, exactly);
+    let restart = test.score_first(usize::MAX, EXACT_ACCURACY, exactly);
     assert_eq!((restart.failed, restart.wrong_sequences), (0, 0));
     assert!(restart.runs > 60, "{}", restart.runs);
 }

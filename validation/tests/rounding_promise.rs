@@ -16,10 +16,10 @@ const FAR_STARTS: u32 = 4000;
 const PERIODS: u64 = 40;
 /// The promise, in roundings per event beside the largest state so far. These draws reach 2.3, and
 /// others 7.0, by slow forcing, whose flights are 1e4 high. METHODOLOGY.md states both.
-const PROMISED: f64 = 10.0;
+const PROMISED_ROUNDINGS: f64 = 10.0;
 /// Where errors have grown to this share of the state so far, they no longer grow as the linear
 /// theory of the growth says.
-const LINEAR: f64 = 1e-6;
+const MAX_LINEAR_SHARE: f64 = 1e-6;
 
 /// SplitMix64: the same runs every time.
 struct Draw(u64);
@@ -126,7 +126,7 @@ fn errors(given: &Given) -> Option<Errors> {
         }
         let far = largest.iter().copied().fold(0.0, f64::max);
         let count = errors.events as f64;
-        if grown.iter().any(|it| it * f64::EPSILON * (1.0 + far) * count > LINEAR) {
+        if grown.iter().any(|it| it * f64::EPSILON * (1.0 + far) * count > MAX_LINEAR_SHARE) {
             break;
         }
         assert_eq!(place(next.phase()), row.mode, "{given:?}");
@@ -157,7 +157,7 @@ fn drawn_runs_keep_the_promise_beside_the_largest_state_so_far() {
          largest state"
     );
     assert!(events > 20 * RUNS && undecided < RUNS / 20, "{events} {undecided}");
-    assert!(all.iter().all(|it| it.beside_largest <= PROMISED), "{largest}");
+    assert!(all.iter().all(|it| it.beside_largest <= PROMISED_ROUNDINGS), "{largest}");
 }
 
 /// Beside |value| alone it would be no promise: of these fixed starts far away many have an event
@@ -174,9 +174,12 @@ fn beside_small_values_after_far_starts_there_is_no_promise() {
         given
     };
     let all: Vec<_> = (0..FAR_STARTS).filter_map(|n| errors(&far(n))).collect();
-    let exceed = all.iter().filter(|it| it.beside_value > PROMISED).count();
-    println!("{exceed} of {} runs from far away have above {PROMISED} beside the value", all.len());
+    let exceed = all.iter().filter(|it| it.beside_value > PROMISED_ROUNDINGS).count();
+    println!(
+        "{exceed} of {} runs from far away have above {PROMISED_ROUNDINGS} beside the value",
+        all.len()
+    );
     assert!(all.len() > FAR_STARTS as usize * 9 / 10, "{}", all.len());
-    assert!(all.iter().all(|it| it.beside_largest <= PROMISED));
+    assert!(all.iter().all(|it| it.beside_largest <= PROMISED_ROUNDINGS));
     assert!(exceed >= 20, "{exceed}");
 }

@@ -122,11 +122,11 @@ fn every_transcript_prints_what_it_shows() {
 }
 
 /// Cases on which a solver may never end, and one that is turned back in time.
-const HARD: &str = "'^(ball-(forty-impacts|moving-in|backward)|rigid-rests-on-stop|spheres-.*|\
-                    relay-chatter-fine|cradle-one)$'";
+const HARD_CASES: &str = "'^(ball-(forty-impacts|moving-in|backward)|rigid-rests-on-stop|\
+                    spheres-.*|relay-chatter-fine|cradle-one)$'";
 
 /// What is no case: its horizon is no number, and it has no rows.
-const BROKEN: &str = "mode,horizon,omega,phi,backward,x\nfree,nonsense,1,0,0,0\n";
+const BROKEN_CASE: &str = "mode,horizon,omega,phi,backward,x\nfree,nonsense,1,0,0,0\n";
 
 /// Each program ends on hard cases, says which case it cannot answer, and answers the others.
 #[test]
@@ -135,8 +135,8 @@ fn every_program_ends_and_goes_on_after_a_case_that_fails() {
     let (page, folder) = (read(), tempfile::tempdir().expect("a folder"));
     let folder = folder.path();
     ["python", "cpp", "r"].iter().for_each(|it| write(folder, blocks(&page, it)[0]));
-    done(folder, &format!("percuss export --out asked -c {HARD}"));
-    fs::write(folder.join("asked/a-broken.start.csv"), BROKEN).expect("written");
+    done(folder, &format!("percuss export --out asked -c {HARD_CASES}"));
+    fs::write(folder.join("asked/a-broken.start.csv"), BROKEN_CASE).expect("written");
     let consoles = blocks(&page, "console");
     let commands = consoles.iter().flat_map(|it| it.lines()).filter_map(|it| it.strip_prefix("$ "));
     for command in commands.filter(|it| !it.starts_with("percuss ")) {
@@ -156,7 +156,8 @@ fn hold_hard_answers(folder: &Path, answers: &str) {
     assert!(!file("a-broken").exists(), "{answers}");
     let backward = fs::read_to_string(file("ball-backward")).expect("it is answered");
     assert!(backward.lines().last().is_some_and(|it| it.contains(",leaves-domain,")), "{backward}");
-    let score = format!("percuss score --name x --tolerance 1e-6 --answers {answers} -c {HARD}");
+    let score =
+        format!("percuss score --name x --tolerance 1e-6 --answers {answers} -c {HARD_CASES}");
     let output = run(folder, &score);
     let counts = text(&output.stdout).split_whitespace().collect::<Vec<_>>().join(" ");
     let are_all_read = counts.ends_with(" 0 error");

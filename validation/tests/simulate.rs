@@ -173,7 +173,7 @@ fn contacts_that_die_out_are_decided() {
 }
 
 /// Free and forced oscillation in step, which nothing but following them shows to stay inside.
-const IN_STEP: &str =
+const RESONANT_START: &str =
     "--a 0.84 --b 0.5 --xi 1e-8 --omega 2 --phi 1.5707963267948966 --p 0.8 --y 0.56 --q 0.78";
 
 #[test]
@@ -183,7 +183,7 @@ fn a_phase_that_is_not_decided_ends_the_run() {
         "--periods 1000000000 --samples 1",
         "--events 1 --max-periods 1000000000",
     ] {
-        let line = format!("simulate {length} {IN_STEP}");
+        let line = format!("simulate {length} {RESONANT_START}");
         let output = run(&line.split(' ').collect::<Vec<_>>());
         let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{line}: {said}");
@@ -201,7 +201,7 @@ fn a_phase_that_is_not_decided_ends_the_run() {
                 .all(|cell| cell.parse::<f64>().is_ok_and(f64::is_finite))
         );
     }
-    let line = format!("simulate --periods 1000 {IN_STEP}");
+    let line = format!("simulate --periods 1000 {RESONANT_START}");
     let output = run(&line.split(' ').collect::<Vec<_>>());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     assert!(text(&output.stdout).lines().last().is_some_and(|row| row.contains(",end,")));

@@ -6,7 +6,7 @@ use percuss::System;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-const IMPACTS: &str = "rigid-impact-oscillator";
+const IMPACT_SYSTEM: &str = "rigid-impact-oscillator";
 
 fn system(name: &str) -> System {
     let file = format!("{}/systems/{name}.system.toml", env!("CARGO_MANIFEST_DIR"));
@@ -24,10 +24,10 @@ fn numbers(row: &[String], time: usize, state: usize) -> Vec<f64> {
 
 #[test]
 fn rows_are_the_events_of_the_library() {
-    let system = system(IMPACTS);
+    let system = system(IMPACT_SYSTEM);
     let solver = system.solver::<f64>().expect("a solver");
     let events = solver.run().until(60.0).expect("a run");
-    let printed = simulated(IMPACTS, &["--until", "60"]);
+    let printed = simulated(IMPACT_SYSTEM, &["--until", "60"]);
     assert_eq!(numbers(&printed[0], 1, 4), [0.0, 0.0, 0.0]);
     let mut count = 0;
     for (n, event) in (1..).zip(events) {
@@ -43,11 +43,11 @@ fn rows_are_the_events_of_the_library() {
 
 /// What roundings of f64 have grown to in some tens of impacts; a wrong event would change a state
 /// by more than a tenth.
-const GROWN_ROUNDING: f64 = 1e-10;
+const STATE_TOLERANCE: f64 = 1e-10;
 
 #[test]
 fn samples_are_those_of_the_library() {
-    let system = system(IMPACTS);
+    let system = system(IMPACT_SYSTEM);
     let solver = system.solver::<f64>().expect("a solver");
     let samples: Vec<Vec<f64>> = solver
         .run()
@@ -56,25 +56,25 @@ fn samples_are_those_of_the_library() {
         .take(41)
         .map(|it| std::iter::once(it.time()).chain(it.state()).copied().collect())
         .collect();
-    let all = simulated(IMPACTS, &["--returns", "10", "--samples", "4"]);
+    let all = simulated(IMPACT_SYSTEM, &["--returns", "10", "--samples", "4"]);
     let found: Vec<Vec<f64>> = all.iter().map(|it| numbers(it, 0, 2)).collect();
     assert_eq!(found, samples);
     // Seven returns later the same instants follow. Searches that ended at other times have other
     // roundings, which the motion has multiplied.
-    let late = simulated(IMPACTS, &["--returns", "3", "--samples", "4", "--transient", "7"]);
+    let late = simulated(IMPACT_SYSTEM, &["--returns", "3", "--samples", "4", "--transient", "7"]);
     assert_eq!(late.len(), 13);
     for (a, b) in late.iter().zip(&all[28..]) {
         assert_eq!(a[..2], b[..2]);
         for (a, b) in numbers(a, 0, 2).iter().zip(numbers(b, 0, 2)) {
-            approx::assert_abs_diff_eq!(*a, b, epsilon = GROWN_ROUNDING);
+            approx::assert_abs_diff_eq!(*a, b, epsilon = STATE_TOLERANCE);
         }
     }
-    let until = simulated(IMPACTS, &["--until", "7", "--samples", "4"]);
+    let until = simulated(IMPACT_SYSTEM, &["--until", "7", "--samples", "4"]);
     assert_eq!(until, all[..until.len()]);
     let within = |row: &[String]| number(&row[0]) <= 7.0;
     assert!(within(&all[until.len() - 1]) && !within(&all[until.len()]));
-    let second = simulated(IMPACTS, &["--events", "2"]);
-    let short = simulated(IMPACTS, &["--events", "2", "--samples", "4"]);
+    let second = simulated(IMPACT_SYSTEM, &["--events", "2"]);
+    let short = simulated(IMPACT_SYSTEM, &["--events", "2", "--samples", "4"]);
     assert_eq!(short, all[..short.len()]);
     let passed = number(&second[2][1]);
     assert!(number(&all[short.len() - 1][0]) <= passed && passed <= number(&all[short.len()][0]));
@@ -84,8 +84,8 @@ fn samples_are_those_of_the_library() {
 /// at the end of the transient: their times differ by rounding, which the motion has multiplied.
 #[test]
 fn a_transient_leaves_out_the_first_rows() {
-    let all = simulated(IMPACTS, &["--returns", "30"]);
-    let late = simulated(IMPACTS, &["--transient", "20", "--returns", "10"]);
+    let all = simulated(IMPACT_SYSTEM, &["--returns", "30"]);
+    let late = simulated(IMPACT_SYSTEM, &["--transient", "20", "--returns", "10"]);
     let begins = number(&late[0][1]);
     let period = std::f64::consts::TAU / 2.75;
     approx::assert_abs_diff_eq!(begins, 20.0 * period, epsilon = 1e-12);
@@ -95,10 +95,10 @@ fn a_transient_leaves_out_the_first_rows() {
     for (n, (row, own)) in tail.iter().zip(&late[1..]).enumerate() {
         assert_eq!((own[0].clone(), &own[2..4]), ((n + 1).to_string(), &row[2..4]));
         for (a, b) in numbers(row, 1, 4).iter().zip(numbers(own, 1, 4)) {
-            approx::assert_abs_diff_eq!(*a, b, epsilon = GROWN_ROUNDING);
+            approx::assert_abs_diff_eq!(*a, b, epsilon = STATE_TOLERANCE);
         }
     }
-    let counted = simulated(IMPACTS, &["--transient", "20", "--events", "3"]);
+    let counted = simulated(IMPACT_SYSTEM, &["--transient", "20", "--events", "3"]);
     assert_eq!(counted[..], late[..4]);
 }
 
@@ -110,7 +110,7 @@ fn assert_alike(rows: &[Vec<String>], others: &[Vec<String>], [time, state]: [us
     for (row, other) in rows.iter().zip(others) {
         assert_eq!(row[time + 1..state], other[time + 1..state]);
         for (a, b) in numbers(row, time, state).iter().zip(numbers(other, time, state)) {
-            approx::assert_abs_diff_eq!(*a, b, epsilon = GROWN_ROUNDING);
+            approx::assert_abs_diff_eq!(*a, b, epsilon = STATE_TOLERANCE);
         }
     }
 }
@@ -179,10 +179,12 @@ fn samples_between_returns_are_those_of_the_whole_run() {
 #[test]
 fn returns_to_an_angle_are_those_of_the_section() {
     let strobe = ["--section", "strobe:0.5"];
-    let found =
-        simulated(IMPACTS, &[&strobe[..], &["--transient", "20", "--returns", "10"]].concat());
+    let found = simulated(
+        IMPACT_SYSTEM,
+        &[&strobe[..], &["--transient", "20", "--returns", "10"]].concat(),
+    );
     let point = |n: &str| {
-        let words = ["poincare", IMPACTS, "--transient", n, "--returns", "1"];
+        let words = ["poincare", IMPACT_SYSTEM, "--transient", n, "--returns", "1"];
         rows(&stdout(&[&words[..], &strobe].concat()))
     };
     let ends = [found.first(), found.last()].map(|it| vec![it.expect("rows").clone()]);
@@ -190,17 +192,17 @@ fn returns_to_an_angle_are_those_of_the_section() {
         let point = point(n);
         assert_eq!(row[0][3], point[0][2]);
         for (a, b) in numbers(&row[0], 1, 4).iter().zip(numbers(&point[0], 1, 3)) {
-            approx::assert_abs_diff_eq!(*a, b, epsilon = GROWN_ROUNDING);
+            approx::assert_abs_diff_eq!(*a, b, epsilon = STATE_TOLERANCE);
         }
     }
     let every = ["--every", "5", "--transient", "4", "--returns", "2"];
-    assert_eq!(simulated(IMPACTS, &[&strobe[..], &every].concat()), found);
+    assert_eq!(simulated(IMPACT_SYSTEM, &[&strobe[..], &every].concat()), found);
     // The start is at the angle 0, and is no return either.
-    let usual = simulated(IMPACTS, &["--returns", "3"]);
-    assert_eq!(simulated(IMPACTS, &["--section", "strobe", "--returns", "3"]), usual);
+    let usual = simulated(IMPACT_SYSTEM, &["--returns", "3"]);
+    assert_eq!(simulated(IMPACT_SYSTEM, &["--section", "strobe", "--returns", "3"]), usual);
     // From a start that is on no strobe samples go to the last return.
     let samples =
-        simulated(IMPACTS, &[&strobe[..], &["--returns", "2", "--samples", "4"]].concat());
+        simulated(IMPACT_SYSTEM, &[&strobe[..], &["--returns", "2", "--samples", "4"]].concat());
     let period = std::f64::consts::TAU / 2.75;
     let last = number(&samples.last().expect("rows")[0]);
     assert_eq!((samples.len(), last), (5, period));
@@ -229,15 +231,15 @@ fn a_run_that_does_not_return_says_so() {
 /// impacts do to it.
 #[test]
 fn times_are_those_of_events() {
-    const GROWN_ROUNDING: f64 = 1e-12;
-    for name in [IMPACTS, "relay-feedback", "two-masses-on-a-belt", "newton-cradle"] {
+    const STATE_TOLERANCE: f64 = 1e-12;
+    for name in [IMPACT_SYSTEM, "relay-feedback", "two-masses-on-a-belt", "newton-cradle"] {
         let fast = simulated(name, &["--events", "12"]);
         let proved = rows(&stdout(&["events", name, "--events", "12"]));
         assert_eq!(fast.len(), proved.len(), "{name}");
         for (a, b) in fast.iter().zip(&proved) {
             assert_eq!((&a[0], &a[2..4]), (&b[0], &b[2..4]), "{name}");
             for (a, b) in numbers(a, 1, 4).iter().zip(numbers(b, 1, 4)) {
-                approx::assert_abs_diff_eq!(*a, b, epsilon = GROWN_ROUNDING * (1.0 + b.abs()));
+                approx::assert_abs_diff_eq!(*a, b, epsilon = STATE_TOLERANCE * (1.0 + b.abs()));
             }
         }
     }
@@ -247,14 +249,14 @@ fn times_are_those_of_events() {
 /// and instants. Chaos multiplies their different roundings by less than 1e5 in so short a run.
 #[test]
 fn the_oscillator_is_one_of_the_systems() {
-    const GROWN_ROUNDING: f64 = 1e-11;
+    const STATE_TOLERANCE: f64 = 1e-11;
     let own = rows(&stdout(&["simulate", "--events", "20"]));
     let other = simulated("percussive-oscillator", &["--events", "20"]);
     assert_eq!(own.len(), other.len());
     for (a, b) in own.iter().zip(&other) {
         assert_eq!(a[1], b[3]);
         for (a, b) in numbers(a, 2, 3).iter().zip(numbers(b, 1, 4)) {
-            approx::assert_abs_diff_eq!(*a, b, epsilon = GROWN_ROUNDING * (1.0 + b.abs()));
+            approx::assert_abs_diff_eq!(*a, b, epsilon = STATE_TOLERANCE * (1.0 + b.abs()));
         }
     }
 }
@@ -275,7 +277,7 @@ fn endings_are_those_of_events() {
     let (code, last, said) = ends(&["bouncing-ball", "--until", "9"]);
     assert_eq!((code, last.expect("a row")[1].as_str()), (Some(0), "accumulation"));
     assert!(said.contains("infinitely many impacts accumulate between 3"), "{said}");
-    let stuck = [IMPACTS, "--until", "5", "--set", "d=0"];
+    let stuck = [IMPACT_SYSTEM, "--until", "5", "--set", "d=0"];
     let (code, last, said) = ends(&stuck);
     assert_eq!((code, last.expect("a row")[1].as_str()), (Some(1), "no-progress"));
     assert!(said.contains("comes to rest on the guard of \"impact\""), "{said}");
@@ -283,7 +285,8 @@ fn endings_are_those_of_events() {
     assert_eq!((code, last.expect("a row")[1].as_str()), (Some(1), "beyond-guard"));
     assert!(said.contains("the guard of \"impact\" is positive there"), "{said}");
     // One that ends in its transient has its ending as its only row.
-    let output = run(&["simulate", IMPACTS, "--set", "d=0", "--transient", "3", "--returns", "1"]);
+    let output =
+        run(&["simulate", IMPACT_SYSTEM, "--set", "d=0", "--transient", "3", "--returns", "1"]);
     let rows = rows(&text(&output.stdout));
     assert_eq!((rows.len(), rows[0][2].as_str()), (1, "no-progress"));
     assert_eq!(output.status.code(), Some(1));

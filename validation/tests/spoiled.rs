@@ -42,8 +42,8 @@ fn add_spurious(outcome: &mut Outcome, at: usize, elapsed: f64) {
     outcome.events.splice(at..at, pair);
 }
 
-static NOTHING: Spoiled = spoiled("exact-as-it-is", |_| ());
-static FAILS: [Spoiled; 7] = [
+static UNSPOILED: Spoiled = spoiled("exact-as-it-is", |_| ());
+static FAILING: [Spoiled; 7] = [
     spoiled("exact-nan-sample", |it| it.samples[9][1] = f64::NAN),
     spoiled("exact-nan-event", |it| it.events[3].state[0] = f64::NAN),
     spoiled("exact-samples-late", |it| it.samples.rotate_left(1)),
@@ -63,7 +63,7 @@ static FAILS: [Spoiled; 7] = [
         it.events.iter_mut().for_each(|event| event.state[0] += 100.0 * f64::EPSILON);
     }),
 ];
-static ERRS: [Spoiled; 4] = [
+static ERRING: [Spoiled; 4] = [
     spoiled("exact-few-samples", |it| it.samples.truncate(2)),
     spoiled("exact-surplus-sample", |it| it.samples.push(Values::of(&[0.0; 4]))),
     spoiled("exact-event-without-time", |it| it.events[3].elapsed = f64::NAN),
@@ -80,11 +80,11 @@ fn no_spoiled_answer_passes() {
         assert_eq!(rows.len(), 1);
         rows[0].judgement.verdict
     };
-    assert_eq!(verdict(&NOTHING), Verdict::Pass);
-    for engine in &FAILS {
+    assert_eq!(verdict(&UNSPOILED), Verdict::Pass);
+    for engine in &FAILING {
         assert_eq!(verdict(engine), Verdict::Fail, "{}", engine.name);
     }
-    for engine in &ERRS {
+    for engine in &ERRING {
         assert_eq!(verdict(engine), Verdict::Error, "{}", engine.name);
     }
 }

@@ -16,7 +16,7 @@ const STEP: f64 = 1e-15;
 /// Allowed error, as a share of the derivative's largest entry: products of matrices in f64 along a
 /// run that is itself rounded, 1e-14 at most. A distance d from a graze is known to eps, and the
 /// derivative there to eps/sqrt(d): 2e-11 at 1e-10.
-const AGREEMENT: f64 = 1e-11;
+const DERIVATIVE_TOLERANCE: f64 = 1e-11;
 
 fn map_of(xi: f64, omega: f64, a: f64, b: f64, g: f64) -> StrobeMap {
     let model = Model::new(Parameters { a, b, xi, omega, g, ..Parameters::default() }).unwrap();
@@ -81,7 +81,7 @@ fn over_several_periods_for_both_targets_of_an_impact() {
                 let wanted = differences(map.model(), entry, end);
                 let apart = norm(&less(&found, &wanted)) / norm(&found).max(1.0);
                 assert!(
-                    apart <= AGREEMENT,
+                    apart <= DERIVATIVE_TOLERANCE,
                     "{entry:?} {periods}: {apart:e}\n{found:?}\n{wanted:?}"
                 );
                 worst = worst.max(apart);
@@ -122,12 +122,19 @@ impl GrazingStart {
         let (mut low, mut high) = (0.0, 0.19);
         // Until then the force drives the mass away, after its beginning; later approaches are no
         // grazes.
-        const AWAY: f64 = 2.0;
-        assert!(graze.first(high).duration() < AWAY && graze.first(low).duration() > 1.2 * AWAY);
+        const DEPARTURE_TIME: f64 = 2.0;
+        assert!(
+            graze.first(high).duration() < DEPARTURE_TIME
+                && graze.first(low).duration() > 1.2 * DEPARTURE_TIME
+        );
         while high - low > 2.0 * f64::EPSILON {
             let middle = 0.5 * (low + high);
             // Impacts come later and later down to the graze, and then leap.
-            if graze.first(middle).duration() < AWAY { high = middle } else { low = middle }
+            if graze.first(middle).duration() < DEPARTURE_TIME {
+                high = middle
+            } else {
+                low = middle
+            }
         }
         graze.y = high;
         graze
@@ -164,7 +171,10 @@ fn the_map_has_a_corner_at_a_graze_and_no_square_root() {
             let found = bounded(&between(&model, entry, end));
             let wanted = differences(&model, &entry, end);
             let apart = norm(&less(&found, &wanted)) / norm(&found);
-            assert!(apart <= AGREEMENT, "{distance:e}: {apart:e}\n{found:?}\n{wanted:?}");
+            assert!(
+                apart <= DERIVATIVE_TOLERANCE,
+                "{distance:e}: {apart:e}\n{found:?}\n{wanted:?}"
+            );
             found
         });
         // What the saltation of the impact that is only just missed would change.

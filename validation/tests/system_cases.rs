@@ -204,7 +204,7 @@ fn a_system_has_the_name_of_its_file() {
 }
 
 /// A ball that hits the floor at 1, 1.5 and 1.75.
-const DROPPED: &str = "[case]
+const DROPPED_CASE: &str = "[case]
 name = \"dropped\"
 system = \"bouncing-ball\"
 why = \"Its impacts are round.\"
@@ -228,7 +228,7 @@ fn no_horizon_and_no_sample_is_beside_an_event() {
     let folder = name(folder.path());
     let validate = ["validate", "--cases", &folder, "-e", "^exact$"];
     let write = |from: &str, to: &str| {
-        fs::write(&path, DROPPED.replace(from, to)).expect("written");
+        fs::write(&path, DROPPED_CASE.replace(from, to)).expect("written");
     };
     write("until = 1.3", "until = 1.5");
     refused(&validate, &["dropped.toml: until = 1.5 is not accepted", "between events"]);

@@ -27,16 +27,16 @@ s = 0
 "#;
 
 /// The gain of s in a return.
-const GAIN: f64 = FRAC_PI_2;
+const DRIFT_PER_RETURN: f64 = FRAC_PI_2;
 
 /// Some tens of roundings of a way of at most 20.
-const ROUNDINGS: f64 = 1e-13;
+const ROUNDING_TOLERANCE: f64 = 1e-13;
 
 /// A decay over 2 pi by exp(-2 pi).
-const DECAY: f64 = -TAU;
+const DECAY_EXPONENT: f64 = -TAU;
 
 fn near(value: f64, known: f64) {
-    assert!((value - known).abs() < ROUNDINGS, "{value} {known}");
+    assert!((value - known).abs() < ROUNDING_TOLERANCE, "{value} {known}");
 }
 
 fn told(arguments: &[&str], code: i32) -> Value {
@@ -61,10 +61,10 @@ fn an_orbit_closes_without_its_drift() {
             let orbit = told(&["orbit", path, "--period", "1", "--transient", "5"], 0);
             assert_eq!((&orbit["converged"], &orbit["stable"]), (&true.into(), &true.into()));
             near(orbit["points"][0]["state"][0].as_f64().expect("x"), 0.25);
-            near(orbit["drift_per_return"]["s"].as_f64().expect("a drift"), GAIN);
+            near(orbit["drift_per_return"]["s"].as_f64().expect("a drift"), DRIFT_PER_RETURN);
             let multipliers = orbit["multipliers"].as_array().expect("multipliers");
             assert_eq!(multipliers.len(), 1, "{orbit}");
-            near(multipliers[0][0].as_f64().expect("a number"), DECAY.exp());
+            near(multipliers[0][0].as_f64().expect("a number"), DECAY_EXPONENT.exp());
             assert_eq!(orbit["events"], serde_json::json!(["up@on"]));
         });
     }
@@ -87,11 +87,11 @@ fn a_section_shows_the_drift_among_the_states() {
         let returns = rows(&csv);
         for two in returns.windows(2) {
             near(number(&two[1][3]), 0.25);
-            near(number(&two[1][4]) - number(&two[0][4]), GAIN);
+            near(number(&two[1][4]) - number(&two[0][4]), DRIFT_PER_RETURN);
         }
         // What x has decayed from its start, 1.75 above the orbit, is gone into s, which begins at
         // 0, where that of the orbit would be: after 6 returns 6 gains.
-        near(number(&returns[3][4]), 9.0 * GAIN + 1.75);
+        near(number(&returns[3][4]), 9.0 * DRIFT_PER_RETURN + 1.75);
     });
 }
 
@@ -99,11 +99,13 @@ fn a_section_shows_the_drift_among_the_states() {
 fn exponents_have_the_drift_and_its_error_by_name() {
     walking("drift = [\"s\"]\n", |path| {
         let found = told(&["lyapunov", path, "--transient", "10", "--returns", "64"], 0);
-        near(found["drift_per_return"]["s"].as_f64().expect("a drift"), GAIN);
+        near(found["drift_per_return"]["s"].as_f64().expect("a drift"), DRIFT_PER_RETURN);
         // On an orbit all batches have the same drift.
-        assert!(found["drift_standard_error"]["s"].as_f64().expect("an error") < ROUNDINGS);
+        assert!(
+            found["drift_standard_error"]["s"].as_f64().expect("an error") < ROUNDING_TOLERANCE
+        );
         near(found["exponents_per_return"][0].as_f64().expect("a number"), 0.0);
-        near(found["exponents_per_return"][1].as_f64().expect("a number"), DECAY);
+        near(found["exponents_per_return"][1].as_f64().expect("a number"), DECAY_EXPONENT);
     });
     walking("drift = []\n", |path| {
         let found = told(&["lyapunov", path, "--transient", "10", "--returns", "64"], 0);

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// A picture on the page, in bytes.
-const MOST_BYTES: u64 = 60_000;
+const MAX_BYTES: u64 = 60_000;
 
 fn page() -> PathBuf {
     transcripts::page("SYSTEMS.md")
@@ -53,7 +53,7 @@ fn examples_print_what_they_show_and_make_the_pictures() {
     assert!(shown.len() >= SYSTEMS.len(), "{shown:?}");
     for name in &shown {
         let bytes = std::fs::metadata(made.join(name)).expect("it is made").len();
-        assert!(bytes <= MOST_BYTES, "{name} has {bytes} bytes");
+        assert!(bytes <= MAX_BYTES, "{name} has {bytes} bytes");
     }
     let kept = std::fs::read_dir(transcripts::page("systems")).expect("the pictures");
     let kept = kept.filter_map(|it| it.ok()?.file_name().into_string().ok());

@@ -4,14 +4,14 @@ use crate::support::{percuss, run, stdout, text};
 use percuss_validation::cli::command;
 
 /// A run that ends early and says so.
-const NOTED: [&str; 5] = ["simulate", "--events", "3", "--b", "-0.1"];
+const NOTED_COMMAND: [&str; 5] = ["simulate", "--events", "3", "--b", "-0.1"];
 
 #[test]
 fn quiet_says_nothing_but_errors() {
     let said = |arguments: &[&str]| text(&run(arguments).stderr);
-    assert!(said(&NOTED).contains("never returns"));
-    assert_eq!(said(&[&NOTED[..], &["--quiet"]].concat()), "");
-    assert_eq!(said(&[&["--quiet"], &NOTED[..]].concat()), "");
+    assert!(said(&NOTED_COMMAND).contains("never returns"));
+    assert_eq!(said(&[&NOTED_COMMAND[..], &["--quiet"]].concat()), "");
+    assert_eq!(said(&[&["--quiet"], &NOTED_COMMAND[..]].concat()), "");
     assert!(said(&["simulate", "--periods", "1", "--xi", "0", "--quiet"]).contains("--xi 0"));
     // Why the exit code is 1 is no note.
     let none = ["orbit", "--period", "2", "--b=-0.1", "--quiet"];
@@ -32,7 +32,7 @@ fn colours_are_as_asked() {
         let output = command.output().expect("it runs");
         text(&output.stdout) + &text(&output.stderr)
     };
-    for usual in [&NOTED[..], &["--help"], &["simulate", "--xi", "0", "--periods", "1"]] {
+    for usual in [&NOTED_COMMAND[..], &["--help"], &["simulate", "--xi", "0", "--periods", "1"]] {
         let with = |color: &'static str| [usual, &["--color", color]].concat();
         // These streams are no terminals.
         assert!(!said(usual, None).contains(ESCAPE), "{usual:?}");

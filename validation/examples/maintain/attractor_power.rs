@@ -18,7 +18,7 @@ const FRESH_RUNS: u32 = 2_000;
 /// Runs from which one share of the power curve is taken.
 const CHANGED_RUNS: u32 = 20;
 /// Changes, relative to the parameter; each with both signs.
-const SIZES: [f64; 8] = [1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
+const RELATIVE_CHANGES: [f64; 8] = [1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
 
 const PICTURE: &str = "attractor-power.png";
 
@@ -78,7 +78,7 @@ fn false_alarms(cases: &[(OscillatorCase, AttractorTest)]) -> Result<String> {
     Ok(table)
 }
 
-/// The shares of one case, parameter and sign, along [`SIZES`].
+/// The shares of one case, parameter and sign, along [`RELATIVE_CHANGES`].
 struct PowerCurve {
     case: String,
     changed: Changed,
@@ -92,7 +92,7 @@ fn power(cases: &[(OscillatorCase, AttractorTest)]) -> Result<Vec<PowerCurve>> {
         for (changed, sign) in Changed::ALL.into_iter().flat_map(|it| [(it, 1.0), (it, -1.0)]) {
             let step =
                 |size: &f64| test.alarms_of_changed(case, changed, sign * size, CHANGED_RUNS);
-            let steps = SIZES.iter().map(step).collect::<Result<_, _>>()?;
+            let steps = RELATIVE_CHANGES.iter().map(step).collect::<Result<_, _>>()?;
             curves.push(PowerCurve { case: test.calibrated.case.clone(), changed, sign, steps });
         }
     }
@@ -101,11 +101,11 @@ fn power(cases: &[(OscillatorCase, AttractorTest)]) -> Result<Vec<PowerCurve>> {
 
 fn power_table(power: &[PowerCurve]) -> String {
     let mut table = String::from("| case | change |");
-    for size in SIZES {
+    for size in RELATIVE_CHANGES {
         write!(table, " {} |", percent(size)).ok();
     }
     table += " notices first |\n|---|---|";
-    table += &"---|".repeat(SIZES.len() + 1);
+    table += &"---|".repeat(RELATIVE_CHANGES.len() + 1);
     table.push('\n');
     for curve in power {
         let sign = if curve.sign > 0.0 { '+' } else { '-' };
@@ -133,7 +133,8 @@ fn first(curve: &PowerCurve) -> String {
     let caught =
         |count: fn(&Alarms) -> u32| curve.steps.iter().position(|it| 2 * count(it) >= it.runs);
     let named = |at: Option<usize>, sampled: bool| {
-        let found = at.and_then(|at| Some((SIZES[at], curve.steps[at].first(sampled)?.0)));
+        let found =
+            at.and_then(|at| Some((RELATIVE_CHANGES[at], curve.steps[at].first(sampled)?.0)));
         found.map_or("none".to_owned(), |(size, name)| format!("`{name}` at {}", percent(size)))
     };
     let all = named(caught(|it| it.raised), false);
@@ -151,7 +152,7 @@ fn picture(power: &[PowerCurve]) -> Curves {
         let row = names.take_while(|it| it.case != of.case).count();
         let points = |count: fn(&Alarms) -> u32| {
             let share = |it: &Alarms| 100.0 * f64::from(count(it)) / f64::from(it.runs.max(1));
-            SIZES.into_iter().zip(of.steps.iter().map(share)).collect()
+            RELATIVE_CHANGES.into_iter().zip(of.steps.iter().map(share)).collect()
         };
         let curve = |name: String, dashed, points| Curve {
             name,

@@ -16,18 +16,18 @@ use zip::ZipArchive;
 /// A positive exponent counts as chaos from so many standard errors on, as everywhere in percuss.
 const ERRORS: f64 = percuss::dynamics::attractor::ERRORS;
 /// A drift per period that is no larger is rounding: the slider does not move.
-const NO_DRIFT: f64 = 1e-12;
+const DRIFT_TOLERANCE: f64 = 1e-12;
 /// Strobes that are no farther apart are one point of an orbit.
-const SAME_POINT: f64 = 1e-5;
+const POINT_TOLERANCE: f64 = 1e-5;
 /// The longest period with a colour of its own, which longer ones share.
-const LONGEST: usize = 4;
+const MAX_PERIOD: usize = 4;
 
 /// What a motion does in the long run.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DriftRegime {
     /// Neither progression nor chaos.
     Resting,
-    /// Progression, with this period or, from [`LONGEST`] on, a longer one.
+    /// Progression, with this period or, from [`MAX_PERIOD`] on, a longer one.
     Periodic(usize),
     Chaotic,
     /// A phase that never ends: the mass leaves or the slider never stops.
@@ -41,7 +41,7 @@ const REGIMES: [(DriftRegime, &str, Colour); 8] = [
     (DriftRegime::Periodic(1), "period 1", Colour(120, 185, 235)),
     (DriftRegime::Periodic(2), "period 2", Colour(20, 75, 150)),
     (DriftRegime::Periodic(3), "period 3", Colour(0, 158, 115)),
-    (DriftRegime::Periodic(LONGEST), "period 4+", Colour(160, 20, 80)),
+    (DriftRegime::Periodic(MAX_PERIOD), "period 4+", Colour(160, 20, 80)),
     (DriftRegime::Chaotic, "chaos", Colour(230, 120, 30)),
     (DriftRegime::Endless, "endless phase", Colour(20, 10, 40)),
     (DriftRegime::Undecided, "undecided", Colour(250, 236, 150)),
@@ -144,7 +144,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
 }
 
 fn is_drift(drift: f64) -> bool {
-    drift > NO_DRIFT && drift.is_finite()
+    drift > DRIFT_TOLERANCE && drift.is_finite()
 }
 
 /// A number with two digits, as a key shows it.
@@ -162,7 +162,7 @@ fn periods(sweep: &mut MergedSweep, motions: usize) -> Result<Vec<usize>> {
     let [p, y, q] = [sweep.f8("p")?, sweep.f8("y")?, sweep.f8("q")?];
     let strobes = p.len() / motions;
     let is_same = |i: usize, j: usize| {
-        [&p, &y, &q].iter().all(|values| (values[i] - values[j]).abs() <= SAME_POINT)
+        [&p, &y, &q].iter().all(|values| (values[i] - values[j]).abs() <= POINT_TOLERANCE)
     };
     let repeats = |first: usize, period: usize| {
         (first..first + strobes - period).all(|n| is_same(n, n + period))
@@ -186,9 +186,9 @@ fn regimes(sweep: &mut MergedSweep, drift: &[f64], periods: &[usize]) -> Result<
             0 | 1 => DriftRegime::Endless,
             _ if undecidable[at] != 0 => DriftRegime::Undecided,
             _ if largest > ERRORS * error => DriftRegime::Chaotic,
-            _ if drift[at] <= NO_DRIFT => DriftRegime::Resting,
+            _ if drift[at] <= DRIFT_TOLERANCE => DriftRegime::Resting,
             _ if largest > -ERRORS * error => DriftRegime::Undecided,
-            _ => DriftRegime::Periodic(periods[at].min(LONGEST)),
+            _ => DriftRegime::Periodic(periods[at].min(MAX_PERIOD)),
         }
     };
     Ok((0..drift.len()).map(regime).collect())

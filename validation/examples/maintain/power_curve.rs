@@ -10,9 +10,9 @@ use std::path::PathBuf;
 
 const TOLERANCE: f64 = 1e-6;
 /// Lateness in tolerances, and factors by which a tolerance is loosened.
-const STEPS: [f64; 7] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
+const FAULT_SIZES: [f64; 7] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
 /// One event in so many is dropped.
-const DROPPED: [usize; 6] = [2, 5, 10, 20, 50, 100];
+const EVENTS_PER_DROPPED: [usize; 6] = [2, 5, 10, 20, 50, 100];
 
 /// A kind of mistake by its size, and its colour and marker.
 type Kind = (&'static str, fn(f64) -> Variant, Colour, Marker);
@@ -36,9 +36,9 @@ pub(crate) struct Arguments {
 pub(crate) fn run(Arguments { output }: &Arguments) -> Result<()> {
     let prepared = prepare(embedded()?, &Library::embedded()?, None)?;
     let classes = defaults()?.classes;
-    let of_size = |kind: &Kind| STEPS.map(kind.1);
+    let of_size = |kind: &Kind| FAULT_SIZES.map(kind.1);
     let mut variants: Vec<Variant> = KINDS.iter().flat_map(of_size).collect();
-    variants.extend(DROPPED.map(Variant::Dropped));
+    variants.extend(EVENTS_PER_DROPPED.map(Variant::Dropped));
     let made = trials(&prepared, TOLERANCE, &classes, &variants);
     let shares: Vec<f64> = tallies(&made, &variants)
         .iter()
@@ -49,15 +49,15 @@ pub(crate) fn run(Arguments { output }: &Arguments) -> Result<()> {
         .collect();
     let mut curves: Vec<Curve> = KINDS
         .iter()
-        .zip(shares.chunks(STEPS.len()))
+        .zip(shares.chunks(FAULT_SIZES.len()))
         .map(|((name, _, colour, marker), shares)| {
-            curve(name, (*colour, *marker), STEPS.iter().copied().zip(shares.iter().copied()))
+            curve(name, (*colour, *marker), FAULT_SIZES.iter().copied().zip(shares.iter().copied()))
         })
         .collect();
-    curves.push(curve("tolerance loosened", LOOSE, loose(&prepared, &classes)));
-    let dropped = DROPPED.map(|it| 100.0 / it as f64).into_iter();
-    let dropped = dropped.zip(shares[KINDS.len() * STEPS.len()..].iter().copied());
-    curves.push(curve("events dropped, per cent", DROPS, dropped));
+    curves.push(curve("tolerance loosened", LOOSE_STYLE, loose(&prepared, &classes)));
+    let dropped = EVENTS_PER_DROPPED.map(|it| 100.0 / it as f64).into_iter();
+    let dropped = dropped.zip(shares[KINDS.len() * FAULT_SIZES.len()..].iter().copied());
+    curves.push(curve("events dropped, per cent", DROPPED_STYLE, dropped));
     let condemned = made.iter().filter(|it| it.is_condemned).count();
     let picture = Curves {
         title: "Wrong answers that are caught, by the size of the mistake".to_owned(),
@@ -76,11 +76,11 @@ pub(crate) fn run(Arguments { output }: &Arguments) -> Result<()> {
     Ok(std::fs::write(output, svg(&picture))?)
 }
 
-const LOOSE: (Colour, Marker) = (Colour(204, 121, 167), Marker::Diamond);
-const DROPS: (Colour, Marker) = (Colour(60, 60, 60), Marker::Cross);
+const LOOSE_STYLE: (Colour, Marker) = (Colour(204, 121, 167), Marker::Diamond);
+const DROPPED_STYLE: (Colour, Marker) = (Colour(60, 60, 60), Marker::Cross);
 
 fn loose(cases: &[PreparedCase], classes: &[ClassBounds]) -> impl Iterator<Item = (f64, f64)> {
-    STEPS.into_iter().map(|factor| {
+    FAULT_SIZES.into_iter().map(|factor| {
         let (caught, all) = loosened(cases, (TOLERANCE, factor), classes);
         println!("tolerance loosened {factor} times {caught:4} of {all:4}");
         (factor, 100.0 * caught as f64 / all as f64)

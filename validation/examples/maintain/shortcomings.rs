@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 
 /// A figure may differ by this factor on another processor: a step that is accepted here is refused
 /// there.
-const FACTOR: f64 = 3.0;
+const PLATFORM_FACTOR: f64 = 3.0;
 /// Quantities that are counts.
-const COUNTS: [&str; 6] = [
+const COUNTED_QUANTITIES: [&str; 6] = [
     "events_missed",
     "events_spurious",
     "events_wrong_mode",
@@ -28,7 +28,8 @@ const COUNTS: [&str; 6] = [
 ];
 
 /// Quantities that are measured by probes, which a report may have been made without.
-const PROBED: [&str; 4] = ["restart_error", "restarts_failed", "valid_gain", "attractor_distance"];
+const PROBED_QUANTITIES: [&str; 4] =
+    ["restart_error", "restarts_failed", "valid_gain", "attractor_distance"];
 
 /// Case, setting (a step is negative), quantity and statistic.
 type Key = (String, String, String, String);
@@ -141,11 +142,11 @@ fn collect(row: &Value, systems: &BTreeSet<String>, defects: &mut Defects) -> Re
 fn range(quantity: &str, value: f64, limit: f64) -> (f64, f64) {
     if ["phase_word", "runs_failed"].contains(&quantity) {
         (1.0, 1.0)
-    } else if COUNTS.contains(&quantity) {
+    } else if COUNTED_QUANTITIES.contains(&quantity) {
         ((value / 2.0).ceil(), 2.0 * value)
     } else {
         let digits = |value: f64| format!("{value:.1e}").parse().unwrap_or(value);
-        (digits(value / FACTOR).max(limit), digits(value * FACTOR))
+        (digits(value / PLATFORM_FACTOR).max(limit), digits(value * PLATFORM_FACTOR))
     }
 }
 
@@ -170,8 +171,9 @@ fn present(
             reasons.entry(group.clone()).or_insert_with(|| why.clone());
             let place = (engine.clone(), case, float(setting));
             let measured = reported.get(&place);
-            let is_measured =
-                |it: &BTreeSet<String>| !PROBED.contains(&&*quantity) || it.contains(&quantity);
+            let is_measured = |it: &BTreeSet<String>| {
+                !PROBED_QUANTITIES.contains(&&*quantity) || it.contains(&quantity)
+            };
             if !measured.is_some_and(is_measured) {
                 let key = (place.1, place.2, quantity, statistic);
                 defects.entry(group).or_default().insert(key, (at_least, at_most));

@@ -7,7 +7,7 @@ use std::io::Read;
 use std::path::PathBuf;
 
 /// The words with which the first screen begins.
-const FIRST_SCREEN: &str = "Which integrator, at what tolerance?";
+const FIRST_SCREEN_HEADING: &str = "Which integrator, at what tolerance?";
 
 /// Put the summary of `validate --details --power`, read from stdin, into docs/RESULTS.md
 ///
@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(Arguments { report, page }: &Arguments) -> Result<()> {
     let mut printed = String::new();
     std::io::stdin().read_to_string(&mut printed)?;
-    let place = printed.find(FIRST_SCREEN).context("no summary on stdin")?;
+    let place = printed.find(FIRST_SCREEN_HEADING).context("no summary on stdin")?;
     let (details, ranking) = printed.split_at(place);
     let ranking = headline(&blocks::read_json(report)?) + ranking;
     let fenced = |text: &str| format!("```text\n{text}\n```\n");

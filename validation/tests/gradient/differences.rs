@@ -7,10 +7,10 @@
 use crate::support::{rows, stdout};
 
 /// The share of a name's value that is the larger step: a power of two.
-const STEP: f64 = 1.0 / (1 << 18) as f64;
+const STEP_SHARE: f64 = 1.0 / (1 << 18) as f64;
 
 /// The unit of fixed-point numbers: beyond the last of the 25 digits of what is of order 1.
-const PLACES: i32 = 30;
+const DECIMAL_PLACES: i32 = 30;
 
 /// A printed number in units of 10^-30; a number below the last of its digits is zero.
 fn fixed(text: &str) -> i128 {
@@ -18,7 +18,7 @@ fn fixed(text: &str) -> i128 {
     let exponent: i32 = exponent.parse().expect("an exponent");
     let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
     let mut number: i128 = format!("{whole}{part}").parse().expect("digits");
-    let shift = PLACES + exponent - part.len() as i32;
+    let shift = DECIMAL_PLACES + exponent - part.len() as i32;
     let ten = |power: i32| 10_i128.checked_pow(power as u32);
     if shift < 0 {
         number = ten(-shift).map_or(0, |it| number / it);
@@ -29,7 +29,7 @@ fn fixed(text: &str) -> i128 {
 }
 
 fn to_f64(fixed: i128) -> f64 {
-    fixed as f64 / 10_f64.powi(PLACES)
+    fixed as f64 / 10_f64.powi(DECIMAL_PLACES)
 }
 
 /// Times and states of the events of a run whose name has a value.
@@ -50,7 +50,7 @@ fn hold(system: &[&str], name: &str, value: f64) {
     let words = [&["gradient"], system, &["--digits", "25", "--wrt", name]].concat();
     let found = rows(&stdout(&words));
     let size = if value == 0.0 { 1.0 } else { value.abs() };
-    let step = 2_f64.powi((STEP * size).log2().floor() as i32);
+    let step = 2_f64.powi((STEP_SHARE * size).log2().floor() as i32);
     let differences = |step: f64| {
         let [above, below] = [step, -step].map(|it| events(system, name, value + it));
         assert_eq!(above.len(), found.len(), "{name}: a step changes the events");

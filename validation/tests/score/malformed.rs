@@ -1,6 +1,6 @@
 //! Answers in files that are not as they should be: what costs a row, and what does not.
 
-use super::{EVENTS, SCORE, ball, in_line, report};
+use super::{EVENTS_FILE, SCORE_COMMAND, ball, in_line, report};
 use crate::support::{run, text};
 use std::fs;
 
@@ -11,7 +11,8 @@ fn spoiled(file: &str, change: impl Fn(&str) -> Vec<u8>, wanted: &[&str]) {
     let path = folder.path().join(file);
     let old = fs::read_to_string(&path).unwrap_or_default();
     fs::write(&path, change(&old)).expect("written");
-    let words = [&SCORE[..], &["--answers", &out, "-c", "^ball-(geometric|cut-short)$"]].concat();
+    let words =
+        [&SCORE_COMMAND[..], &["--answers", &out, "-c", "^ball-(geometric|cut-short)$"]].concat();
     let (rows, code) = report(&words);
     assert_eq!(code, Some(1), "{file}: {wanted:?}");
     for row in &rows {
@@ -37,56 +38,68 @@ fn objections(said: &str) -> String {
     said.lines().filter(is_objection).map(|line| format!("{line}\n")).collect()
 }
 
-const TIMES: &str = "ball-geometric.samples.csv";
+const SAMPLES_FILE: &str = "ball-geometric.samples.csv";
 
 #[test]
 fn malformed_events_cost_their_row() {
-    let line = |n: usize| format!("{EVENTS} line {n}: ");
+    let line = |n: usize| format!("{EVENTS_FILE} line {n}: ");
     let columns = "the columns are ";
-    spoiled(EVENTS, |_| Vec::new(), &[&line(1), columns, "\"\"", "time,event,mode,x,v"]);
-    spoiled(EVENTS, in_line(1, "time,", ""), &[&line(1), columns, "event,mode,x,v"]);
-    spoiled(EVENTS, in_line(1, ",v", ",v,w"), &[&line(1), "\"time,event,mode,x,v,w\""]);
-    spoiled(EVENTS, in_line(3, ",flight", ",flight,1"), &[&line(3), "6 columns; accepted are 5"]);
-    spoiled(EVENTS, in_line(3, "flight", "rest"), &[&line(3), "\"rest\"", "accepted are flight"]);
-    spoiled(EVENTS, in_line(3, "impact", "bump"), &[&line(3), "\"bump\"", "accepted are impact"]);
+    spoiled(EVENTS_FILE, |_| Vec::new(), &[&line(1), columns, "\"\"", "time,event,mode,x,v"]);
+    spoiled(EVENTS_FILE, in_line(1, "time,", ""), &[&line(1), columns, "event,mode,x,v"]);
+    spoiled(EVENTS_FILE, in_line(1, ",v", ",v,w"), &[&line(1), "\"time,event,mode,x,v,w\""]);
+    spoiled(
+        EVENTS_FILE,
+        in_line(3, ",flight", ",flight,1"),
+        &[&line(3), "6 columns; accepted are 5"],
+    );
+    spoiled(
+        EVENTS_FILE,
+        in_line(3, "flight", "rest"),
+        &[&line(3), "\"rest\"", "accepted are flight"],
+    );
+    spoiled(
+        EVENTS_FILE,
+        in_line(3, "impact", "bump"),
+        &[&line(3), "\"bump\"", "accepted are impact"],
+    );
     let before = |text: &str| text.replacen("x,v", "x,v,before.x", 1).into_bytes();
-    spoiled(EVENTS, before, &[&line(1), "before.x,before.v"]);
+    spoiled(EVENTS_FILE, before, &[&line(1), "before.x,before.v"]);
     for number in ["NaN", "inf", "NA", "1.0D0", ""] {
         let change = |text: &str| {
             let row = text.lines().nth(1).expect("an event").split(',').next().expect("a time");
             in_line(2, row, number)(text)
         };
         let shown = format!("time is {number:?}");
-        spoiled(EVENTS, change, &[&line(2), &shown, "accepted is a finite number"]);
+        spoiled(EVENTS_FILE, change, &[&line(2), &shown, "accepted is a finite number"]);
     }
     let swapped = |text: &str| {
         let mut lines: Vec<&str> = text.lines().collect();
         lines.swap(1, 2);
         lines.join("\n").into_bytes()
     };
-    spoiled(EVENTS, swapped, &[&line(3), "is at 1.5; accepted is 2.25 to"]);
+    spoiled(EVENTS_FILE, swapped, &[&line(3), "is at 1.5; accepted is 2.25 to"]);
     let late = |text: &str| format!("{text}99.0,impact,flight,0,0\n").into_bytes();
     spoiled("ball-cut-short.events.csv", late, &["is at 99.0; accepted is"]);
-    spoiled(EVENTS, |text| [text.as_bytes(), b"\xff\n"].concat(), &["not UTF-8"]);
+    spoiled(EVENTS_FILE, |text| [text.as_bytes(), b"\xff\n"].concat(), &["not UTF-8"]);
     let after = |text: &str| {
         let more = "2.9,accumulation,flight,0,0\n2.95,impact,flight,0,0\n";
         (text.lines().take(3).map(|line| format!("{line}\n")).collect::<String>() + more)
             .into_bytes()
     };
-    spoiled(EVENTS, after, &[&line(5), "a line after the run's ending"]);
+    spoiled(EVENTS_FILE, after, &[&line(5), "a line after the run's ending"]);
     let back = |text: &str| {
         (text.lines().take(3).map(|line| format!("{line}\n")).collect::<String>()
             + "2.9,leaves-domain,flight,0,0\n")
             .into_bytes()
     };
-    spoiled(EVENTS, back, &[EVENTS, "leaves-domain, which only runs back in time do"]);
+    spoiled(EVENTS_FILE, back, &[EVENTS_FILE, "leaves-domain, which only runs back in time do"]);
 }
 
 #[test]
 fn malformed_samples_cost_their_row() {
-    let line = |n: usize| format!("{TIMES} line {n}: ");
-    spoiled(TIMES, in_line(1, "time", "t"), &[&line(1), "\"t,x,v\"", "\"time,x,v\""]);
-    spoiled(TIMES, in_line(4, "0.06", "0.16"), &[&line(4), "time is ", "accepted is "]);
+    let line = |n: usize| format!("{SAMPLES_FILE} line {n}: ");
+    spoiled(SAMPLES_FILE, in_line(1, "time", "t"), &[&line(1), "\"t,x,v\"", "\"time,x,v\""]);
+    spoiled(SAMPLES_FILE, in_line(4, "0.06", "0.16"), &[&line(4), "time is ", "accepted is "]);
     let short = "ball-cut-short.samples.csv";
     let first =
         |text: &str| text.lines().take(5).map(|line| format!("{line}\n")).collect::<String>();
@@ -106,12 +119,16 @@ fn endless_answers_cost_their_row() {
         let header = text.lines().next().expect("a header");
         (header.to_owned() + "\n" + &"0.5,impact,flight,0,0\n".repeat(100_001)).into_bytes()
     };
-    spoiled(EVENTS, many, &[&format!("{EVENTS} line 100002: "), "more than the 100000 accepted"]);
+    spoiled(
+        EVENTS_FILE,
+        many,
+        &[&format!("{EVENTS_FILE} line 100002: "), "more than the 100000 accepted"],
+    );
     let (folder, out) = ball();
-    let file = fs::File::create(folder.path().join(EVENTS)).expect("made");
+    let file = fs::File::create(folder.path().join(EVENTS_FILE)).expect("made");
     // A file with a hole takes no room on the disk.
     file.set_len(1 << 40).expect("a long file");
-    let words = [&SCORE[..], &["--answers", &out, "-c", "^ball-geometric$"]].concat();
+    let words = [&SCORE_COMMAND[..], &["--answers", &out, "-c", "^ball-geometric$"]].concat();
     let output = run(&words);
     let said = text(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
@@ -121,15 +138,19 @@ fn endless_answers_cost_their_row() {
 #[test]
 fn files_that_are_none_cost_their_row() {
     let (folder, out) = ball();
-    let words = [&SCORE[..], &["--answers", &out, "-c", "^ball-(geometric|cut-short)$"]].concat();
-    fs::remove_file(folder.path().join(TIMES)).expect("removed");
-    fs::create_dir(folder.path().join(TIMES)).expect("made");
+    let words =
+        [&SCORE_COMMAND[..], &["--answers", &out, "-c", "^ball-(geometric|cut-short)$"]].concat();
+    fs::remove_file(folder.path().join(SAMPLES_FILE)).expect("removed");
+    fs::create_dir(folder.path().join(SAMPLES_FILE)).expect("made");
     fs::remove_file(folder.path().join("ball-cut-short.events.csv")).expect("removed");
     fs::create_dir(folder.path().join("ball-cut-short.events.csv")).expect("made");
     let output = run(&words);
     let said = objections(&text(&output.stderr));
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains(TIMES) && said.contains("it is no file; accepted is a file"), "{said}");
+    assert!(
+        said.contains(SAMPLES_FILE) && said.contains("it is no file; accepted is a file"),
+        "{said}"
+    );
     assert_eq!(said.lines().count(), 2, "{said}");
 }
 
@@ -137,10 +158,10 @@ fn files_that_are_none_cost_their_row() {
 #[test]
 fn what_languages_write_differently_is_the_same() {
     let (folder, out) = ball();
-    let words = [&SCORE[..], &["--answers", &out, "-c", "^ball-geometric$"]].concat();
+    let words = [&SCORE_COMMAND[..], &["--answers", &out, "-c", "^ball-geometric$"]].concat();
     let (plain, code) = report(&words);
     assert_eq!(code, Some(0), "{plain:?}");
-    for file in [EVENTS, TIMES] {
+    for file in [EVENTS_FILE, SAMPLES_FILE] {
         let path = folder.path().join(file);
         let old = fs::read_to_string(&path).expect("read");
         let quoted = old.replace("time", "\"time\"").replace("impact", "\"impact\"");

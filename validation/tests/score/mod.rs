@@ -199,7 +199,8 @@ fn what_events_prints_is_an_answer() {
     fs::write(&path, with_mode).expect("written");
     let answers = folder.path().display().to_string();
     let case = format!("^{case}$");
-    let (rows, code) = report(&[&SCORE[..], &["--answers", &answers, "-c", &case]].concat());
+    let (rows, code) =
+        report(&[&SCORE_COMMAND[..], &["--answers", &answers, "-c", &case]].concat());
     assert_eq!(code, Some(0), "{rows:?}");
     assert_eq!(rows[0]["verdict"], "pass", "{rows:?}");
     assert_eq!(rows[0]["events_missed"], 0, "{rows:?}");
@@ -209,7 +210,7 @@ fn what_events_prints_is_an_answer() {
 #[test]
 fn a_stepping_that_needs_an_order_is_refused_without() {
     for stepping in ["per-step", "fixed"] {
-        let words = [&SCORE[..], &["--answers", ".", "--stepping", stepping]].concat();
+        let words = [&SCORE_COMMAND[..], &["--answers", ".", "--stepping", stepping]].concat();
         refused(&words, &["--stepping", "need --order"]);
     }
 }
@@ -225,9 +226,9 @@ fn ball() -> (tempfile::TempDir, String) {
     (folder, out)
 }
 
-const SCORE: [&str; 5] = ["score", "--name", "mine", "--tolerance", "1e-9"];
+const SCORE_COMMAND: [&str; 5] = ["score", "--name", "mine", "--tolerance", "1e-9"];
 
-const EVENTS: &str = "ball-geometric.events.csv";
+const EVENTS_FILE: &str = "ball-geometric.events.csv";
 
 /// Replaces a text in the n-th line of a file, from 1.
 fn in_line(n: usize, from: &str, to: &str) -> impl Fn(&str) -> Vec<u8> {
@@ -250,7 +251,7 @@ fn what_is_not_answered_counts_as_not_found() {
     }
     fs::write(folder.path().join("no-case.events.csv"), "").expect("written");
     let pattern = "^(ball-(geometric|cut-short)|no-case)$";
-    let words = [&SCORE[..], &["--answers", &out, "-c", pattern]].concat();
+    let words = [&SCORE_COMMAND[..], &["--answers", &out, "-c", pattern]].concat();
     let (rows, code) = report(&words);
     assert_eq!(code, Some(0));
     let missing = rows.iter().find(|row| row["case"] == "ball-cut-short").expect("a row");
@@ -284,11 +285,11 @@ fn what_is_not_answered_counts_as_not_found() {
     assert!(counts("cases_right") <= answered && answered < rows.len() as u64);
     // A folder without an answer to any of the cases asked for, and none at all.
     refused(
-        &[&SCORE[..], &["--answers", &out, "-c", "^small-b$"]].concat(),
+        &[&SCORE_COMMAND[..], &["--answers", &out, "-c", "^small-b$"]].concat(),
         &["--answers", "no answer"],
     );
     refused(
-        &[&SCORE[..], &["--answers", "/no/such"]].concat(),
+        &[&SCORE_COMMAND[..], &["--answers", "/no/such"]].concat(),
         &["--answers /no/such", "accepted is"],
     );
 }
@@ -301,7 +302,7 @@ fn what_is_not_given_is_not_judged_and_said() {
     let out = folder.path().display().to_string();
     let accuracy = Accuracy::Tolerance(1e-9);
     answers("ode_solvers-dopri5", accuracy, "^ball-cut-short$", folder.path());
-    let words = [&SCORE[..], &["--answers", &out, "-c", "^ball-cut-short$"]].concat();
+    let words = [&SCORE_COMMAND[..], &["--answers", &out, "-c", "^ball-cut-short$"]].concat();
     let told = |rest: &str| {
         let (rows, code) = report(&words);
         assert_eq!((rows.len(), code), (1, Some(0)), "{rows:?}");
@@ -342,7 +343,7 @@ fn what_is_not_given_is_not_judged_and_said() {
 #[test]
 fn cases_without_an_answer_are_counted_in_one_line() {
     let (_folder, out) = ball();
-    let words = [&SCORE[..], &["--answers", &out, "-c", "^(ball-.*|relay-.*)$"]].concat();
+    let words = [&SCORE_COMMAND[..], &["--answers", &out, "-c", "^(ball-.*|relay-.*)$"]].concat();
     let shown = text(&run(&[&words[..], &["--details"]].concat()).stdout);
     let told: Vec<&str> = shown.lines().filter(|line| line.contains("not answered")).collect();
     assert_eq!(told.len(), 1, "{shown}");
@@ -358,12 +359,12 @@ fn cases_without_an_answer_are_counted_in_one_line() {
 fn a_baseline_tells_what_is_worse() {
     let (folder, out) = ball();
     let report = folder.path().join("report").display().to_string();
-    let words = [&SCORE[..], &["--answers", &out, "-c", "^ball-geometric$"]].concat();
+    let words = [&SCORE_COMMAND[..], &["--answers", &out, "-c", "^ball-geometric$"]].concat();
     assert!(run(&[&words[..], &["--out", &report]].concat()).status.success());
     let baseline = format!("{report}/report.json");
     let compared = [&words[..], &["--baseline", &baseline]].concat();
     assert!(run(&compared).status.success());
-    let path = folder.path().join(EVENTS);
+    let path = folder.path().join(EVENTS_FILE);
     let events = fs::read_to_string(&path).expect("read");
     fs::write(&path, in_line(2, "1.5,", "1.4999,")(&events)).expect("written");
     let output = run(&compared);

@@ -11,7 +11,8 @@ use percuss_validation::report::{
 use percuss_validation::score::{Spread, Verdict};
 use percuss_validation::suite::{CaseTraits, Suite};
 
-pub const NASTY: &str = "</script><script>alert(1)</script> & \"50 %\", a::b\r\n<!-- \u{1}";
+pub const UNESCAPED_TEXT: &str =
+    "</script><script>alert(1)</script> & \"50 %\", a::b\r\n<!-- \u{1}";
 
 const ENGINES: [(&str, &str); 12] = [
     ("exact", "percuss"),
@@ -119,7 +120,7 @@ fn results() -> Vec<ReportRow> {
     let mut spoil = |at: usize, change: &dyn Fn(&mut ReportRow)| change(&mut rows[at]);
     spoil(3, &|row| {
         row.verdict = Verdict::Fail;
-        row.why = NASTY.to_owned();
+        row.why = UNESCAPED_TEXT.to_owned();
         row.events_matched = Some(31);
         row.records.events_missed = Some(9);
         row.records.events_spurious = Some(2);
@@ -321,7 +322,7 @@ fn event() -> EventPicture {
         tolerance: Some(1e-12),
         step: None,
         kind: MismatchKind::Missed,
-        title: NASTY.to_owned(),
+        title: UNESCAPED_TEXT.to_owned(),
         guard: "gap p \u{2212} q \u{2212} g".to_owned(),
         modes: Vec::new(),
         centre: 12.345_678_901,
@@ -338,7 +339,7 @@ pub fn evidence() -> ReportEvidence {
         system: "oscillator".to_owned(),
         states: Vec::new(),
         regime: "grazing".to_owned(),
-        why: NASTY.to_owned(),
+        why: UNESCAPED_TEXT.to_owned(),
         trouble: Vec::new(),
         margin: Some(margin),
     };
@@ -366,10 +367,10 @@ pub fn evidence() -> ReportEvidence {
         faults: vec![
             fault("wrong-drops-events", words, [true, false, true, true]),
             fault("wrong-omega", "omega + 0.002", [false, true, true, true]),
-            fault(NASTY, "as printed", [false; 4]),
+            fault(UNESCAPED_TEXT, "as printed", [false; 4]),
         ],
         events: vec![event()],
-        worse: vec![NASTY.to_owned()],
+        worse: vec![UNESCAPED_TEXT.to_owned()],
         dearer: Vec::new(),
         folders: Vec::new(),
     }

@@ -6,7 +6,7 @@ use percuss_validation::score::Spread;
 use std::collections::BTreeSet;
 
 /// What the name of a set-up ends with that is the documentation's first example.
-pub(crate) const DEFAULT: &str = "-default";
+pub(crate) const DEFAULT_SUFFIX: &str = "-default";
 /// The kind of the cases of the oscillator, which name no trouble.
 pub(crate) const OSCILLATOR: &str = "oscillator";
 
@@ -141,7 +141,7 @@ fn setups(reports: &[ReportJson]) -> Result<Vec<(&EngineJson, Vec<&RowJson>)>> {
 
 /// Puts a set-up into the line of its engine and version.
 fn put(lines: &mut Vec<BoardLine>, engine: &EngineJson, score: SetupResult) {
-    let name = engine.name.strip_suffix(DEFAULT).unwrap_or(&engine.name);
+    let name = engine.name.strip_suffix(DEFAULT_SUFFIX).unwrap_or(&engine.name);
     let place = lines.iter().position(|it| it.name == name && it.version == engine.version);
     let place = place.unwrap_or_else(|| {
         lines.push(BoardLine {
@@ -154,7 +154,7 @@ fn put(lines: &mut Vec<BoardLine>, engine: &EngineJson, score: SetupResult) {
         });
         lines.len() - 1
     });
-    let is_default = engine.name.ends_with(DEFAULT);
+    let is_default = engine.name.ends_with(DEFAULT_SUFFIX);
     let slot = if is_default { &mut lines[place].default } else { &mut lines[place].expert };
     *slot = Some(score);
 }

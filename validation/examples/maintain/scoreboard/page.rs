@@ -5,7 +5,7 @@ use anyhow::Result;
 use askama::Template;
 
 /// What stands where nothing was measured.
-const NOTHING: &str = "\u{2013}";
+const DASH: &str = "\u{2013}";
 
 /// The block of the Markdown page.
 pub(crate) fn markdown(board: &Board) -> String {
@@ -63,7 +63,7 @@ fn named(line: &BoardLine) -> String {
 /// The cells of an engine in the first table.
 fn cells(line: &BoardLine) -> [String; 13] {
     let of = |score: &Option<SetupResult>, figure: fn(&SetupResult) -> String| {
-        score.as_ref().map_or(NOTHING.to_owned(), figure)
+        score.as_ref().map_or(DASH.to_owned(), figure)
     };
     let pair =
         |figure: fn(&SetupResult) -> String| [of(&line.expert, figure), of(&line.default, figure)];
@@ -95,13 +95,13 @@ fn both(line: &BoardLine, figure: impl Fn(&SetupResult) -> String) -> String {
     match (expert, default) {
         (Some(expert), Some(default)) => format!("{expert} / {default}"),
         (Some(expert), None) => expert,
-        (None, Some(default)) => format!("{NOTHING} / {default}"),
-        (None, None) => NOTHING.to_owned(),
+        (None, Some(default)) => format!("{DASH} / {default}"),
+        (None, None) => DASH.to_owned(),
     }
 }
 
 fn percent(tally: &EventCounts) -> String {
-    tally.percent().map_or(NOTHING.to_owned(), |it| it.to_string())
+    tally.percent().map_or(DASH.to_owned(), |it| it.to_string())
 }
 
 /// The share of rows that are wholly right, with a mark where one fails unexpectedly.
@@ -112,7 +112,7 @@ fn right_percent(score: &SetupResult) -> String {
 /// Two digits that tell.
 fn figure(value: Option<f64>) -> String {
     match value {
-        None => NOTHING.to_owned(),
+        None => DASH.to_owned(),
         Some(value) if value >= 10.0 => format!("{value:.0}"),
         Some(value) => format!("{value:.1}"),
     }
@@ -145,7 +145,7 @@ struct KindCell {
 /// What the template says.
 pub(crate) fn html(board: &Board) -> Result<String> {
     let cell = |score: &Option<SetupResult>, k: usize| KindCell {
-        shown: score.as_ref().map_or(NOTHING.to_owned(), |it| percent(&it.kinds[k])),
+        shown: score.as_ref().map_or(DASH.to_owned(), |it| percent(&it.kinds[k])),
         share: score.as_ref().and_then(|it| it.kinds[k].percent()).unwrap_or_default(),
     };
     let line = |it: &BoardLine| HtmlLine {
