@@ -344,7 +344,7 @@ fn negative_values_belong_to_their_flags() {
 }
 
 /// A `score` that is refused by its flags alone.
-const SCORED: [&str; 7] =
+const SCORE_COMMAND: [&str; 7] =
     ["score", "--name", "mine", "--tolerance", "1e-6", "--answers", "/no/such"];
 
 /// A section of a system that is not forced, to which the flag `--section` is missing.
@@ -547,7 +547,7 @@ fn flags_without_effect() {
         (vec!["bench", "--rounds", "2", "record"], &["record"]),
         (vec!["validate", "--details", "--format", "csv"], &["--details", "table"]),
         (
-            [&SCORED[..], &["--rows", "--allow-unanswered", "--format", "json"]].concat(),
+            [&SCORE_COMMAND[..], &["--rows", "--allow-unanswered", "--format", "json"]].concat(),
             &["--rows", "table"],
         ),
     ];

@@ -150,11 +150,12 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-const CHOSEN: [&str; 5] = ["validate", "-e", "^(exact|heun)$", "-c", "^impact-into-progression$"];
+const VALIDATE_COMMAND: [&str; 5] =
+    ["validate", "-e", "^(exact|heun)$", "-c", "^impact-into-progression$"];
 
 fn scored(out: &Path, more: &[&str]) -> (Option<i32>, String) {
     let out = out.display().to_string();
-    let output = example(&[&CHOSEN[..], &["--out", &out], more].concat());
+    let output = example(&[&VALIDATE_COMMAND[..], &["--out", &out], more].concat());
     (output.status.code(), text(&output.stdout) + &text(&output.stderr))
 }
 

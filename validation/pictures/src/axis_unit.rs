@@ -7,7 +7,7 @@ use super::frame::{Ruler, power_of_ten};
 
 /// The width of the longest label, in pixels; beyond it stands the name of a vertical axis.
 const MAX_LABEL_PIXELS: f64 = 72.0;
-const TEXT: f64 = 20.0;
+const TEXT_SIZE: f64 = 20.0;
 
 /// A figure is shown as (value - origin)/10^exponent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,8 +41,9 @@ impl AxisUnit {
 
     fn has_short_labels(&self, from: f64, to: f64) -> bool {
         let ruler = Ruler::between(self.shown(from), self.shown(to));
-        let short =
-            |label: &String| !label.contains('e') && font::width(label, TEXT) <= MAX_LABEL_PIXELS;
+        let short = |label: &String| {
+            !label.contains('e') && font::width(label, TEXT_SIZE) <= MAX_LABEL_PIXELS
+        };
         ruler.ticks.iter().all(|(_, label)| short(label))
     }
 
@@ -57,8 +58,8 @@ impl AxisUnit {
     /// can be cut: without what it counts in, the labels would be wrong.
     pub fn named(&self, name: &str, room: f64) -> String {
         let unit = self.words();
-        let room = (room - font::width(&unit, TEXT)).max(font::width("\u{2026}", TEXT));
-        font::shortened(name, TEXT, room) + &unit
+        let room = (room - font::width(&unit, TEXT_SIZE)).max(font::width("\u{2026}", TEXT_SIZE));
+        font::shortened(name, TEXT_SIZE, room) + &unit
     }
 
     fn words(&self) -> String {

@@ -55,8 +55,8 @@ const SIZE: (u32, u32) = (1200, 980);
 const PANEL_FROM: At = (140.0, 64.0);
 const PANEL_TO: At = (900.0, 824.0);
 const KEY_CORNER: At = (926.0, 84.0);
-const TEXT: f64 = 20.0;
-const KEY_TEXT: f64 = TEXT - 3.0;
+const TEXT_SIZE: f64 = 20.0;
+const KEY_TEXT_SIZE: f64 = TEXT_SIZE - 3.0;
 
 /// The smallest map with its key, and the room around a map that fills a size.
 const MIN_SIZE: (u32, u32) = (360, 200);
@@ -72,7 +72,7 @@ impl Drawing for BasinMap {
         canvas.title(&self.title);
         for (k, line) in self.note.lines().enumerate() {
             let at = (24.0, 916.0 + 26.0 * k as f64);
-            canvas.text(line, at, TEXT - 2.0, TextSide::Left, palette::INK);
+            canvas.text(line, at, TEXT_SIZE - 2.0, TextSide::Left, palette::INK);
         }
         let [x, y] = self.rulers();
         let panel = Panel { from: PANEL_FROM, to: PANEL_TO, x, y };
@@ -90,7 +90,7 @@ impl Drawing for BasinMap {
         let first_line = |name: &str| name.lines().next().unwrap_or_default().to_owned();
         let names = self.attractors.iter().map(|it| first_line(&it.name));
         let others = self.others().into_iter().map(|it| it.0.to_owned());
-        let widths = names.chain(others).map(|it| font::width(&it, KEY_TEXT));
+        let widths = names.chain(others).map(|it| font::width(&it, KEY_TEXT_SIZE));
         let key = KEY_SAMPLE_WIDTH + widths.fold(0.0, f64::max);
         let to = (f64::from(size.0) - key - MARGIN, f64::from(size.1) - BOTTOM_MARGIN);
         let panel = fitted::panel(self.rulers(), (0.0, MARGIN), to);
@@ -159,7 +159,7 @@ impl BasinMap {
             .others()
             .into_iter()
             .map(|(name, colour)| KeyItem::new(name, move |canvas, at| swatch(canvas, at, colour)));
-        key(canvas, from, layout, KEY_TEXT, attractors.chain(others));
+        key(canvas, from, layout, KEY_TEXT_SIZE, attractors.chain(others));
     }
 }
 

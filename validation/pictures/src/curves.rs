@@ -7,9 +7,9 @@ use super::key::{KeyItem, KeyLayout, key};
 use super::{Colour, Drawing, Marker, font, palette};
 
 const SIZE: (u32, u32) = (1500, 900);
-const TEXT: f64 = 20.0;
+const TEXT_SIZE: f64 = 20.0;
 /// The size of the note's text.
-const NOTE_TEXT: f64 = 17.0;
+const NOTE_TEXT_SIZE: f64 = 17.0;
 /// The height of the note's lines.
 const NOTE_LINE_HEIGHT: f64 = 24.0;
 /// Room for names in the key.
@@ -61,12 +61,18 @@ impl Drawing for Curves {
         let y = Ruler::over(self.y.scale, points().map(|point| point.1));
         let (Some(x), Some(y)) = (x, y) else {
             let at = (130.0, 120.0);
-            return canvas.text("nothing was measured", at, TEXT, TextSide::Left, palette::INK);
+            return canvas.text(
+                "nothing was measured",
+                at,
+                TEXT_SIZE,
+                TextSide::Left,
+                palette::INK,
+            );
         };
-        let note = font::wrapped(&self.note, NOTE_TEXT, f64::from(SIZE.0) - 48.0);
+        let note = font::wrapped(&self.note, NOTE_TEXT_SIZE, f64::from(SIZE.0) - 48.0);
         for (n, line) in note.iter().enumerate() {
             let at = (24.0, 62.0 + NOTE_LINE_HEIGHT * n as f64);
-            canvas.text(line, at, NOTE_TEXT, TextSide::Left, palette::INK);
+            canvas.text(line, at, NOTE_TEXT_SIZE, TextSide::Left, palette::INK);
         }
         let top = 64.0 + NOTE_LINE_HEIGHT * note.len() as f64;
         let panel = Panel { from: (130.0, top), to: (1110.0, 816.0), x, y };
@@ -74,7 +80,7 @@ impl Drawing for Curves {
         self.curves.iter().for_each(|curve| curve.draw(canvas, &panel));
         let named = || self.curves.iter().filter(|curve| !curve.name.is_empty());
         let step = ((804.0 - top) / named().count().max(1) as f64).min(30.0);
-        let size = (step - 4.0).min(TEXT - 1.0);
+        let size = (step - 4.0).min(TEXT_SIZE - 1.0);
         let widest = named().map(|curve| font::width(&curve.name, size)).fold(KEY_WIDTH, f64::max);
         let size = size * KEY_WIDTH / widest;
         key(canvas, (1136.0, top + 16.0), KeyLayout::Column(step), size, named().map(Curve::key));

@@ -81,7 +81,7 @@ impl Stage {
 
 const SIZE: (u32, u32) = (1500, 700);
 const WIDTH: f64 = 1500.0;
-const TEXT: f64 = 19.0;
+const TEXT_SIZE: f64 = 19.0;
 const TOP: f64 = 164.0;
 const BOTTOM: f64 = 550.0;
 const BAND_HEIGHT: f64 = 24.0;
@@ -96,7 +96,7 @@ impl Drawing for Encounter {
 
     fn draw(&self, canvas: &mut Canvas) {
         canvas.title(&self.title);
-        canvas.text(&self.subtitle, (24.0, 64.0), TEXT, TextSide::Left, palette::INK);
+        canvas.text(&self.subtitle, (24.0, 64.0), TEXT_SIZE, TextSide::Left, palette::INK);
         let width = WIDTH / self.stretches.len().max(1) as f64;
         for (i, stretch) in self.stretches.iter().enumerate() {
             let left = width * i as f64;
@@ -125,7 +125,7 @@ impl Encounter {
         for (trail, name, top) in [(&it.truth, "truth", 96.0), (&it.engine, "engine", 126.0)] {
             trail.band(canvas, place, (left, right, top));
             let at = (left - 10.0, top + BAND_HEIGHT / 2.0);
-            canvas.text(name, at, TEXT, TextSide::Right, palette::INK);
+            canvas.text(name, at, TEXT_SIZE, TextSide::Right, palette::INK);
         }
         let curve = |trail: &Trail| -> Vec<At> {
             trail.places(it.from, it.to).filter_map(|(t, v)| at(t, v)).collect()
@@ -178,7 +178,7 @@ impl Encounter {
             KeyItem::new("missed", |canvas, at| wrong(canvas, middle(at), false)),
             KeyItem::new("spurious", |canvas, at| wrong(canvas, middle(at), true)),
         ];
-        key(canvas, (24.0, 664.0), KeyLayout::Row, TEXT - 1.0, items);
+        key(canvas, (24.0, 664.0), KeyLayout::Row, TEXT_SIZE - 1.0, items);
     }
 }
 
@@ -222,7 +222,7 @@ impl Trail {
             canvas.fill((*from, top), (to, top + BAND_HEIGHT), *fill);
             if to - from > 11.0 * name.len() as f64 {
                 let middle = ((from + to) / 2.0, top + BAND_HEIGHT / 2.0);
-                canvas.text(name, middle, TEXT - 2.0, TextSide::Middle, *ink);
+                canvas.text(name, middle, TEXT_SIZE - 2.0, TextSide::Middle, *ink);
             }
         }
     }

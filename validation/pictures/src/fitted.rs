@@ -18,14 +18,14 @@ const LABEL_GAP: f64 = 16.0;
 const LABEL_HEIGHT: f64 = 30.0;
 
 /// The size of an axis's labels.
-const TEXT: f64 = 20.0;
+const TEXT_SIZE: f64 = 20.0;
 
 /// The largest number of ticks that is tried.
 const MAX_TICKS: u32 = 8;
 
 /// The panel between two corners that leaves room for the labels and the name beside it.
 pub(super) fn panel([x, y]: [Ruler; 2], from: At, to: At) -> Panel {
-    let width = |it: &(f64, String)| font::width(&it.1, TEXT);
+    let width = |it: &(f64, String)| font::width(&it.1, TEXT_SIZE);
     let y = fewer_ticks(y, |ticks| (to.1 - from.1) / ticks.len().max(1) as f64 > LABEL_HEIGHT);
     let left = from.0 + LEFT_MARGIN + y.ticks.iter().map(width).fold(0.0, f64::max);
     let x = fewer_ticks(x, |ticks| {

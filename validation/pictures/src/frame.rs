@@ -29,7 +29,7 @@ pub(super) struct Ruler {
     pub ticks: Vec<(f64, String)>,
 }
 
-const TEXT: f64 = 20.0;
+const TEXT_SIZE: f64 = 20.0;
 /// The largest number of ticks, about.
 const MAX_TICKS: f64 = 8.0;
 
@@ -171,17 +171,17 @@ impl Panel {
         for (placed, label) in &self.x.ticks {
             let x = from.0 + self.x.fraction(*placed) * (to.0 - from.0);
             canvas.line((x, to.1), (x, to.1 + 6.0), 1.0, palette::INK);
-            canvas.text(label, (x, to.1 + 20.0), TEXT, TextSide::Middle, palette::INK);
+            canvas.text(label, (x, to.1 + 20.0), TEXT_SIZE, TextSide::Middle, palette::INK);
         }
         for (placed, label) in &self.y.ticks {
             let y = to.1 - self.y.fraction(*placed) * (to.1 - from.1);
             canvas.line((from.0 - 6.0, y), (from.0, y), 1.0, palette::INK);
-            canvas.text(label, (from.0 - 10.0, y), TEXT, TextSide::Right, palette::INK);
+            canvas.text(label, (from.0 - 10.0, y), TEXT_SIZE, TextSide::Right, palette::INK);
         }
         canvas.frame(from, to);
         let middle = ((from.0 + to.0) / 2.0, to.1 + down);
-        canvas.text(below, middle, TEXT + 2.0, TextSide::Middle, palette::INK);
-        canvas.upright(beside, (from.0 - left, (from.1 + to.1) / 2.0), TEXT + 2.0);
+        canvas.text(below, middle, TEXT_SIZE + 2.0, TextSide::Middle, palette::INK);
+        canvas.upright(beside, (from.0 - left, (from.1 + to.1) / 2.0), TEXT_SIZE + 2.0);
     }
 }
 

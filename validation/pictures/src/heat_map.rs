@@ -7,7 +7,7 @@ const ROW_HEIGHT: u32 = 38;
 const HEAD_HEIGHT: u32 = 110;
 const LABEL_WIDTH: u32 = 330;
 const MARGIN: u32 = 24;
-const TEXT: f64 = 19.0;
+const TEXT_SIZE: f64 = 19.0;
 
 /// The meaning of a cell's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,20 +70,20 @@ impl Drawing for HeatMap {
         let left = margin + label;
         let middle = |i: usize| left + self.cell() * (i as f64 + 0.5);
         canvas.title(&self.title);
-        canvas.text(&self.note, (margin, 58.0), TEXT - 2.0, TextSide::Left, palette::INK);
+        canvas.text(&self.note, (margin, 58.0), TEXT_SIZE - 2.0, TextSide::Left, palette::INK);
         for (i, name) in self.columns.iter().enumerate() {
-            canvas.text(name, (middle(i), head - 16.0), TEXT, TextSide::Middle, palette::INK);
+            canvas.text(name, (middle(i), head - 16.0), TEXT_SIZE, TextSide::Middle, palette::INK);
         }
         for (j, (name, cells)) in self.rows.iter().enumerate() {
             let top = head + j as f64 * row;
-            canvas.text(name, (margin, top + row / 2.0), TEXT, TextSide::Left, palette::INK);
+            canvas.text(name, (margin, top + row / 2.0), TEXT_SIZE, TextSide::Left, palette::INK);
             for (i, cell) in cells.iter().enumerate() {
                 let from = left + self.cell() * i as f64;
                 let (paper, ink) = colours(cell.tint);
                 let to = (from + self.cell() - 2.0, top + row - 2.0);
                 canvas.fill((from, top), to, paper);
                 let at = (middle(i) - 1.0, top + row / 2.0 - 1.0);
-                canvas.text(&cell.text, at, TEXT - 1.0, TextSide::Middle, ink);
+                canvas.text(&cell.text, at, TEXT_SIZE - 1.0, TextSide::Middle, ink);
             }
         }
     }

@@ -7,7 +7,7 @@ use super::{Colour, Drawing, palette};
 const ROW_HEIGHT: u32 = 46;
 const HEAD_HEIGHT: u32 = 64;
 const FOOT_HEIGHT: u32 = 80;
-const TEXT: f64 = 19.0;
+const TEXT_SIZE: f64 = 19.0;
 const LEFT_EDGE: f64 = 350.0;
 const RIGHT_EDGE: f64 = 1470.0;
 
@@ -58,21 +58,27 @@ impl Drawing for Histograms {
         let values = edges.map(|edge| 10.0_f64.powf(edge));
         let Some(ruler) = Ruler::over(AxisScale::Logarithmic, values) else {
             let at = (24.0, head + 20.0);
-            return canvas.text("nothing was measured", at, TEXT, TextSide::Left, palette::INK);
+            return canvas.text(
+                "nothing was measured",
+                at,
+                TEXT_SIZE,
+                TextSide::Left,
+                palette::INK,
+            );
         };
         let bottom = head + self.rows.len() as f64 * height;
         let across = |place: f64| LEFT_EDGE + place * (RIGHT_EDGE - LEFT_EDGE);
         for (value, label) in &ruler.ticks {
             let x = across(ruler.fraction(*value));
             canvas.line((x, head), (x, bottom), 1.0, palette::GRID);
-            canvas.text(label, (x, bottom + 20.0), TEXT, TextSide::Middle, palette::INK);
+            canvas.text(label, (x, bottom + 20.0), TEXT_SIZE, TextSide::Middle, palette::INK);
         }
         for (i, row) in self.rows.iter().enumerate() {
             let base = head + (i + 1) as f64 * height;
             let most = row.bins().map(|bin| bin.2).max().unwrap_or(1) as f64;
             canvas.line((LEFT_EDGE, base), (RIGHT_EDGE, base), 1.0, palette::GRID);
             let at = (LEFT_EDGE - 16.0, base - height / 2.0);
-            canvas.text(&row.name, at, TEXT, TextSide::Right, palette::INK);
+            canvas.text(&row.name, at, TEXT_SIZE, TextSide::Right, palette::INK);
             for (from, to, count) in row.bins() {
                 let tall = ((height - 8.0) * count as f64 / most).max(1.0);
                 let [from, to] = [from, to].map(|edge| across(ruler.fraction(edge)));
@@ -81,6 +87,6 @@ impl Drawing for Histograms {
             }
         }
         let middle = ((LEFT_EDGE + RIGHT_EDGE) / 2.0, bottom + 54.0);
-        canvas.text(&self.label, middle, TEXT + 1.0, TextSide::Middle, palette::INK);
+        canvas.text(&self.label, middle, TEXT_SIZE + 1.0, TextSide::Middle, palette::INK);
     }
 }

@@ -14,7 +14,7 @@ use percuss_engines::case::Problem;
 const SIZE: (u32, u32) = (1500, 860);
 /// Points drawn for the whole run.
 const RUN_POINTS: f64 = 6000.0;
-const TEXT: f64 = 20.0;
+const TEXT_SIZE: f64 = 20.0;
 
 /// A run ready to be drawn.
 pub struct DrawnMotion {
@@ -86,7 +86,7 @@ impl Drawing for DrawnMotion {
                 canvas.line((x, y), (x + 36.0, y), 5.0, colour);
             })
         });
-        key(canvas, (24.0, 64.0), KeyLayout::Row, TEXT, items);
+        key(canvas, (24.0, 64.0), KeyLayout::Row, TEXT_SIZE, items);
         PANELS.iter().for_each(|panel| self.panel(canvas, panel));
     }
 }

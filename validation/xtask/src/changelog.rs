@@ -15,7 +15,7 @@ const BREAKING_PREFIX: &str = "- **Breaking:** ";
 const MAX_LINE_CHARACTERS: usize = 200;
 
 const HEADING: &str = "## [Unreleased]\n";
-const LINK: &str = "[Unreleased]: ";
+const LINK_PREFIX: &str = "[Unreleased]: ";
 
 /// A changelog, cut at what is not released yet.
 pub struct Changelog<'a> {
@@ -33,7 +33,8 @@ impl<'a> Changelog<'a> {
         let (before, rest) = text.split_once(HEADING).context("has no `## [Unreleased]`")?;
         let versions = rest.find("\n## [").context("has no version below what is not released")?;
         let (unreleased, rest) = rest.split_at(versions + 1);
-        let (versions, links) = rest.split_once(LINK).context("has no link `[Unreleased]: `")?;
+        let (versions, links) =
+            rest.split_once(LINK_PREFIX).context("has no link `[Unreleased]: `")?;
         let (comparison, links) = links.split_once('\n').context("ends without a line break")?;
         let changelog = Self { before, unreleased, versions, comparison, links };
         changelog.check()?;
@@ -96,7 +97,7 @@ impl<'a> Changelog<'a> {
         let changes = self.unreleased();
         Ok(format!(
             "{before}{HEADING}\n## [{version}] - {day}\n\n{changes}\n\n{versions}\
-             {LINK}{address}/compare/v{version}...HEAD\n\
+             {LINK_PREFIX}{address}/compare/v{version}...HEAD\n\
              [{version}]: {address}/compare/{old}...v{version}\n{links}"
         ))
     }

@@ -5,8 +5,9 @@ use crate::equations::Numbers;
 
 /// A root is narrowed down to this many roundings of its time.
 const ROOT_ROUNDINGS: f64 = 4.0;
-/// Roundings of time to the estimated root within which the next evaluation is made beyond it.
-const MAX_OVERSTEP_ROUNDINGS: f64 = 64.0;
+/// Roundings of time from the root within which an evaluation doubles the distance by which the
+/// next one goes past it.
+const NEAR_ROOT_ROUNDINGS: f64 = 64.0;
 /// Three evaluations have to narrow a bracket down to this share of its width, or the next one
 /// halves it.
 const MAX_WIDTH_RATIO: f64 = 0.125;
@@ -64,7 +65,7 @@ impl<G: Numbers> Bracket<G> {
 
     pub(super) fn take(&mut self, look: GuardValues<G>) {
         let [value, rate] = [look.value(self.guard), look.rate(self.guard)].map(f64::abs);
-        let close = value <= self.roundings(MAX_OVERSTEP_ROUNDINGS) * rate;
+        let close = value <= self.roundings(NEAR_ROOT_ROUNDINGS) * rate;
         let side = if look.value(self.guard) < 0.0 { &mut self.inside } else { &mut self.outside };
         *side = look;
         self.past = if close { 2.0 * self.past } else { 1.0 };

@@ -8,7 +8,7 @@ use percuss::Phase::{self, Contact, NoContact, Progression};
 use percuss::{Start, TwoWord};
 
 const UNIT: f64 = 1e-9;
-const ASKED: (Accuracy, f64) = (Accuracy::Tolerance(UNIT), UNIT);
+const ASKED_ACCURACY: (Accuracy, f64) = (Accuracy::Tolerance(UNIT), UNIT);
 
 /// Restarts on the attractor of the default model.
 fn test(count: usize) -> RestartTest {
@@ -140,14 +140,14 @@ fn runs_that_fail_or_go_another_way_are_counted() {
         }
         Ok(outcome)
     };
-    let found = test.score(ASKED, answer);
+    let found = test.score(ASKED_ACCURACY, answer);
     assert_eq!((found.runs, found.with_impact), (12, with_impact));
     assert_eq!((found.failed, found.wrong_sequences, found.undecided), (1, 1, 0));
     // What gave no result is counted as failed and spoils no error of the others.
     assert!(found.units.max < 1e-3 && found.units.median < 1e-3);
     let counted: usize = found.by_events.values().map(|(count, _)| count).sum();
     assert_eq!(counted, with_impact - 1);
-    assert_eq!(test.score_first(3, ASKED, answer).runs, 3);
+    assert_eq!(test.score_first(3, ASKED_ACCURACY, answer).runs, 3);
     // A run counts its events after those of the runs before it.
     let before: u64 = test.runs[..5].iter().map(|run| run.truth.events.len() as u64).sum();
     let own = test.runs[5].task.oscillator.as_ref();

@@ -9,7 +9,7 @@ use super::plot::Plot;
 /// The smallest panel with its labels, width and height in pixels.
 pub(super) const MIN_SIZE: (u32, u32) = (220, 180);
 
-const TEXT: f64 = 20.0;
+const TEXT_SIZE: f64 = 20.0;
 /// Height of a line of the title or of the key.
 const LINE_HEIGHT: f64 = 26.0;
 /// The width of a key's sample with the space after a name.
@@ -19,8 +19,8 @@ impl Plot {
     /// Draws the panel so that it fills a rectangle.
     pub(super) fn draw_within(&self, canvas: &mut Canvas, corner: At, (width, height): At) {
         let (Some(x), Some(y)) = (self.ruler(0), self.ruler(1)) else {
-            let at = (corner.0 + MARGIN, corner.1 + MARGIN + TEXT);
-            return canvas.text("nothing to show", at, TEXT, TextSide::Left, palette::INK);
+            let at = (corner.0 + MARGIN, corner.1 + MARGIN + TEXT_SIZE);
+            return canvas.text("nothing to show", at, TEXT_SIZE, TextSide::Left, palette::INK);
         };
         let keys = self.key_rows(width - 2.0 * MARGIN);
         let titles = usize::from(!self.title.is_empty());
@@ -28,11 +28,11 @@ impl Plot {
         let to = (corner.0 + width - MARGIN, corner.1 + height - BOTTOM_MARGIN);
         let panel = fitted::panel([x, y], (corner.0, corner.1 + head), to);
         let (wide, tall) = (to.0 - panel.from.0, to.1 - panel.from.1);
-        let at = (panel.from.0, corner.1 + MARGIN + 0.4 * TEXT);
-        canvas.text(&self.title, at, TEXT, TextSide::Left, palette::INK);
-        let below = font::shortened(&self.axes[0], TEXT + 2.0, wide);
+        let at = (panel.from.0, corner.1 + MARGIN + 0.4 * TEXT_SIZE);
+        canvas.text(&self.title, at, TEXT_SIZE, TextSide::Left, palette::INK);
+        let below = font::shortened(&self.axes[0], TEXT_SIZE + 2.0, wide);
         // The name is centred on the panel, and ends below what is above it.
-        let beside = font::shortened(&self.axes[1], TEXT + 2.0, tall + 2.0 * MARGIN);
+        let beside = font::shortened(&self.axes[1], TEXT_SIZE + 2.0, tall + 2.0 * MARGIN);
         let bare = Self { layers: self.without_keys(), ..self.clone() };
         bare.fill(canvas, &panel, |canvas| {
             panel.draw_named(
@@ -41,7 +41,7 @@ impl Plot {
                 (&beside, panel.from.0 - corner.0 - MARGIN),
             );
         });
-        let first = head - LINE_HEIGHT * keys.len() as f64 + 0.4 * TEXT;
+        let first = head - LINE_HEIGHT * keys.len() as f64 + 0.4 * TEXT_SIZE;
         for (n, row) in keys.into_iter().enumerate() {
             let at = (corner.0 + MARGIN, corner.1 + first + LINE_HEIGHT * n as f64);
             KeyEntry::draw_row(&row, canvas, at);
@@ -61,7 +61,7 @@ impl Plot {
         });
         let (mut rows, mut used): (Vec<Vec<KeyEntry>>, f64) = (Vec::new(), 0.0);
         for entry in entries.flatten() {
-            let width = KEY_SAMPLE_WIDTH + font::width(&entry.name, TEXT);
+            let width = KEY_SAMPLE_WIDTH + font::width(&entry.name, TEXT_SIZE);
             match rows.last_mut() {
                 Some(row) if used + width <= room => row.push(entry.clone()),
                 _ => {

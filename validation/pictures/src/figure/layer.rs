@@ -75,7 +75,7 @@ pub struct KeyEntry {
     pub stroke: Option<Stroke>,
 }
 
-const TEXT: f64 = 18.0;
+const TEXT_SIZE: f64 = 18.0;
 /// Half the width of a mark that has a name.
 const HALF_NAMED_MARK: f64 = 4.5;
 
@@ -135,7 +135,13 @@ impl Layer {
             }
             Self::Text { at, text, colour } => {
                 if let Some(at) = panel.at((at[0], at[1])) {
-                    canvas.text(text, (at.0 + 8.0, at.1 - 12.0), TEXT, TextSide::Left, *colour);
+                    canvas.text(
+                        text,
+                        (at.0 + 8.0, at.1 - 12.0),
+                        TEXT_SIZE,
+                        TextSide::Left,
+                        *colour,
+                    );
                 }
             }
             Self::Named { at, name, colour } => {
@@ -157,12 +163,12 @@ fn named(canvas: &mut Canvas, (x, y): At, name: &str, colour: Colour, right: f64
         (x + HALF_NAMED_MARK, y + HALF_NAMED_MARK),
         colour,
     );
-    let (width, up) = (font::width(name, TEXT), y - 16.0);
+    let (width, up) = (font::width(name, TEXT_SIZE), y - 16.0);
     let left = if x + 10.0 + width > right { x - 10.0 - width } else { x + 10.0 };
     if !name.is_empty() {
         canvas.fill((left - 2.0, up - 9.0), (left + width + 2.0, up + 9.0), WHITE);
     }
-    canvas.text(name, (left, up), TEXT, TextSide::Left, colour);
+    canvas.text(name, (left, up), TEXT_SIZE, TextSide::Left, colour);
 }
 
 impl KeyEntry {
@@ -171,7 +177,7 @@ impl KeyEntry {
         let items = entries
             .iter()
             .map(|entry| KeyItem::new(&entry.name, |canvas, at| entry.sample(canvas, at)));
-        key(canvas, from, KeyLayout::Row, TEXT, items);
+        key(canvas, from, KeyLayout::Row, TEXT_SIZE, items);
     }
 
     fn sample(&self, canvas: &mut Canvas, (x, y): At) {

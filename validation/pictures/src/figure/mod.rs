@@ -12,7 +12,7 @@ use super::axes::around;
 use super::canvas::{Canvas, TextSide};
 use super::{Drawing, font, palette};
 
-const TEXT: f64 = 18.0;
+const TEXT_SIZE: f64 = 18.0;
 /// Height of a line of the caption.
 const LINE_HEIGHT: u32 = 26;
 const HEAD_HEIGHT: u32 = 56;
@@ -37,7 +37,7 @@ pub struct Figure {
 impl Figure {
     /// The caption in lines that are no longer than the figure is wide.
     fn lines(&self) -> Vec<String> {
-        font::wrapped(&self.caption, TEXT, f64::from(self.size_of_panels().0) - 2.0 * MARGIN)
+        font::wrapped(&self.caption, TEXT_SIZE, f64::from(self.size_of_panels().0) - 2.0 * MARGIN)
     }
 
     fn size_of_panels(&self) -> (u32, u32) {
@@ -110,7 +110,7 @@ impl Drawing for Figure {
         let below = f64::from(HEAD_HEIGHT) + height * self.rows() as f64 + 14.0;
         for (i, line) in self.lines().iter().enumerate() {
             let at = (MARGIN, below + f64::from(LINE_HEIGHT) * i as f64);
-            canvas.text(line, at, TEXT, TextSide::Left, palette::INK);
+            canvas.text(line, at, TEXT_SIZE, TextSide::Left, palette::INK);
         }
     }
 }

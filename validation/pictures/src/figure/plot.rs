@@ -21,7 +21,7 @@ pub struct Plot {
     pub layers: Vec<Layer>,
 }
 
-const TEXT: f64 = 20.0;
+const TEXT_SIZE: f64 = 20.0;
 const LEFT_MARGIN: f64 = 126.0;
 const RIGHT_MARGIN: f64 = 24.0;
 const TOP_MARGIN: f64 = 40.0;
@@ -31,9 +31,9 @@ impl Plot {
     pub(super) fn draw(&self, canvas: &mut Canvas, corner: At, (width, height): At) {
         let from = (corner.0 + LEFT_MARGIN, corner.1 + TOP_MARGIN);
         let to = (corner.0 + width - RIGHT_MARGIN, corner.1 + height - BOTTOM_MARGIN);
-        canvas.text(&self.title, (from.0, from.1 - 18.0), TEXT, TextSide::Left, palette::INK);
+        canvas.text(&self.title, (from.0, from.1 - 18.0), TEXT_SIZE, TextSide::Left, palette::INK);
         let (Some(x), Some(y)) = (self.ruler(0), self.ruler(1)) else {
-            return canvas.text("nothing to show", from, TEXT, TextSide::Left, palette::INK);
+            return canvas.text("nothing to show", from, TEXT_SIZE, TextSide::Left, palette::INK);
         };
         let panel = Panel { from, to, x, y };
         let [below, beside] = &self.axes;

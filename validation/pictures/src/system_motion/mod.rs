@@ -23,9 +23,9 @@ pub const MAX_STATES: usize = 6;
 
 const WIDTH: f64 = 1500.0;
 const MARGIN: f64 = 24.0;
-const TEXT: f64 = 20.0;
+const TEXT_SIZE: f64 = 20.0;
 /// Text of the values of parameters.
-const SMALL_TEXT: f64 = 17.0;
+const SMALL_TEXT_SIZE: f64 = 17.0;
 /// Height of a line of text.
 const LINE_HEIGHT: f64 = 28.0;
 /// The baseline of the title.
@@ -66,7 +66,7 @@ impl SystemMotion {
         let events = event_names(system, run);
         let motion = Self {
             title: system.name.clone(),
-            caption: font::wrapped(&values(system), SMALL_TEXT, WIDTH - 2.0 * MARGIN),
+            caption: font::wrapped(&values(system), SMALL_TEXT_SIZE, WIDTH - 2.0 * MARGIN),
             states: shown.iter().map(|n| system.states[*n].clone()).collect(),
             modes: system.modes.iter().map(|mode| mode.name.clone()).collect(),
             pieces: pieces(solver, run, shown),
@@ -97,7 +97,8 @@ impl SystemMotion {
     fn layout(&self) -> Layout {
         let head =
             TITLE_BASELINE + LINE_HEIGHT * (1 + self.caption.len() + self.key_rows().len()) as f64;
-        let widest = self.events.iter().map(|name| font::width(name, TEXT)).fold(0.0, f64::max);
+        let widest =
+            self.events.iter().map(|name| font::width(name, TEXT_SIZE)).fold(0.0, f64::max);
         Layout::new(head, self.states.len(), self.events.len(), widest)
     }
 
@@ -108,7 +109,7 @@ impl SystemMotion {
         occurring.dedup();
         let (mut rows, mut used) = (vec![Vec::new()], 0.0);
         for mode in occurring {
-            let width = KEY_SAMPLE_WIDTH + font::width(&self.modes[mode], TEXT);
+            let width = KEY_SAMPLE_WIDTH + font::width(&self.modes[mode], TEXT_SIZE);
             let mut last = rows.pop().unwrap_or_default();
             if used + width > WIDTH - 2.0 * MARGIN && !last.is_empty() {
                 rows.push(std::mem::take(&mut last));
@@ -148,7 +149,7 @@ impl SystemMotion {
                     canvas.line((x, y), (x + 38.0, y), 3.0, dark);
                 })
             });
-            key(canvas, (MARGIN, y), KeyLayout::Row, TEXT, items);
+            key(canvas, (MARGIN, y), KeyLayout::Row, TEXT_SIZE, items);
             y += LINE_HEIGHT;
         }
     }
@@ -195,7 +196,7 @@ impl SystemMotion {
         let Some((from, to)) = layout.events() else { return };
         let count = self.events.len() as f64;
         let mut y = Ruler::between(0.0, count);
-        let label = |name: &String| font::shortened(name, TEXT, from.0 - MARGIN);
+        let label = |name: &String| font::shortened(name, TEXT_SIZE, from.0 - MARGIN);
         let named = self.events.iter().enumerate();
         y.ticks = named.map(|(n, name)| (count - 0.5 - n as f64, label(name))).collect();
         let panel = Panel { from, to, x: self.times(), y };
@@ -266,7 +267,7 @@ impl Drawing for SystemMotion {
         canvas.title(&self.title);
         for (n, line) in self.caption.iter().enumerate() {
             let at = (MARGIN, TITLE_BASELINE + LINE_HEIGHT * (n + 1) as f64);
-            canvas.text(line, at, SMALL_TEXT, super::canvas::TextSide::Left, palette::INK);
+            canvas.text(line, at, SMALL_TEXT_SIZE, super::canvas::TextSide::Left, palette::INK);
         }
         self.key(canvas, TITLE_BASELINE + LINE_HEIGHT * (1 + self.caption.len()) as f64);
         self.histories(canvas, &layout);

@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The programs that run, by the numbers of their processes, each with its mark.
-static LIVE: Mutex<Live> = Mutex::new(Live { programs: BTreeMap::new(), is_over: false });
+static LIVE_PROGRAMS: Mutex<Live> = Mutex::new(Live { programs: BTreeMap::new(), is_over: false });
 
 struct Live {
     programs: BTreeMap<u32, String>,
@@ -19,7 +19,7 @@ struct Live {
 
 fn live() -> MutexGuard<'static, Live> {
     // A map of numbers is as good after a panic as before it.
-    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+    LIVE_PROGRAMS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Starts a program that is ended by [`end`] or [`end_all`].

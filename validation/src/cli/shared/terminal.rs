@@ -8,8 +8,8 @@ use std::ffi::OsString;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-const ERROR: Style = AnsiColor::Red.on_default().bold();
-const NOTE: Style = AnsiColor::Yellow.on_default();
+const ERROR_STYLE: Style = AnsiColor::Red.on_default().bold();
+const NOTE_STYLE: Style = AnsiColor::Yellow.on_default();
 
 /// Whether `--quiet` was given: one process has one stderr.
 static QUIET: AtomicBool = AtomicBool::new(false);
@@ -43,13 +43,13 @@ pub(in crate::cli) fn stated_color(arguments: &[OsString]) -> ColorChoice {
 
 /// One line on stderr about an error, or about why the exit code is not 0.
 pub(in crate::cli) fn say(line: &str) {
-    put(ERROR, line);
+    put(ERROR_STYLE, line);
 }
 
 /// One line on stderr that `--quiet` suppresses.
 pub(in crate::cli) fn note(line: &str) {
     if !is_quiet() {
-        put(NOTE, line);
+        put(NOTE_STYLE, line);
     }
 }
 

@@ -85,16 +85,16 @@ fn named(names: &[String], what: &str) -> String {
 
 const TABLES: &str = "Tables of events and states with 25 proved digits, made once in ball \
                       arithmetic; no engine knows them.";
-const MADE_AGAIN: &str = "the exact solver's run made again in 106 bits, twice as many as the \
+const REPLAYED_RUN: &str = "the exact solver's run made again in 106 bits, twice as many as the \
                           numbers that engines return";
 
 fn replayed(evidence: &ReportEvidence) -> String {
     match &evidence.replayed[..] {
         [] => String::new(),
         names if names.len() == evidence.cases.len() => {
-            format!("The truth is {MADE_AGAIN}: there are no tables of these cases.")
+            format!("The truth is {REPLAYED_RUN}: there are no tables of these cases.")
         }
-        names => format!("The truth of {} is {MADE_AGAIN}.", named(names, "case")),
+        names => format!("The truth of {} is {REPLAYED_RUN}.", named(names, "case")),
     }
 }
 

@@ -58,10 +58,10 @@ pub(in super::super) trait LibraryMethod {
     const ORDER: Option<u32>;
     const INSIDE: Inside;
     const CLASS: Class;
-    const MULTISTEP: bool = matches!(Self::CLASS, Class::Multistep);
+    const IS_MULTISTEP: bool = matches!(Self::CLASS, Class::Multistep);
     /// Backward differentiation continues with the solution whose error it estimates.
     const STEPPING: Stepping =
-        if Self::MULTISTEP { Stepping::PerStep { order: 5 } } else { Stepping::Adaptive };
+        if Self::IS_MULTISTEP { Stepping::PerStep { order: 5 } } else { Stepping::Adaptive };
 
     /// A fresh method for so many states; a first step of zero is chosen by the library.
     fn method<S: State<f64>>(
@@ -92,7 +92,7 @@ pub(in super::super) trait LibraryMethod {
 
     /// Linear systems solved in a run with a first step of ours.
     fn solves(evals: &Evals) -> usize {
-        if Self::MULTISTEP { evals.function.saturating_sub(1) } else { evals.solves }
+        if Self::IS_MULTISTEP { evals.function.saturating_sub(1) } else { evals.solves }
     }
 }
 

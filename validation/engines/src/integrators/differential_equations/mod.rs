@@ -103,7 +103,7 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
     }
 
     fn longest_step_on(&self, task: &Task) -> Option<f64> {
-        (!M::MULTISTEP).then(|| longest_of_period(task.system.period()))
+        (!M::IS_MULTISTEP).then(|| longest_of_period(task.system.period()))
     }
 
     fn takes(&self, task: &Task) -> Result<(), &'static str> {
@@ -132,7 +132,7 @@ fn run<M: LibraryMethod, E: Equations<State: State<f64>>>(
     let Integration { equations, span, times, .. } = *integration;
     let longest = M::longest_step(&times);
     // The library begins its multistep method, at order 1, with steps below rounding.
-    let first = if M::MULTISTEP { tolerance.sqrt() * times.shortest } else { 0.0 };
+    let first = if M::IS_MULTISTEP { tolerance.sqrt() * times.shortest } else { 0.0 };
     join(integration, &meter, |from, sampler| {
         let field = ModeField { equations, mode: from.mode, meter: &meter };
         let mut watch = StepWatch::<M, E>::new(field, from, (tolerance, span), sampler);

@@ -32,10 +32,10 @@ pub(in super::super) trait DiffsolMethod: Sync {
     /// tolerance.
     const ROLE: Role = Role::Rows;
     /// Whether the step may be shortened without loss: a multistep method would begin anew.
-    const ONE_STEP: bool;
+    const IS_ONE_STEP: bool;
     /// Linear systems solved for each estimate of a step's error, beside those of Newton's
     /// iterations.
-    const SOLVES_AN_ESTIMATE: usize = 0;
+    const SOLVES_PER_ESTIMATE: usize = 0;
 
     /// A solver from a state of its own that `begin` has written.
     fn solver<'a, E: DiffsolProblem + 'a>(
@@ -69,7 +69,7 @@ impl DiffsolMethod for Bdf {
     const STEPPING: Stepping = Stepping::PerStep { order: 5 };
     const ORDER: Option<u32> = None;
     const ROLE: Role = Role::Representative;
-    const ONE_STEP: bool = false;
+    const IS_ONE_STEP: bool = false;
 
     fn solver<'a, E: DiffsolProblem + 'a>(
         problem: &'a OdeSolverProblem<E>,
@@ -85,8 +85,8 @@ impl DiffsolMethod for TrBdf2 {
     const CLASS: Class = Class::Implicit;
     const STEPPING: Stepping = Stepping::PerStep { order: 2 };
     const ORDER: Option<u32> = Some(2);
-    const ONE_STEP: bool = true;
-    const SOLVES_AN_ESTIMATE: usize = 1;
+    const IS_ONE_STEP: bool = true;
+    const SOLVES_PER_ESTIMATE: usize = 1;
 
     fn solver<'a, E: DiffsolProblem + 'a>(
         problem: &'a OdeSolverProblem<E>,
@@ -103,8 +103,8 @@ impl DiffsolMethod for Esdirk34 {
     const CLASS: Class = Class::Implicit;
     const STEPPING: Stepping = Stepping::PerStep { order: 3 };
     const ORDER: Option<u32> = Some(3);
-    const ONE_STEP: bool = true;
-    const SOLVES_AN_ESTIMATE: usize = 1;
+    const IS_ONE_STEP: bool = true;
+    const SOLVES_PER_ESTIMATE: usize = 1;
 
     fn solver<'a, E: DiffsolProblem + 'a>(
         problem: &'a OdeSolverProblem<E>,
@@ -122,7 +122,7 @@ impl DiffsolMethod for Tsit45 {
     const STEPPING: Stepping = Stepping::Adaptive;
     const ORDER: Option<u32> = Some(5);
     const ROLE: Role = Role::Damping;
-    const ONE_STEP: bool = true;
+    const IS_ONE_STEP: bool = true;
 
     fn solver<'a, E: DiffsolProblem + 'a>(
         problem: &'a OdeSolverProblem<E>,

@@ -68,7 +68,7 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
     }
 
     fn longest_step_on(&self, task: &Task) -> Option<f64> {
-        M::ONE_STEP.then(|| longest_of_period(task.system.period()))
+        M::IS_ONE_STEP.then(|| longest_of_period(task.system.period()))
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {

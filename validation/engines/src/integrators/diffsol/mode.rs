@@ -57,7 +57,7 @@ impl<E: Equations> DiffsolRun<'_, E> {
             match reason {
                 OdeSolverStopReason::InternalTimestep => {
                     sampler.take(solver.state().t, state_at)?;
-                    if M::ONE_STEP && solver.state().h > self.longest {
+                    if M::IS_ONE_STEP && solver.state().h > self.longest {
                         *solver.state_mut().h = self.longest;
                     }
                 }
@@ -196,7 +196,7 @@ fn is_known<E: Equations>(
 /// estimate of a step's error, of which the library counts those that pass and those that fail.
 fn solves<M: DiffsolMethod>(statistics: &OdeSolverStatistics) -> usize {
     let estimates = statistics.number_of_steps + statistics.number_of_error_test_failures;
-    statistics.number_of_nonlinear_solver_iterations + M::SOLVES_AN_ESTIMATE * estimates
+    statistics.number_of_nonlinear_solver_iterations + M::SOLVES_PER_ESTIMATE * estimates
 }
 
 fn plain<S: Numbers>(u: &Vect) -> S {

@@ -46,7 +46,7 @@ pub static CONTROL: &dyn Engine =
 /// The numbers of events of which the walking solver drops one.
 pub const EVENTS_PER_DROPPED: [u64; 2] = [100, 1000];
 
-static WRONG: [WrongEngine; 10] = [
+static WRONG_ENGINES: [WrongEngine; 10] = [
     WrongEngine {
         engine: &ClosedFormStepper {
             name: "wrong-dropped-100",
@@ -108,7 +108,7 @@ static WRONG: [WrongEngine; 10] = [
 /// The wrong engines that have to exceed the exact solver's bounds.
 #[must_use]
 pub fn wrong() -> &'static [WrongEngine] {
-    &WRONG
+    &WRONG_ENGINES
 }
 
 /// The integrator of [`faulty`] without a fault: the control of its power test.
@@ -134,7 +134,7 @@ macro_rules! faulty_on_systems {
     };
 }
 
-static FAULTY: [WrongEngine; 19] = [
+static FAULTY_ENGINES: [WrongEngine; 19] = [
     faulty!(
         "dopri5-drops",
         IntegratorFault::Dropped(CASES_PER_FAULT),
@@ -238,7 +238,7 @@ static FAULTY: [WrongEngine; 19] = [
 /// [`CORRECT_ENGINE`].
 #[must_use]
 pub fn faulty() -> &'static [WrongEngine] {
-    &FAULTY
+    &FAULTY_ENGINES
 }
 
 /// The engine whose bounds [`faulty`] integrators are held to.
