@@ -43,7 +43,7 @@ impl FileError {
     #[must_use]
     pub fn lacks(file: &str, text: &str, table: &str, accepted: &str) -> Self {
         let line = last_line(text);
-        Self::of(&format!("{file}:{line}"), lacking(table, accepted))
+        Self::of(&format!("{file}:{line}"), missing_key(table, accepted))
     }
 
     /// The file cannot be read.
@@ -109,10 +109,10 @@ fn missing_table(message: &str) -> Option<String> {
         "horizon" => "[horizon] with periods or until",
         _ => return None,
     };
-    Some(lacking(key, accepted))
+    Some(missing_key(key, accepted))
 }
 
-fn lacking(table: &str, accepted: &str) -> String {
+fn missing_key(table: &str, accepted: &str) -> String {
     format!("[{table}] is missing: accepted after this line, the last, is {accepted}")
 }
 
@@ -190,22 +190,25 @@ impl Origins {
     pub fn explain(&self, error: &InputError) -> String {
         match error {
             InputError::OutOfRange { name, value, accepted } => {
-                format!("{} is not accepted: {accepted}", self.given(name, format!("{value:?}")))
+                format!(
+                    "{} is not accepted: {accepted}",
+                    self.place_and_value(name, format!("{value:?}"))
+                )
             }
             InputError::Penetrates { p, limit } => {
-                let given = self.given("p", format!("{p:?}"));
+                let given = self.place_and_value("p", format!("{p:?}"));
                 format!("{given} is not accepted: p <= q + g = {limit:?}")
             }
             InputError::FarFromPhase { phase, name, from, to } => format!(
                 "{} is not accepted: it would move {name} from {from:?} to {to:?}, by more than 1e-4",
-                self.given("phase", phase.to_string())
+                self.place_and_value("phase", phase.to_string())
             ),
             _ => error.to_string(),
         }
     }
 
     /// The flag or the place in a file, and the value.
-    fn given(&self, name: &str, value: String) -> String {
+    fn place_and_value(&self, name: &str, value: String) -> String {
         match self.0.get(name) {
             Some(Origin { place, typed }) => format!("{place} {typed}"),
             None => format!("{name} (by default) {value}"),

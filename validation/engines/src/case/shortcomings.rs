@@ -35,14 +35,14 @@ pub(super) fn read_shortcomings(file: &str, text: &str) -> Result<Vec<Shortcomin
             return Err(source.error(&why, "why is empty: a reason is accepted"));
         }
         for row in rows {
-            known.push(source.known(&engine, why.get_ref(), &row)?);
+            known.push(source.known_shortcoming(&engine, why.get_ref(), &row)?);
         }
     }
     Ok(known)
 }
 
 impl FileText<'_> {
-    fn known(
+    fn known_shortcoming(
         &self,
         engine: &str,
         why: &str,

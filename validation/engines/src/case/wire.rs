@@ -109,7 +109,7 @@ pub fn parse_problem(file: &str, text: &str) -> Result<Given, FileError> {
     source.given(file.parameters, file.start)
 }
 
-fn each<T, U, E>(list: Vec<T>, check: impl Fn(T) -> Result<U, E>) -> Result<Vec<U>, E> {
+fn check_each<T, U, E>(list: Vec<T>, check: impl Fn(T) -> Result<U, E>) -> Result<Vec<U>, E> {
     list.into_iter().map(check).collect()
 }
 
@@ -186,8 +186,8 @@ pub(super) fn parse_oscillator_case(file: &str, text: &str) -> Result<Case, File
         text: source.text.to_owned(),
         why: wire.case.why,
         oscillator: run.oscillator.map(own),
-        bounds: each(wire.bounds, |it| source.bound(it))?,
-        shortcomings: each(wire.shortcomings, |it| source.shortcoming(it))?,
+        bounds: check_each(wire.bounds, |it| source.bound(it))?,
+        shortcomings: check_each(wire.shortcomings, |it| source.shortcoming(it))?,
         ..run
     })
 }

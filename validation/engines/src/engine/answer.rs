@@ -93,7 +93,7 @@ mod tests {
         task
     }
 
-    fn whole(task: &Task) -> Outcome {
+    fn complete_outcome(task: &Task) -> Outcome {
         let outcome = answer(exact(), task, Accuracy::Exact, &Limits::default());
         outcome.unwrap_or_default()
     }
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn missing_and_surplus_samples_are_refused() {
         let task = task();
-        let mut outcome = whole(&task);
+        let mut outcome = complete_outcome(&task);
         assert_eq!(complete(&outcome, &task), Ok(()));
         outcome.samples.push(Values::of(&[0.0; 4]));
         let refused = |outcome: &Outcome| complete(outcome, &task).map_err(|it| it.reason);
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn events_out_of_order_or_without_a_time_are_refused() {
         let task = task();
-        let outcome = whole(&task);
+        let outcome = complete_outcome(&task);
         let late = outcome.events.last().map_or(0.0, |it| it.elapsed);
         for elapsed in [f64::NAN, f64::INFINITY, 0.5 * late] {
             let (mode, state) = (1, Values::of(&[0.0; 4]));
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn modes_and_states_that_the_system_lacks_are_refused() {
         let task = task();
-        let outcome = whole(&task);
+        let outcome = complete_outcome(&task);
         let mut mode = outcome.clone();
         mode.events[1].mode = 3;
         let short = Values::of(&[0.5; 3]);

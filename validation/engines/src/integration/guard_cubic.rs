@@ -60,16 +60,16 @@ impl GuardCubic {
     }
 
     /// What the guard may differ from the cubic.
-    fn room(&self, s: f64, share: f64) -> f64 {
+    fn allowance(&self, s: f64, share: f64) -> f64 {
         share * self.departure() * (s * (1.0 - s)).powi(2)
     }
 
     fn could_be_outside(&self, s: f64) -> bool {
-        self.at(s) + self.room(s, ALLOWANCE) >= 0.0
+        self.at(s) + self.allowance(s, ALLOWANCE) >= 0.0
     }
 
     fn could_be_inside(&self, s: f64) -> bool {
-        self.at(s) - self.room(s, ALLOWANCE) < 0.0
+        self.at(s) - self.allowance(s, ALLOWANCE) < 0.0
     }
 
     /// Whether the guard is surely negative all along.
@@ -83,7 +83,7 @@ impl GuardCubic {
         if highest + MAX_RISE * self.departure() < 0.0 {
             return false;
         }
-        let reaches = |s: f64| self.at(s) + self.room(s, WIDE_ALLOWANCE) >= 0.0;
+        let reaches = |s: f64| self.at(s) + self.allowance(s, WIDE_ALLOWANCE) >= 0.0;
         self.turn(1.0).is_some_and(reaches) || parts().any(reaches)
     }
 

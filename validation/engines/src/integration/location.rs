@@ -49,19 +49,19 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         state_at: &mut StateAt<'_, E::State>,
         counted: &mut Vec<CountedCrossing<E::State>>,
     ) -> Result<Option<GuardRise>, Failure> {
-        if let Some(told) = self.meter.told() {
-            return Self::told(told, right.t, state_at, counted);
+        if let Some(told) = self.meter.scripted_crossings() {
+            return Self::scripted_crossing(told, right.t, state_at, counted);
         }
         self.meter.stepped(right.t);
         let guards = self.equations.count(self.mode);
         if (0..guards).all(|guard| left.cubic_to(right, guard).stays_inside()) {
             return Ok(None);
         }
-        self.divided(left, right, MAX_DIVISIONS, state_at, counted)
+        self.crossing_in_divisions(left, right, MAX_DIVISIONS, state_at, counted)
     }
 
     /// What a run that was made before has found in this step.
-    fn told(
+    fn scripted_crossing(
         told: &ToldCrossings,
         end: f64,
         state_at: &mut StateAt<'_, E::State>,
@@ -78,7 +78,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
     }
 
     /// The first crossing between two looks, with looks between them where they may hide something.
-    fn divided(
+    fn crossing_in_divisions(
         &self,
         left: &GuardValues<E::Guards>,
         right: &GuardValues<E::Guards>,
@@ -88,13 +88,15 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
     ) -> Result<Option<GuardRise>, Failure> {
         let inside = |t: &f64| *t > left.t && *t < right.t;
         let division = self.division(left, right).filter(|t| divisions > 0 && inside(t));
-        let Some(t) = division else { return self.within(left, right, state_at, counted) };
+        let Some(t) = division else {
+            return self.crossing_between(left, right, state_at, counted);
+        };
         let middle = self.look_at(t, state_at)?;
-        let found = self.divided(left, &middle, divisions - 1, state_at, counted)?;
+        let found = self.crossing_in_divisions(left, &middle, divisions - 1, state_at, counted)?;
         if found.is_some() {
             return Ok(found);
         }
-        self.divided(&middle, right, divisions - 1, state_at, counted)
+        self.crossing_in_divisions(&middle, right, divisions - 1, state_at, counted)
     }
 
     /// Where to look between two looks that may hide a change of sign.
@@ -110,7 +112,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
     }
 
     /// The first crossing between two looks.
-    fn within(
+    fn crossing_between(
         &self,
         left: &GuardValues<E::Guards>,
         right: &GuardValues<E::Guards>,
@@ -159,7 +161,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
 
     /// The guards of a known state.
     pub(crate) fn look(&self, t: f64, state: &E::State) -> GuardValues<E::Guards> {
-        if self.meter.told().is_some() {
+        if self.meter.scripted_crossings().is_some() {
             return self.no_look(t);
         }
         let state = state.as_ref();
@@ -177,7 +179,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         t: f64,
         state_at: &mut StateAt<'_, E::State>,
     ) -> Result<GuardValues<E::Guards>, Failure> {
-        if self.meter.told().is_some() {
+        if self.meter.scripted_crossings().is_some() {
             return Ok(self.no_look(t));
         }
         Ok(self.look(t, &state_at(t)?))

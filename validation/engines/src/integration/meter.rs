@@ -47,7 +47,7 @@ impl Meter {
 
     /// The times of this run's events, if it is made without the harness's own part
     /// ([`super::script`]).
-    pub(crate) fn told(&self) -> Option<&ToldCrossings> {
+    pub(crate) fn scripted_crossings(&self) -> Option<&ToldCrossings> {
         self.told.as_ref()
     }
 

@@ -77,7 +77,7 @@ impl<'a, E: Equations> StepEnds<'a, E> {
         let mut state_at = |t: f64| match t {
             t if t <= left.0 => Ok(left.1),
             t if t >= right.0 => Ok(right.1),
-            t => known.computed(t).map_or_else(|| inside(&left, &right, t), Ok),
+            t => known.known_state(t).map_or_else(|| inside(&left, &right, t), Ok),
         };
         if known.any_moved() {
             for crossing in &mut sampler.counted[counted..] {
@@ -135,7 +135,7 @@ impl<S: Copy> KnownStates<S> {
     }
 
     /// The state at an instant, if it was computed for it.
-    fn computed(&self, t: f64) -> Option<S> {
+    fn known_state(&self, t: f64) -> Option<S> {
         self.looks.iter().find(|look| look.at.0 == t && !look.moved).map(|look| look.at.1)
     }
 

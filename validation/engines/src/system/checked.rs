@@ -179,13 +179,13 @@ impl CheckedSystem {
     }
 }
 
-fn wide(row: &Row) -> AugmentedRow {
+fn augmented_row(row: &Row) -> AugmentedRow {
     std::array::from_fn(|i| row.get(i).copied().unwrap_or_default())
 }
 
 fn motion(system: &System, mode: &Mode) -> ModeMatrix {
     let size = system.states.len();
-    let mut rows: Vec<AugmentedRow> = (0..size).map(|i| wide(&mode.rate(i))).collect();
+    let mut rows: Vec<AugmentedRow> = (0..size).map(|i| augmented_row(&mode.rate(i))).collect();
     let [mut cos, mut sin] = [AugmentedRow::default(); 2];
     cos[size + 1] = -system.omega;
     sin[size] = system.omega;
@@ -196,15 +196,18 @@ fn motion(system: &System, mode: &Mode) -> ModeMatrix {
 fn guards(mode: &Mode, motion: &ModeMatrix) -> Vec<Guard> {
     let chain = |row: &AugmentedRow| DerivativeRows::new(*row, motion);
     let until = mode.until.iter().enumerate();
-    let until =
-        until.map(|(event, it)| Guard { event, ends: true, chain: chain(&wide(&it.guard)) });
+    let until = until.map(|(event, it)| Guard {
+        event,
+        ends: true,
+        chain: chain(&augmented_row(&it.guard)),
+    });
     let watch = mode.watch.iter().enumerate().flat_map(|(k, it)| {
         let signs: &[f64] = match it.direction {
             Direction::Rising => &[1.0],
             Direction::Falling => &[-1.0],
             Direction::Both => &[1.0, -1.0],
         };
-        let row = wide(&it.guard);
+        let row = augmented_row(&it.guard);
         let event = mode.until.len() + k;
         let guard = move |sign: &f64| Guard {
             event,
@@ -227,11 +230,12 @@ fn passage(until: &Until, motions: &[ModeMatrix], guards: &[Vec<Guard>]) -> Mode
     let unit = |i: usize| -> AugmentedRow { std::array::from_fn(|j| f64::from(u8::from(i == j))) };
     let mut reset: Vec<AugmentedRow> = (0..size + 3).map(unit).collect();
     if let Some(rows) = &until.reset {
-        reset.iter_mut().zip(rows).for_each(|(line, row)| *line = wide(row));
+        reset.iter_mut().zip(rows).for_each(|(line, row)| *line = augmented_row(row));
     }
-    let guard = wide(&until.guard);
+    let guard = augmented_row(&until.guard);
     let successor = |(when, mode): &(Option<Row>, usize)| {
-        let when = when.as_ref().map(|row| DerivativeRows::new(wide(row), &motions[*mode]));
+        let when =
+            when.as_ref().map(|row| DerivativeRows::new(augmented_row(row), &motions[*mode]));
         let zeros_of = |chain: &DerivativeRows| chain.zeros_after(&guard, &reset, size);
         Successor {
             when_zeros: when.as_ref().map_or(0, zeros_of),

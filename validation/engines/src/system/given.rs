@@ -39,7 +39,7 @@ pub(super) fn mode(exact: &affine::Mode, states: usize) -> Mode {
         a: rows.iter().map(|row| row[..states].to_vec()).collect(),
         b: rows.iter().map(|row| [row[states], row[states + 1]]).collect(),
         c: rows.iter().map(|row| row[states + 2]).collect(),
-        until: exact.until.iter().map(|it| until(it, states)).collect(),
+        until: exact.until.iter().map(|it| until_in_f64(it, states)).collect(),
         watch: exact.watch.iter().map(|it| watch(it, states)).collect(),
     }
 }
@@ -54,7 +54,7 @@ fn row(exact: &[Rational], states: usize) -> Row {
     row
 }
 
-fn until(exact: &affine::Until, states: usize) -> Until {
+fn until_in_f64(exact: &affine::Until, states: usize) -> Until {
     let condition = |when: &Option<Vec<Rational>>| when.as_ref().map(|it| row(it, states));
     Until {
         name: exact.name.clone(),

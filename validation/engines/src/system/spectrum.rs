@@ -45,7 +45,7 @@ pub(super) fn spectrum(matrix: &[Vec<f64>]) -> Rates {
 mod tests {
     use super::*;
 
-    fn near(found: f64, expected: f64) -> bool {
+    fn is_near(found: f64, expected: f64) -> bool {
         (found - expected).abs() <= 0.01 * expected
     }
 
@@ -53,16 +53,16 @@ mod tests {
     fn an_oscillator_beside_a_fast_decay() {
         let matrix = vec![vec![0.0, 1.0, 0.0], vec![-4.0, -0.1, 0.0], vec![0.0, 0.0, -2.7e6]];
         let found = spectrum(&matrix);
-        assert!(near(found.fastest, 2.7e6) && near(found.decay, 2.7e6), "{found:?}");
+        assert!(is_near(found.fastest, 2.7e6) && is_near(found.decay, 2.7e6), "{found:?}");
         let slow = spectrum(&[vec![0.0, 1.0], vec![-4.0, -0.1]]);
-        assert!(near(slow.turning, 2.0) && near(slow.fastest, 2.0), "{slow:?}");
-        assert!(near(slow.decay, 0.05), "{slow:?}");
+        assert!(is_near(slow.turning, 2.0) && is_near(slow.fastest, 2.0), "{slow:?}");
+        assert!(is_near(slow.decay, 0.05), "{slow:?}");
     }
 
     #[test]
     fn a_triple_eigenvalue_does_not_turn() {
         let found = spectrum(&[vec![-1.0, 1.0, 0.0], vec![0.0, -1.0, 1.0], vec![0.0, 0.0, -1.0]]);
-        assert!(near(found.fastest, 1.0) && found.turning == 0.0, "{found:?}");
+        assert!(is_near(found.fastest, 1.0) && found.turning == 0.0, "{found:?}");
         assert_eq!(spectrum(&[vec![0.0, 1.0], vec![0.0, 0.0]]).turning, 0.0);
     }
 }

@@ -33,7 +33,7 @@ impl<'a> Quotients<'a> {
         let above = self.values(step)?;
         let (below, width) =
             if central { (self.values(-step)?, 2.0 * step) } else { (self.values(0.0)?, step) };
-        Some(combined(&[(1.0 / width, &above), (-1.0 / width, &below)]))
+        Some(weighted_sum(&[(1.0 / width, &above), (-1.0 / width, &below)]))
     }
 
     /// The step over which differences give what was answered, if there is one. `weigh` takes the
@@ -47,18 +47,21 @@ impl<'a> Quotients<'a> {
     ) -> Option<(f64, bool)> {
         let h = RELATIVE_STEP * self.size;
         let [above, at, below] = [self.values(h)?, self.values(0.0)?, self.values(-h)?];
-        let second =
-            combined(&[(1.0 / (h * h), &above), (-2.0 / (h * h), &at), (1.0 / (h * h), &below)]);
-        let central = combined(&[(0.5 / h, &above), (-0.5 / h, &below), (-1.0, truth)]);
+        let second = weighted_sum(&[
+            (1.0 / (h * h), &above),
+            (-2.0 / (h * h), &at),
+            (1.0 / (h * h), &below),
+        ]);
+        let central = weighted_sum(&[(0.5 / h, &above), (-0.5 / h, &below), (-1.0, truth)]);
         let of_one_side = 2.0 * share(error, &weigh(&second));
         let of_both = share(error, &weigh(&central)).max(0.0).sqrt() * h;
         [(of_one_side, false), (of_both, true)]
             .into_iter()
-            .find_map(|(step, central)| self.refined(step, central, truth, error, &weigh))
+            .find_map(|(step, central)| self.refined_step(step, central, truth, error, &weigh))
     }
 
     /// A step near this one whose differences leave a tenth of the error at most.
-    fn refined(
+    fn refined_step(
         &self,
         mut step: f64,
         central: bool,
@@ -71,7 +74,7 @@ impl<'a> Quotients<'a> {
                 return None;
             }
             let quotient = self.quotient(step, central)?;
-            let found = weigh(&combined(&[(1.0, &quotient), (-1.0, truth)]));
+            let found = weigh(&weighted_sum(&[(1.0, &quotient), (-1.0, truth)]));
             let rest: f64 = found.iter().zip(error).map(|(a, b)| (a - b) * (a - b)).sum();
             let all: f64 = error.iter().map(|it| it * it).sum();
             if rest <= 0.01 * all {
@@ -137,7 +140,7 @@ fn share(error: &Weighed, direction: &Weighed) -> f64 {
 }
 
 /// A sum of rows with factors.
-fn combined(terms: &[(f64, &Rows)]) -> Rows {
+fn weighted_sum(terms: &[(f64, &Rows)]) -> Rows {
     let Some((_, first)) = terms.first() else { return Vec::new() };
     let cell = |n: usize, k: usize| terms.iter().map(|(factor, rows)| factor * rows[n][k]).sum();
     (0..first.len()).map(|n| (0..first[n].len()).map(|k| cell(n, k)).collect()).collect()

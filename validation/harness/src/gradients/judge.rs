@@ -74,11 +74,14 @@ impl<'a> OneName<'a> {
 
     /// The cells that are judged at a tolerance, and which were answered.
     fn cells(&self, tolerance: f64, answer: &NameAnswer) -> Vec<(usize, usize)> {
-        self.told(tolerance).into_iter().filter(|(n, k)| answer.cell(*n, *k).is_some()).collect()
+        self.judged_cells(tolerance)
+            .into_iter()
+            .filter(|(n, k)| answer.cell(*n, *k).is_some())
+            .collect()
     }
 
     /// The cells in which a wrong term could be told at a tolerance.
-    fn told(&self, tolerance: f64) -> Vec<(usize, usize)> {
+    fn judged_cells(&self, tolerance: f64) -> Vec<(usize, usize)> {
         let units = self.reference.units(self.name);
         let is_told = |n: usize, k: usize| {
             ALLOWED_UNITS * tolerance * units[n][k] <= JUDGED_SHARE * self.sizes[k]
@@ -103,7 +106,7 @@ impl<'a> OneName<'a> {
         if (1..self.sizes.len()).any(|k| answer.cell(end, k).is_none()) {
             return (Verdict::Refused, None, "there is no answer at the end".to_owned());
         }
-        if self.told(tolerance).is_empty() {
+        if self.judged_cells(tolerance).is_empty() {
             let why = "at this tolerance no derivative of the case can be told from its error";
             return (Verdict::NoneAsked, None, why.to_owned());
         }
@@ -114,11 +117,11 @@ impl<'a> OneName<'a> {
         if worst.units <= ALLOWED_UNITS {
             return (Verdict::Right, None, self.why_right(worst, tolerance, cells.len()));
         }
-        self.wrong(at, answer, &cells, worst)
+        self.wrong_verdict(at, answer, &cells, worst)
     }
 
     fn why_right(&self, worst: Worst, tolerance: f64, cells: usize) -> String {
-        let told = self.told(tolerance).len();
+        let told = self.judged_cells(tolerance).len();
         let part = if cells < told {
             format!("; {cells} of {told} cells answered")
         } else {
@@ -128,7 +131,7 @@ impl<'a> OneName<'a> {
     }
 
     /// The verdict on an answer that is off.
-    fn wrong(
+    fn wrong_verdict(
         &self,
         at: usize,
         answer: &NameAnswer,
@@ -155,7 +158,7 @@ impl<'a> OneName<'a> {
                 format!("within {units:.2} units of derivatives with {mechanism}{also}; {off}");
             return (Verdict::MissingTerm, Some(*mechanism), why);
         }
-        if let Some(said) = self.coarse(answer, cells, &off) {
+        if let Some(said) = self.coarse_step_verdict(answer, cells, &off) {
             return said;
         }
         self.by_tolerances(cells, off)
@@ -230,7 +233,12 @@ impl<'a> OneName<'a> {
     }
 
     /// Whether an answer is a difference over a step that is too large.
-    fn coarse(&self, answer: &NameAnswer, cells: &[(usize, usize)], off: &str) -> Option<Said> {
+    fn coarse_step_verdict(
+        &self,
+        answer: &NameAnswer,
+        cells: &[(usize, usize)],
+        off: &str,
+    ) -> Option<Said> {
         let units = self.reference.units(self.name);
         let weigh = |rows: &Rows| cells.iter().map(|(n, k)| rows[*n][*k] / units[*n][*k]).collect();
         let error: Vec<f64> = cells

@@ -79,12 +79,12 @@ fn answers(
 ) -> Vec<Result<GradientAnswer, Failure>> {
     let is_exact = engine.declaration().stepping == Stepping::Exact;
     let asked_at = if is_exact { tolerances.len().min(1) } else { tolerances.len() };
-    let asked = tolerances[..asked_at].iter().map(|it| asked(reference, engine, *it));
+    let asked = tolerances[..asked_at].iter().map(|it| answer_at(reference, engine, *it));
     asked.collect::<Vec<_>>().into_iter().cycle().take(tolerances.len()).collect()
 }
 
 /// The answer of an engine at a tolerance, in the rows of the case's table.
-fn asked(
+fn answer_at(
     reference: &Reference,
     engine: &dyn Engine,
     tolerance: f64,

@@ -41,17 +41,17 @@ fn case(name: &str) -> Reference {
     Reference::new(case.unwrap()).unwrap()
 }
 
-fn judged(change: Change) -> Vec<Judged> {
+fn judge_changed(change: Change) -> Vec<Judged> {
     one(&case("ball-first-impacts"), &Changed(change), &TOLERANCES)
 }
 
 fn refused(change: Change) -> String {
-    let judged = judged(change);
+    let judged = judge_changed(change);
     assert!(judged.iter().all(|it| it.verdict == Verdict::Refused), "{judged:?}");
     judged[0].why.clone()
 }
 
-fn each(outcome: &mut Outcome, change: impl FnMut(&mut RunDerivatives)) {
+fn change_each(outcome: &mut Outcome, change: impl FnMut(&mut RunDerivatives)) {
     outcome.gradients.iter_mut().flatten().for_each(change);
 }
 
@@ -71,7 +71,7 @@ fn the_exact_solver_is_right_in_every_case() {
 /// Negated times beside right states are no rule's: they are wrong, and no term is named.
 #[test]
 fn what_no_rule_explains_is_wrong_without_a_term() {
-    let judged = judged(|outcome, task| {
+    let judged = judge_changed(|outcome, task| {
         let rates = task.gradients.as_deref().unwrap();
         let e = rates.iter().position(|it| it.name == "e").unwrap();
         let all = outcome.gradients[e].as_mut().unwrap();
@@ -90,8 +90,8 @@ fn what_no_rule_explains_is_wrong_without_a_term() {
 
 #[test]
 fn derivatives_with_the_other_sign_are_named() {
-    let judged = judged(|outcome, _| {
-        each(outcome, |it| {
+    let judged = judge_changed(|outcome, _| {
+        change_each(outcome, |it| {
             it.end.iter_mut().for_each(|it| *it = -*it);
             for event in &mut it.events {
                 event.time = event.time.map(|it| -it);
@@ -107,7 +107,7 @@ fn derivatives_with_the_other_sign_are_named() {
 
 #[test]
 fn derivatives_of_the_end_alone_are_judged_and_none_are_refused() {
-    let at_end = judged(|outcome, _| each(outcome, |it| it.events.clear()));
+    let at_end = judge_changed(|outcome, _| change_each(outcome, |it| it.events.clear()));
     assert!(at_end.iter().all(|it| it.verdict == Verdict::Right), "{at_end:?}");
     assert!(at_end.iter().all(|it| it.why.contains("cells answered")), "{at_end:?}");
     assert_eq!(refused(|outcome, _| outcome.gradients.clear()), "there is no answer by this name");
@@ -115,15 +115,15 @@ fn derivatives_of_the_end_alone_are_judged_and_none_are_refused() {
 
 #[test]
 fn what_no_answer_is_says_whose_it_is() {
-    let short = refused(|outcome, _| each(outcome, |it| it.events.truncate(1)));
+    let short = refused(|outcome, _| change_each(outcome, |it| it.events.truncate(1)));
     assert!(short.starts_with("the derivatives by g: they are of 1 events, and"), "{short}");
-    let nan = refused(|outcome, _| each(outcome, |it| it.end[0] = f64::NAN));
+    let nan = refused(|outcome, _| change_each(outcome, |it| it.end[0] = f64::NAN));
     assert_eq!(nan, "the derivatives by g: the end has NaN for a state");
     let names = refused(|outcome, _| outcome.gradients.truncate(1));
     assert_eq!(names, "gave derivatives by 1 names where 3 were asked for");
     let other = refused(|outcome, _| {
         outcome.events.truncate(1);
-        each(outcome, |it| it.events.truncate(1));
+        change_each(outcome, |it| it.events.truncate(1));
     });
     assert!(other.starts_with("the run has other events: it has 1, not"), "{other}");
 }
@@ -132,7 +132,7 @@ fn what_no_answer_is_says_whose_it_is() {
 #[test]
 fn an_exact_engine_is_asked_once() {
     static ASKED_RUNS: AtomicUsize = AtomicUsize::new(0);
-    let rows = judged(|_, _| {
+    let rows = judge_changed(|_, _| {
         ASKED_RUNS.fetch_add(1, Ordering::Relaxed);
     });
     let names = case("ball-first-impacts").case.by.len();

@@ -249,8 +249,9 @@ pub fn examine(
     defaults: &Defaults,
 ) -> Finding {
     let run = |cases: Vec<&PreparedCase>| {
-        let one =
-            |case: &&PreparedCase| (case.case.name.clone(), held(wrong, case, standard, defaults));
+        let one = |case: &&PreparedCase| {
+            (case.case.name.clone(), bounds_held_against(wrong, case, standard, defaults))
+        };
         Finding::of(wrong, standard, cases.par_iter().map(one).collect::<Vec<_>>())
     };
     let (own, others): (Vec<_>, Vec<_>) =
@@ -264,7 +265,7 @@ pub fn examine(
 }
 
 /// The bounds that a run of a wrong engine was held against; none without a result.
-fn held(
+fn bounds_held_against(
     wrong: &WrongEngine,
     case: &PreparedCase,
     standard: Standard,

@@ -99,7 +99,7 @@ pub fn loosened(
         let declaration = engine.declaration();
         let label = Accuracy::Tolerance(tolerance);
         let class = class_of(classes, &declaration, label)?;
-        let made = answered(case, engine, Accuracy::Tolerance(factor * tolerance))?;
+        let made = answer_within_budget(case, engine, Accuracy::Tolerance(factor * tolerance))?;
         let unit = declaration.stepping.unit(label);
         let found = case.judge_records(&made, class, unit)?;
         Some(found.is_wrong(&Allowance::of(class, unit)))
@@ -109,7 +109,7 @@ pub fn loosened(
 }
 
 /// An engine's answer to a case; none where it has none, or takes more calls than the suite allows.
-fn answered(
+fn answer_within_budget(
     case: &PreparedCase,
     engine: &'static dyn Engine,
     accuracy: Accuracy,
@@ -131,7 +131,7 @@ pub fn trial(
 ) -> Option<Trial> {
     let declaration = engine.declaration();
     let class = class_of(classes, &declaration, accuracy)?;
-    let right = answered(case, engine, accuracy)?;
+    let right = answer_within_budget(case, engine, accuracy)?;
     let unit = declaration.stepping.unit(accuracy);
     let allowance = Allowance::of(class, unit);
     let judge = |answer: &Outcome| case.judge_records(answer, class, unit);

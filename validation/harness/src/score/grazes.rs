@@ -223,7 +223,7 @@ impl ScannedSegment<'_> {
         let growth = scan.growth(guard.row, elapsed, &self.point(at)) * n.max(1) as f64;
         let makes = scan.makes(self.mode, guard);
         let crossed =
-            if margin < 0.0 { None } else { self.crossed(n, guard, makes, (at, maximum)) };
+            if margin < 0.0 { None } else { self.touch_crossings(n, guard, makes, (at, maximum)) };
         // What touches zero exactly crosses nothing.
         let touches = margin <= ZERO_TOLERANCE * size;
         let events = crossed.or_else(|| touches.then(Vec::new))?;
@@ -232,7 +232,7 @@ impl ScannedSegment<'_> {
     }
 
     /// The truth's events that a touch makes: the crossings just before and just after it.
-    fn crossed(
+    fn touch_crossings(
         &self,
         n: usize,
         guard: &ScannedGuard<'_>,
@@ -251,8 +251,8 @@ impl ScannedSegment<'_> {
             let returns = makes == 1 || (last.mode == self.mode && soon);
             return Some(if returns { (n..n + makes).collect() } else { vec![n] });
         };
-        let before = || self.watched(guard, at, (0..n).rev());
-        let after = || self.watched(guard, at, n..self.scan.truth.events.len());
+        let before = || self.watched_crossing(guard, at, (0..n).rev());
+        let after = || self.watched_crossing(guard, at, n..self.scan.truth.events.len());
         match direction {
             Direction::Both => Some(vec![before()?, after()?]),
             // Up and down again, or down and up: the one of the two that is counted.
@@ -263,7 +263,7 @@ impl ScannedSegment<'_> {
 
     /// The nearest of these events that is a watched guard's, if the guard goes one way from it to
     /// its extremum, or back, and nothing ends the mode between them.
-    fn watched(
+    fn watched_crossing(
         &self,
         guard: &ScannedGuard<'_>,
         at: f64,

@@ -10,7 +10,7 @@ struct Followed {
     told: (EventNames, ErrorRule),
 }
 
-fn followed(name: &str) -> Followed {
+fn follow(name: &str) -> Followed {
     let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == name);
     let Some(case) = case else { unreachable!("{name} is embedded") };
     let truth = Library::embedded().and_then(|library| library.truth(&case));
@@ -21,7 +21,7 @@ fn followed(name: &str) -> Followed {
 }
 
 fn of_case(name: &str) -> Vec<Graze> {
-    let Followed { problem, truth, told } = followed(name);
+    let Followed { problem, truth, told } = follow(name);
     grazes(&problem, &truth, (&told.0, &told.1))
 }
 
@@ -76,7 +76,7 @@ fn only_what_is_allowed_anyway_is_undecidable() {
 fn all_near_misses_of_a_segment_are_found() {
     const MAX_MARGIN: f64 = 1e-2;
     let between = |name: &str, event: usize| -> Vec<f64> {
-        let Followed { problem, truth, told } = followed(name);
+        let Followed { problem, truth, told } = follow(name);
         let begin = event.checked_sub(1).map_or(0.0, |n| truth.events[n].elapsed.value());
         let segment = begin..truth.events.get(event).unwrap_or(&truth.end).elapsed.value();
         let misses = grazes(&problem, &truth, (&told.0, &told.1)).into_iter();
@@ -100,7 +100,7 @@ fn all_near_misses_of_a_segment_are_found() {
 /// if it is a parabola: a phase that comes back within twice that again belongs to the graze.
 #[test]
 fn a_phase_that_comes_back_soon_belongs_to_the_graze() {
-    let Followed { problem, truth, told } = followed("graze-overlap-1e-3");
+    let Followed { problem, truth, told } = follow("graze-overlap-1e-3");
     let of = |truth: &Truth| grazes(&problem, truth, (&told.0, &told.1));
     let length = truth.events[0].elapsed.value();
     let Some(graze) = of(&truth).into_iter().find(|it| it.events.first() == Some(&0)) else {
@@ -120,7 +120,7 @@ fn a_phase_that_comes_back_soon_belongs_to_the_graze() {
 /// the signs of the values.
 #[test]
 fn the_growth_of_a_guard_counts_the_size_of_each_value() {
-    let Followed { problem, truth, told: (_, rule) } = followed("graze-overlap-1e-3");
+    let Followed { problem, truth, told: (_, rule) } = follow("graze-overlap-1e-3");
     let row = TruthRow { growth: vec![2.0, 3.0, 5.0, 7.0], ..truth.start };
     let system = problem.checked.system();
     let [flight, contact] = [0, 1].map(|mode| &system.modes[mode].until[0].guard);

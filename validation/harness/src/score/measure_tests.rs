@@ -94,7 +94,7 @@ impl Planted {
     }
 }
 
-fn near(found: f64, expected: f64) {
+fn assert_near(found: f64, expected: f64) {
     assert!((found - expected).abs() <= ROUNDING * expected.abs(), "{found:e} {expected:e}");
 }
 
@@ -103,8 +103,8 @@ fn a_perfect_answer_has_no_error() {
     let found = Planted::new().measures();
     assert!(found.whole && found.phase_sequence_ok && found.is_scored());
     assert_eq!((found.total, found.expected, found.matched), (3, 3, 3));
-    near(found.horizon_periods, 2.0);
-    near(found.valid_periods, 2.0);
+    assert_near(found.horizon_periods, 2.0);
+    assert_near(found.valid_periods, 2.0);
     assert_eq!((found.event_time.max, found.state.max, found.drift), (0.0, 0.0, 0.0));
     assert_eq!((found.event_constant, found.state_constant), (0.0, 0.0));
 }
@@ -115,10 +115,10 @@ fn an_events_time_counts_over_its_size_and_its_growth() {
     planted.outcome.events[1].elapsed += 1e-4;
     let found = planted.measures();
     let units = (planted.outcome.events[1].elapsed - 2.0) / (UNIT * 3.0 * 3.0);
-    near(found.event_constant, units);
-    near(found.event_time_units[1], units);
+    assert_near(found.event_constant, units);
+    assert_near(found.event_time_units[1], units);
     assert_eq!((found.event_time_units[0], found.event_time_units[2]), (0.0, 0.0));
-    near(found.event_time.max, planted.outcome.events[1].elapsed - 2.0);
+    assert_near(found.event_time.max, planted.outcome.events[1].elapsed - 2.0);
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn an_events_state_counts_over_its_size_and_its_growth() {
         let mut planted = Planted::new();
         planted.outcome.events[1].state[k] += 1e-4;
         let off = planted.outcome.events[1].state[k] - planted.truth.events[1].rounded()[k];
-        near(planted.measures().event_constant, off / (UNIT * growth * size));
+        assert_near(planted.measures().event_constant, off / (UNIT * growth * size));
     }
 }
 
@@ -139,9 +139,9 @@ fn a_samples_state_counts_over_its_size_and_its_growth() {
             planted.outcome.samples[n][k] -= 1e-4;
             let found = planted.measures();
             let off = (planted.outcome.samples[n][k] - planted.truth.samples[n].rounded()[k]).abs();
-            near(found.state_constant, off / (UNIT * growth * size));
+            assert_near(found.state_constant, off / (UNIT * growth * size));
             // The drift is a quantity of its own.
-            near(found.state.max, if k < 3 { off } else { 0.0 });
+            assert_near(found.state.max, if k < 3 { off } else { 0.0 });
         }
     }
 }
@@ -158,7 +158,7 @@ fn a_sample_between_an_event_and_its_partner_is_in_no_constant() {
         planted.outcome.samples[3][0] += 1.0;
         let found = planted.measures();
         assert_eq!(found.state_constant > 0.0, counts, "{before} {after}");
-        near(found.state.max, 1.0);
+        assert_near(found.state.max, 1.0);
     }
 }
 
@@ -202,7 +202,7 @@ fn a_run_is_valid_until_the_sample_before_the_first_that_is_off() {
     for (error, periods) in [(1.1e-3, 4.0 / 8.0), (0.9e-3, 2.0), (f64::NAN, 4.0 / 8.0)] {
         let mut planted = Planted::new();
         planted.outcome.samples[5][2] += error;
-        near(planted.measures().valid_periods, periods);
+        assert_near(planted.measures().valid_periods, periods);
     }
 }
 
@@ -218,7 +218,7 @@ fn what_is_beyond_the_scored_horizon_does_not_count() {
     planted.outcome.end[3] += 0.5;
     let found = planted.measures();
     assert!(!found.whole && found.is_scored());
-    near(found.horizon_periods, 7.0 / 8.0);
+    assert_near(found.horizon_periods, 7.0 / 8.0);
     assert_eq!((found.total, found.expected, found.matched), (3, 2, 2));
     assert_eq!((found.event_constant, found.state_constant, found.state.max), (0.0, 0.0, 0.0));
     assert!(found.drift.is_nan() && found.drift_by_times.is_nan());
@@ -249,10 +249,10 @@ fn drift_is_what_the_end_lacks_and_late_slips_explain() {
     planted.outcome.end[3] -= 1e-3;
     planted.outcome.events[1].elapsed += 1e-3;
     let found = planted.measures();
-    near(found.drift, 1.5 - planted.outcome.end[3]);
+    assert_near(found.drift, 1.5 - planted.outcome.end[3]);
     // The slip begins with y = 2 and q = 0.75: v' = 2 - 0.25/(2 xi).
     let late = planted.outcome.events[1].elapsed - 2.0;
-    near(found.drift_by_times, (late * (2.0 - 0.25 / 0.02)).abs());
+    assert_near(found.drift_by_times, (late * (2.0 - 0.25 / 0.02)).abs());
 }
 
 #[test]

@@ -61,7 +61,7 @@ fn truth(start: Phase, phases: &[Phase]) -> Truth {
     }
 }
 
-fn near(found: f64, expected: f64) {
+fn assert_near(found: f64, expected: f64) {
     assert!((found - expected).abs() <= 1e-6 * expected.abs(), "{found:e} {expected:e}");
 }
 
@@ -89,9 +89,9 @@ fn an_error_counts_over_its_size_and_growth() {
         let off = off(run.truth.end.state[k], outcome.end[k]);
         let found = test.error(run, &outcome, UNIT);
         let size = 1.0 + run.truth.end.rounded()[k].abs();
-        near(found.units, off / (UNIT * size * run.truth.end.growth[k]));
-        near(found.absolute, off);
-        near(found.drift_units, if k == 3 { found.units } else { 0.0 });
+        assert_near(found.units, off / (UNIT * size * run.truth.end.growth[k]));
+        assert_near(found.absolute, off);
+        assert_near(found.drift_units, if k == 3 { found.units } else { 0.0 });
         assert!(found.same_modes && found.time_units < 1e-3);
     }
 }
@@ -105,7 +105,7 @@ fn a_time_counts_where_the_phases_are_right() {
     let found = test.error(run, &outcome, UNIT);
     let row = &run.truth.events[1];
     let off = off(row.elapsed, outcome.events[1].elapsed);
-    near(found.time_units, off / (UNIT * (1.0 + row.elapsed.value()) * row.growth_time));
+    assert_near(found.time_units, off / (UNIT * (1.0 + row.elapsed.value()) * row.growth_time));
     outcome.events.truncate(1);
     let found = test.error(run, &outcome, UNIT);
     assert!(!found.same_modes && found.time_units.is_nan());

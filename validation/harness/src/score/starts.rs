@@ -43,7 +43,7 @@ pub fn far_apart(problem: &Problem, count: usize, periods: u64) -> Vec<Problem> 
                 None => return starts,
             }
         }
-        starts.extend(restarted(problem, &segment, &instant));
+        starts.extend(restart_problem(problem, &segment, &instant));
         if starts.len() == count {
             break;
         }
@@ -52,7 +52,11 @@ pub fn far_apart(problem: &Problem, count: usize, periods: u64) -> Vec<Problem> 
 }
 
 /// The state at an instant as a start; `None` if that is no start of the same phase.
-fn restarted(problem: &Problem, segment: &Segment, instant: &percuss::Instant) -> Option<Problem> {
+fn restart_problem(
+    problem: &Problem,
+    segment: &Segment,
+    instant: &percuss::Instant,
+) -> Option<Problem> {
     let model = problem.model;
     let state = segment.at_instant(instant).state;
     let tau = instant.angle() / model.parameters().omega;

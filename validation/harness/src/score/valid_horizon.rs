@@ -83,7 +83,7 @@ impl HorizonTest {
     /// Forcing periods that an engine with this unit of error has to run, all runs together.
     #[must_use]
     pub fn length(&self, unit: f64) -> u64 {
-        self.runs.iter().map(|run| u64::from(run.last(unit))).sum()
+        self.runs.iter().map(|run| u64::from(run.last_period(unit))).sum()
     }
 
     /// Scores an engine, given how it runs a task; `unit` is its unit of error: its tolerance, or
@@ -148,7 +148,7 @@ impl HorizonRun {
     }
 
     /// The period at which an engine's run ends.
-    fn last(&self, unit: f64) -> u32 {
+    fn last_period(&self, unit: f64) -> u32 {
         self.grows_to(ERROR_MARGIN_FACTOR * SCORED_ERROR / unit).min(self.trusted())
     }
 
@@ -164,10 +164,10 @@ impl HorizonRun {
         run: &impl Fn(&Task) -> Result<Outcome, Failure>,
     ) -> (ValidHorizon, bool) {
         let predicted = self.grows_to(SCORED_ERROR / unit);
-        let usual = self.last(unit);
-        let mut found = self.followed(rule, usual, run);
+        let usual = self.last_period(unit);
+        let mut found = self.horizon_of_run(rule, usual, run);
         if found.as_ref().is_ok_and(|valid| *valid == usual) && self.trusted() > usual {
-            found = self.followed(rule, self.trusted(), run);
+            found = self.horizon_of_run(rule, self.trusted(), run);
         }
         let outlasts = found.as_ref().is_ok_and(|valid| *valid == self.trusted());
         let valid = found.as_ref().map_or(0, |valid| *valid);
@@ -175,7 +175,7 @@ impl HorizonRun {
     }
 
     /// The valid horizon of a run of the given number of periods.
-    fn followed(
+    fn horizon_of_run(
         &self,
         rule: &ErrorRule,
         periods: u32,
@@ -186,10 +186,10 @@ impl HorizonRun {
         let events_before = self.events_before;
         let own = OscillatorTask { grid, events_before, ..task(self.problem, horizon) };
         let outcome = run(&Task::of_oscillator(&own)?)?;
-        Ok(self.valid(rule, &outcome, periods))
+        Ok(self.valid_periods(rule, &outcome, periods))
     }
 
-    fn valid(&self, rule: &ErrorRule, outcome: &Outcome, last: u32) -> u32 {
+    fn valid_periods(&self, rule: &ErrorRule, outcome: &Outcome, last: u32) -> u32 {
         let pairs = self.truth.samples.iter().zip(&outcome.samples).take(last as usize + 1);
         // Written so that a NaN is off.
         let within = pairs.take_while(|(row, found)| rule.state_error(row, found) <= SCORED_ERROR);

@@ -50,13 +50,13 @@ fn a_size_is_reached_after_the_last_period_within_it() {
 fn a_run_is_valid_until_the_period_before_the_first_that_is_off() {
     let (run, rule) = run();
     for k in 0..3 {
-        assert_eq!(run.valid(&rule, &answer(&run, 5, k, 1.01e-3), PERIODS), 4);
-        assert_eq!(run.valid(&rule, &answer(&run, 5, k, 0.99e-3), PERIODS), PERIODS);
+        assert_eq!(run.valid_periods(&rule, &answer(&run, 5, k, 1.01e-3), PERIODS), 4);
+        assert_eq!(run.valid_periods(&rule, &answer(&run, 5, k, 0.99e-3), PERIODS), PERIODS);
     }
-    assert_eq!(run.valid(&rule, &answer(&run, 5, 0, f64::NAN), PERIODS), 4);
+    assert_eq!(run.valid_periods(&rule, &answer(&run, 5, 0, f64::NAN), PERIODS), 4);
     // The drift is no part of the state, and nothing after the last period counts.
-    assert_eq!(run.valid(&rule, &answer(&run, 5, 3, 1.0), PERIODS), PERIODS);
-    assert_eq!(run.valid(&rule, &answer(&run, 9, 0, 1.0), 7), 7);
+    assert_eq!(run.valid_periods(&rule, &answer(&run, 5, 3, 1.0), PERIODS), PERIODS);
+    assert_eq!(run.valid_periods(&rule, &answer(&run, 9, 0, 1.0), 7), 7);
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn a_run_that_is_still_right_is_made_again_for_as_long_as_the_truth_lasts() {
     // A unit of 1e-9 grows to 1e-3 in two periods, to a thousand times that in three; the truth's
     // own error, of 1e-32 or so, to 1e-5 in eight.
     let (unit, trusted) = (1e-9, run.trusted());
-    assert_eq!((run.grows_to(SCORED_ERROR / unit), run.last(unit)), (2, 3));
+    assert_eq!((run.grows_to(SCORED_ERROR / unit), run.last_period(unit)), (2, 3));
     assert_eq!(trusted, 8);
     let asked = std::sync::Mutex::new(Vec::new());
     let make = |wrong_from: usize| {

@@ -89,8 +89,11 @@ pub struct Expected<'a> {
 pub fn judge(subject: &Subject<'_>, run: &ScoredRun<'_>, expected: &Expected<'_>) -> RowJudgement {
     // The local judgement leaves grazes open by itself.
     let is_local = run.measures.local.is_some();
-    let excused =
-        if is_local { Excused::default() } else { excused(subject, run, expected.of_every_case) };
+    let excused = if is_local {
+        Excused::default()
+    } else {
+        undecided_grazes(subject, run, expected.of_every_case)
+    };
     let mut checked = check(subject, run, &excused, expected.bounds);
     // A probe that the suite does not ask for can show no shortcoming.
     let of = |it: &&&Shortcoming| {
@@ -183,7 +186,11 @@ fn little_scored(measures: &Measures) -> String {
 }
 
 /// The grazes that the bound on an exact engine's errors leaves undecided.
-fn excused(subject: &Subject<'_>, run: &ScoredRun<'_>, of_every_case: &[Bound]) -> Excused {
+fn undecided_grazes(
+    subject: &Subject<'_>,
+    run: &ScoredRun<'_>,
+    of_every_case: &[Bound],
+) -> Excused {
     let constant = of_every_case.iter().find(|it| {
         it.quantity == Quantity::EventConstant
             && it.statistic == Statistic::Max

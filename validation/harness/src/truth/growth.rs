@@ -85,12 +85,12 @@ impl GrowthMatrices {
                 |row: &&mut TruthRow| end.is_none_or(|end| row.elapsed.minus(end).value() < 0.0);
             for row in later.iter_mut().take_while(inside) {
                 let (flow, _) = self.flow(&begin, row.elapsed.minus(begin.elapsed).value());
-                row.growth = self.largest(&(flow * &grown.state));
+                row.growth = self.largest_growth(&(flow * &grown.state));
                 sampled += 1;
             }
             let Some(row) = truth.events.get_mut(n) else {
                 let (flow, _) = self.flow(&begin, truth.end.elapsed.minus(begin.elapsed).value());
-                truth.end.growth = self.largest(&(flow * &grown.state));
+                truth.end.growth = self.largest_growth(&(flow * &grown.state));
                 break;
             };
             self.pass(&mut grown, &begin, row);
@@ -191,12 +191,12 @@ impl GrowthMatrices {
         let after = &self.modes[row.mode] * (&reset * &before);
         // Those that begin just before this event join the others.
         let (width, count) = (self.width(), grown.state.ncols());
-        let state = beside(&(flow * &grown.state), &self.source());
+        let state = joined_columns(&(flow * &grown.state), &self.source());
         let lifted = self.lift(&before) * &state;
         grown.time = if rate.abs() > RATE_TOLERANCE * summed {
             -(guard * &lifted) / rate
         } else {
-            beside(&grown.time, &RowDVector::zeros(width))
+            joined_columns(&grown.time, &RowDVector::zeros(width))
         };
         debug_assert_eq!(grown.time.ncols(), count + width);
         let changed = reset * (lifted + velocity * &grown.time);
@@ -205,7 +205,7 @@ impl GrowthMatrices {
         let times = sources
             .map(|from| self.norm(grown.time.columns(from, width).iter(), self.unit_of_time));
         row.growth_time = times.fold(1.0, f64::max);
-        row.growth = self.largest(&self.with_theta(&changed, &state));
+        row.growth = self.largest_growth(&self.with_theta(&changed, &state));
         grown.state = self.with_theta(&later, &state);
     }
 
@@ -215,7 +215,7 @@ impl GrowthMatrices {
     }
 
     /// The largest growth of each state.
-    fn largest(&self, derivatives: &DMatrix<f64>) -> Vec<f64> {
+    fn largest_growth(&self, derivatives: &DMatrix<f64>) -> Vec<f64> {
         let width = self.width();
         let of_state = |i: usize| {
             let sources = (0..derivatives.ncols()).step_by(width);
@@ -234,7 +234,7 @@ fn matrix(rows: &[Row]) -> DMatrix<f64> {
 }
 
 /// The columns of the one, then those of the other.
-fn beside<R: nalgebra::Dim>(
+fn joined_columns<R: nalgebra::Dim>(
     one: &nalgebra::OMatrix<f64, R, nalgebra::Dyn>,
     other: &nalgebra::OMatrix<f64, R, nalgebra::Dyn>,
 ) -> nalgebra::OMatrix<f64, R, nalgebra::Dyn>

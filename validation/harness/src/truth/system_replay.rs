@@ -85,7 +85,7 @@ impl Truth {
 impl SystemReplay<'_> {
     /// The start, the events and the ending of a run to just past the horizon.
     fn events(&self, start: &StartPoint) -> Result<Vec<Event<DoubleDouble>>, String> {
-        let past = if self.case.backward { -self.nearest() } else { self.nearest() };
+        let past = if self.case.backward { -self.least_distance() } else { self.least_distance() };
         let run = self.solver.run_enclosed(start, DoubleDouble::exact(self.case.until + past));
         let mut run = run.map_err(|it| it.to_string())?;
         let mut events = vec![run.start()];
@@ -115,14 +115,14 @@ impl SystemReplay<'_> {
 
     /// The least distance of an event from the horizon and from instants at which the state is
     /// tabulated.
-    fn nearest(&self) -> f64 {
+    fn least_distance(&self) -> f64 {
         MIN_DISTANCE * self.case.system.time_scale
     }
 
     /// Refuses a horizon, and samples, beside an event: which of the two comes first is a matter of
     /// rounding there. The start has the state after its own events.
     fn refuse_close_instants(&self, events: &[Event<DoubleDouble>]) -> Result<(), String> {
-        let (span, nearest) = (self.case.span(), self.nearest());
+        let (span, nearest) = (self.case.span(), self.least_distance());
         let is_event = |it: &&Event<DoubleDouble>| {
             !matches!(it.what, What::Start | What::Limit(..) | What::End(_))
         };

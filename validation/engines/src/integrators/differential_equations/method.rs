@@ -73,7 +73,7 @@ pub(in super::super) trait LibraryMethod {
 
     /// The state at `t` by the method again from a point before it. Only methods that need it have
     /// it, because each is compiled for each system.
-    fn again<E: Equations<State: State<f64>>>(
+    fn recomputed_state<E: Equations<State: State<f64>>>(
         _field: &ModeField<'_, E>,
         _tolerance: f64,
         _from: CubicEnd<E::State>,
@@ -99,13 +99,13 @@ pub(in super::super) trait LibraryMethod {
 /// The source of states inside a step, for methods with a function of their own.
 macro_rules! inside {
     (Again) => {
-        fn again<E: Equations<State: State<f64>>>(
+        fn recomputed_state<E: Equations<State: State<f64>>>(
             field: &ModeField<'_, E>,
             tolerance: f64,
             from: CubicEnd<E::State>,
             t: f64,
         ) -> Result<E::State, Failure> {
-            again::<Self, E>(field, tolerance, from, t)
+            recomputed_state::<Self, E>(field, tolerance, from, t)
         }
     };
     ($other:ident) => {};
@@ -170,7 +170,7 @@ methods! {
 }
 
 /// The state at `t` by the method again from a point before it, in one step if that will do.
-fn again<M: LibraryMethod, E: Equations<State: State<f64>>>(
+fn recomputed_state<M: LibraryMethod, E: Equations<State: State<f64>>>(
     field: &ModeField<'_, E>,
     tolerance: f64,
     from: CubicEnd<E::State>,

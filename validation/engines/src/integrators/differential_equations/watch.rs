@@ -73,7 +73,7 @@ impl<M: LibraryMethod, E: Equations<State: State<f64>>> Solout<f64, E::State>
         let mut cubic: Option<Cubic<E::State>> = None;
         let mut state_at = |t: f64| match M::INSIDE {
             Inside::Interpolant => interpolator.interpolate(t).map_err(|error| reason(&error)),
-            Inside::Again => M::again(&field, tolerance, (begin, *before), t),
+            Inside::Again => M::recomputed_state(&field, tolerance, (begin, *before), t),
             Inside::Cubic => Ok(cubic
                 .get_or_insert_with(|| {
                     Cubic::between([(begin, *before), (end, *state)], |(t, state), rates| {

@@ -60,7 +60,7 @@ fn run(task: &OscillatorTask, limits: &Limits) -> Result<Outcome, Failure> {
     let mut elapsed = TwoWord::ZERO;
     let mut before = task.phase;
     loop {
-        let (duration, phase, state) = match passed(task, &mut run, &mut outcome.samples) {
+        let (duration, phase, state) = match sampled_phase(task, &mut run, &mut outcome.samples) {
             Some(PassedPhase::Switch { duration, phase, state }) => (duration, phase, state),
             Some(PassedPhase::Last(segment)) => {
                 if segment.is_undecided_at(&task.horizon) {
@@ -107,7 +107,7 @@ impl PassedPhase {
 }
 
 /// The run's next phase, sampled as long as samples are asked for.
-fn passed(
+fn sampled_phase(
     task: &OscillatorTask,
     run: &mut Trajectory,
     samples: &mut Vec<Values>,

@@ -163,12 +163,17 @@ where
         }
         let search = GuardSearch::new(self.integration.equations, from, self.meter);
         locate_at_step_ends(search, from, true, points, sampler, |left, _, t| {
-            self.again(from.mode, left, t)
+            self.recomputed_state(from.mode, left, t)
         })
     }
 
     /// The state at `t` by another integration from a point before it, in one step if that will do.
-    fn again(&self, mode: usize, left: &CubicEnd<E::State>, t: f64) -> Result<E::State, Failure> {
+    fn recomputed_state(
+        &self,
+        mode: usize,
+        left: &CubicEnd<E::State>,
+        t: f64,
+    ) -> Result<E::State, Failure> {
         let (begin, state) = *left;
         let length = t - begin;
         if length <= MIN_PIECE_SHARE * self.longest {

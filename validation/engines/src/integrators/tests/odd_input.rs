@@ -22,7 +22,7 @@ fn task() -> Option<OscillatorTask> {
 }
 
 /// A usual choice for an engine.
-fn usual(engine: &dyn Engine) -> Accuracy {
+fn usual_accuracy(engine: &dyn Engine) -> Accuracy {
     match engine.declaration().stepping {
         Stepping::Exact => Accuracy::Exact,
         Stepping::Fixed { .. } => Accuracy::Step(0.25),
@@ -32,7 +32,7 @@ fn usual(engine: &dyn Engine) -> Accuracy {
 
 /// Runs every integrator on a task that was made odd after it had been checked; the exact solver
 /// has its own checks of input.
-fn each(
+fn run_each(
     mut odd: impl FnMut(&mut OscillatorTask),
     accuracy: Option<Accuracy>,
 ) -> Vec<(String, bool)> {
@@ -41,7 +41,7 @@ fn each(
     let outcomes = integrators.filter_map(|engine| {
         let mut task = Task::of_oscillator(&task()?).ok()?;
         odd(Arc::make_mut(task.oscillator.as_mut()?));
-        let accuracy = accuracy.unwrap_or_else(|| usual(*engine));
+        let accuracy = accuracy.unwrap_or_else(|| usual_accuracy(*engine));
         let outcome = contain(|| engine.run(&task, accuracy, &LIMITS));
         Some((engine.declaration().name.to_owned(), outcome.is_ok()))
     });
@@ -54,20 +54,20 @@ fn none_succeeds(outcomes: &[(String, bool)]) -> bool {
 
 #[test]
 fn usual_input_succeeds() {
-    let outcomes = each(|_| {}, None);
+    let outcomes = run_each(|_| {}, None);
     assert!(outcomes.len() >= 17 && outcomes.iter().all(|(_, ok)| *ok), "{outcomes:?}");
 }
 
 #[test]
 fn a_forcing_that_is_nan_fails() {
-    let outcomes = each(|task| task.forcing_angle = f64::NAN, None);
+    let outcomes = run_each(|task| task.forcing_angle = f64::NAN, None);
     assert!(none_succeeds(&outcomes), "{outcomes:?}");
 }
 
 #[test]
 fn a_state_that_is_not_finite_fails() {
     for odd in [f64::NAN, f64::INFINITY] {
-        let outcomes = each(|task| task.state[1] = odd, None);
+        let outcomes = run_each(|task| task.state[1] = odd, None);
         assert!(none_succeeds(&outcomes), "{odd} {outcomes:?}");
     }
 }
@@ -75,17 +75,17 @@ fn a_state_that_is_not_finite_fails() {
 #[test]
 fn accuracies_that_cannot_be_met_come_back() {
     for odd in [0.0, f64::NAN, -1.0] {
-        assert!(none_succeeds(&each(|_| {}, Some(Accuracy::Tolerance(odd)))));
-        assert!(none_succeeds(&each(|_| {}, Some(Accuracy::Step(odd)))));
+        assert!(none_succeeds(&run_each(|_| {}, Some(Accuracy::Tolerance(odd)))));
+        assert!(none_succeeds(&run_each(|_| {}, Some(Accuracy::Step(odd)))));
     }
     // Below rounding: any answer will do, but one there has to be.
-    each(|_| {}, Some(Accuracy::Tolerance(1e-300)));
-    each(|_| {}, Some(Accuracy::Step(1e-300)));
+    run_each(|_| {}, Some(Accuracy::Tolerance(1e-300)));
+    run_each(|_| {}, Some(Accuracy::Step(1e-300)));
 }
 
 #[test]
 fn relaxation_too_fast_for_a_method_comes_back() {
-    each(
+    run_each(
         |task| {
             task.parameters.xi = 1e-8;
             task.state = [-1.0, 0.0, 0.5, 0.0];

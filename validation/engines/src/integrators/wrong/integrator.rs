@@ -148,7 +148,7 @@ impl FaultyDetection {
             IntegratorFault::AtStepEnd => {
                 sound.map(|it| GuardRise { t: end_of_step(&stretch.ends, it.t), ..it })
             }
-            IntegratorFault::Late => sound.map(|it| self.late(stretch, it)),
+            IntegratorFault::Late => sound.map(|it| self.delayed_crossing(stretch, it)),
             _ => sound,
         };
         if found.is_some() {
@@ -164,7 +164,7 @@ impl FaultyDetection {
         self.overlooking
     }
 
-    fn late(&self, stretch: &OscillatorStretch, crossing: GuardRise) -> GuardRise {
+    fn delayed_crossing(&self, stretch: &OscillatorStretch, crossing: GuardRise) -> GuardRise {
         let t = (crossing.t + DELAY_TOLERANCES * self.tolerance).min(stretch.last());
         GuardRise { t, ..crossing }
     }

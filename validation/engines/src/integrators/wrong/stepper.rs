@@ -87,7 +87,7 @@ impl StepperRun<'_> {
         let end;
         let (mut t, mut phase, mut state) = (0.0, self.task.phase, self.task.state);
         loop {
-            let closed = self.closed(phase, t, state);
+            let closed = self.closed_form(phase, t, state);
             let found = self.first(&closed, phase, t)?;
             let until = found.map_or(self.task.span, |(at, _)| at);
             sampler.take(until, |time| Ok::<_, Failure>(closed.at(time - t)))?;
@@ -112,7 +112,7 @@ impl StepperRun<'_> {
         Ok(outcome)
     }
 
-    fn closed(&self, phase: Phase, t: f64, state: [f64; 4]) -> Closed {
+    fn closed_form(&self, phase: Phase, t: f64, state: [f64; 4]) -> Closed {
         let angle = self.task.forcing_angle + self.task.parameters.omega * t;
         let printed = self.fault == StepperFault::Arctangent;
         Closed::new(&self.task.parameters, phase, state, angle, printed)

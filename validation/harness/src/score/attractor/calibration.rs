@@ -57,8 +57,9 @@ pub fn calibrate(
     let nulls: Result<Vec<Null>, Failure> = (0..runs).into_par_iter().map(null).collect();
     let nulls = nulls?;
     let scales = STATISTICS.map(|name| DistanceScale::of(name, &plan, &nulls));
-    let all =
-        nulls.iter().flat_map(|null| scales.iter().map(|it| (it.standardized(null), it.name)));
+    let all = nulls
+        .iter()
+        .flat_map(|null| scales.iter().map(|it| (it.deviations_above_mean(null), it.name)));
     let farthest = all.fold((0.0, ""), |most, it| if it.0 > most.0 { it } else { most });
     let limits = scales.iter().map(|scale| (scale.name.to_owned(), scale.limit(farthest.0)));
     let calibrated = Calibrated { case: name.to_owned(), plan, limits: limits.collect() };
@@ -107,7 +108,7 @@ impl DistanceScale {
     }
 
     /// The number of standard deviations by which a run is above the mean; zero below the floor.
-    fn standardized(&self, null: &Null) -> f64 {
+    fn deviations_above_mean(&self, null: &Null) -> f64 {
         if null.distances[self.name] <= self.floor {
             return 0.0;
         }
@@ -176,7 +177,7 @@ mod tests {
         for z in [-1.5, 0.5, 4.0_f64] {
             let value = (2.0 + z).exp();
             let null = &nulls("wasserstein_p", &[value], false)[0];
-            approx::assert_relative_eq!(scale.standardized(null), z, max_relative = 1e-12);
+            approx::assert_relative_eq!(scale.deviations_above_mean(null), z, max_relative = 1e-12);
             approx::assert_relative_eq!(scale.limit(z), value, max_relative = 1e-12);
         }
         for sign in [1.0, -1.0] {
@@ -185,7 +186,11 @@ mod tests {
             for z in [0.5, 3.0] {
                 let value = 0.2 + 0.1 * z;
                 let null = &nulls("drift", &[sign * value], true)[0];
-                approx::assert_relative_eq!(scale.standardized(null), z, max_relative = 1e-12);
+                approx::assert_relative_eq!(
+                    scale.deviations_above_mean(null),
+                    z,
+                    max_relative = 1e-12
+                );
                 approx::assert_relative_eq!(scale.limit(z), value, max_relative = 1e-12);
             }
         }
@@ -197,7 +202,7 @@ mod tests {
         let coarse = ComparisonPlan { periods: 100, ..PLAN };
         let scale = DistanceScale::of("ks_p", &coarse, &nulls("ks_p", &values, false));
         assert_eq!(scale.floor, MIN_SHARE_PERIODS / 100.0);
-        assert_eq!(scale.standardized(&nulls("ks_p", &[scale.floor], false)[0]), 0.0);
+        assert_eq!(scale.deviations_above_mean(&nulls("ks_p", &[scale.floor], false)[0]), 0.0);
         assert_eq!(scale.limit(0.0), scale.floor);
     }
 }

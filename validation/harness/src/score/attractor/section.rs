@@ -65,7 +65,7 @@ impl RunSection {
         let drift = (states[states.len() - 1][3] - states[0][3]) / periods;
         let period = task.problem.model.period();
         let phase_sequences = phase_sequences(&outcome.events, period, transient, points.len() - 1);
-        let (lyapunov, map_errors) = mapped(truth, &points);
+        let (lyapunov, map_errors) = exponent_and_map_errors(truth, &points);
         let sorted = series(&points).map(|mut values| {
             values.sort_by(f64::total_cmp);
             values
@@ -114,7 +114,7 @@ fn phase_sequences(
 
 /// The largest exponent per period, by the exact strobe map's derivative point by point along the
 /// section, and how far each point is from the map's image of the one before.
-fn mapped(truth: &Problem, points: &[[f64; 3]]) -> (f64, Vec<f64>) {
+fn exponent_and_map_errors(truth: &Problem, points: &[[f64; 3]]) -> (f64, Vec<f64>) {
     let mut direction = [0.6, 0.48, 0.64];
     let (mut sum, mut counted) = (0.0, 0_u32);
     let mut errors = Vec::with_capacity(points.len());
@@ -124,7 +124,7 @@ fn mapped(truth: &Problem, points: &[[f64; 3]]) -> (f64, Vec<f64>) {
         let passage = map.entry([p.min(q + g), y, q]).map(|entry| map.passage(&entry, 1));
         if let Some(next) = points.get(k + 1) {
             let image = passage.as_ref().map(Passage::point);
-            errors.push(image.map_or(f64::INFINITY, |image| apart(next, &image)));
+            errors.push(image.map_or(f64::INFINITY, |image| relative_distance(next, &image)));
         }
         let Ok(passage) = passage else { continue };
         let image = apply(&passage.jacobian(), &direction);
@@ -139,7 +139,7 @@ fn mapped(truth: &Problem, points: &[[f64; 3]]) -> (f64, Vec<f64>) {
 }
 
 /// The largest difference of two points' co-ordinates, each divided by 1 + |value|.
-fn apart(found: &[f64; 3], image: &[f64; 3]) -> f64 {
+fn relative_distance(found: &[f64; 3], image: &[f64; 3]) -> f64 {
     let differences = found.iter().zip(image).map(|(a, b)| (a - b).abs() / (1.0 + b.abs()));
     differences.fold(0.0, f64::max)
 }
@@ -179,9 +179,9 @@ mod tests {
 
     #[test]
     fn differences_count_against_one_and_the_size_of_the_image() {
-        assert_eq!(apart(&[0.5, 0.0, 0.0], &[0.0, 0.0, 0.0]), 0.5);
-        assert_eq!(apart(&[0.0, -4.0, 0.0], &[0.0, -3.0, 0.0]), 0.25);
-        assert_eq!(apart(&[1.0, 1.0, 9.0], &[1.0, 1.0, 4.0]), 1.0);
+        assert_eq!(relative_distance(&[0.5, 0.0, 0.0], &[0.0, 0.0, 0.0]), 0.5);
+        assert_eq!(relative_distance(&[0.0, -4.0, 0.0], &[0.0, -3.0, 0.0]), 0.25);
+        assert_eq!(relative_distance(&[1.0, 1.0, 9.0], &[1.0, 1.0, 4.0]), 1.0);
     }
 
     /// Over a thousand decay times of the contact all that an impact has left of an error dies out
@@ -195,10 +195,10 @@ mod tests {
             unreachable!("the parameters are in range")
         };
         let (falling, resting) = ([-0.1, 0.0, 0.0], [0.5 + parameters.g, 0.0, 0.5]);
-        let (lyapunov, errors) = mapped(&problem, &[falling, resting]);
+        let (lyapunov, errors) = exponent_and_map_errors(&problem, &[falling, resting]);
         // From the direction that the first period has not turned: 0.6 - 0.64.
         assert!((lyapunov - 0.04_f64.ln()).abs() <= 1e-14, "{lyapunov}");
         assert_eq!(errors.len(), 1);
-        assert!(mapped(&problem, &[falling]).0.is_nan());
+        assert!(exponent_and_map_errors(&problem, &[falling]).0.is_nan());
     }
 }

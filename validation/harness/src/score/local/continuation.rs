@@ -122,11 +122,11 @@ pub(super) fn continuation<T: Number>(
         let Some(event) = follower.next() else { break };
         let Some(own) = exact(follower, &event, until, std::mem::take(&mut at_once)) else {
             let What::End(ending) = event.what else { continue };
-            found = ended(ending);
+            found = ending_found(ending);
             break;
         };
         let off = elapsed - own.elapsed;
-        let allowed = allowed(units, place, &own, off);
+        let allowed = allowed_time_error(units, place, &own, off);
         let same = own.named.event == wanted.event;
         if off.abs() <= allowed {
             found = Some(if same { Found::Same(own) } else { Found::Another(own) });
@@ -157,7 +157,7 @@ pub(super) fn continuation<T: Number>(
 }
 
 /// The time by which an exact event may be off, as far as it has to be known to place it.
-fn allowed(units: &Units<'_>, place: &Place, own: &Exact, off: f64) -> f64 {
+fn allowed_time_error(units: &Units<'_>, place: &Place, own: &Exact, off: f64) -> f64 {
     let plain = units.allowance.time * units.tolerance() * units.motion.system().time_scale;
     if off.abs() <= plain {
         return plain;
@@ -165,7 +165,7 @@ fn allowed(units: &Units<'_>, place: &Place, own: &Exact, off: f64) -> f64 {
     units.allowed_time(&place.stretch(own.elapsed), own.named.event)
 }
 
-fn ended<T: Number>(ending: affine::Ending<T>) -> Option<Found> {
+fn ending_found<T: Number>(ending: affine::Ending<T>) -> Option<Found> {
     let ending = Ending::from(&ending);
     (ending != Ending::Horizon).then_some(Found::Ended(ending))
 }

@@ -16,27 +16,27 @@ impl Walk<'_> {
         match found {
             Found::Same(exact) => {
                 self.take_pending(named);
-                self.same(event, named, exact)
+                self.judge_on_time(event, named, exact)
             }
             Found::Another(exact) => self.another(event, named, exact),
             Found::Late(exact) if event.elapsed - exact.elapsed <= window => {
-                self.elsewhen(event, named, exact)
+                self.judge_off_time(event, named, exact)
             }
             Found::Late(exact) => {
                 self.missed(n, Some(event), exact);
-                self.unexpected(event, named, None, decided)
+                self.judge_unexpected(event, named, None, decided)
             }
-            Found::Nothing(next) => self.unexpected(event, named, next, decided),
+            Found::Nothing(next) => self.judge_unexpected(event, named, next, decided),
             Found::Ended(Ending::Undecided) => match self.take_pending(named) {
                 Some(pending) => self.came(event, named, &pending),
                 None => self.contradiction(event, named).unwrap_or(Said::Undecidable),
             },
-            Found::Ended(_) => self.unexpected(event, named, None, decided),
+            Found::Ended(_) => self.judge_unexpected(event, named, None, decided),
         }
     }
 
     /// A record of the exact continuation's event, at its time.
-    fn same(&mut self, event: &Event, named: Named, exact: Exact) -> Said {
+    fn judge_on_time(&mut self, event: &Event, named: Named, exact: Exact) -> Said {
         let stretch = self.place.stretch(exact.elapsed);
         let off = event.elapsed - exact.elapsed;
         let time = self.units.of_time(off, &stretch, named.event);
@@ -105,13 +105,13 @@ impl Walk<'_> {
             self.await_event(&exact);
         }
         if !self.is_admissible(event, named) {
-            return self.unexpected(event, named, Some(exact), true);
+            return self.judge_unexpected(event, named, Some(exact), true);
         }
         self.by_its_own_event(event, named).beside(exact)
     }
 
     /// A record that the exact continuation does not have.
-    fn unexpected(
+    fn judge_unexpected(
         &mut self,
         event: &Event,
         named: Named,
@@ -130,14 +130,14 @@ impl Walk<'_> {
             Some(exact)
                 if exact.named.event == named.event && exact.elapsed - event.elapsed <= window =>
             {
-                self.elsewhen(event, named, exact)
+                self.judge_off_time(event, named, exact)
             }
             next => Said::Wrong(WrongKind::Spurious, next, f64::NAN),
         }
     }
 
     /// A record of the exact continuation's event, at another time than is allowed.
-    fn elsewhen(&mut self, event: &Event, named: Named, exact: Exact) -> Said {
+    fn judge_off_time(&mut self, event: &Event, named: Named, exact: Exact) -> Said {
         let location = self.location(event, named);
         self.found.defects.location.extend(location);
         if let Some(location) = location.filter(|it| exceeds(*it, MAX_LOCATION_ERROR)) {

@@ -64,7 +64,7 @@ impl Units<'_> {
     /// The defect of an event's time, with its sign: the event of a guard ends the stretch.
     pub(super) fn of_time(&self, off: f64, stretch: &Stretch<'_>, guard: usize) -> f64 {
         let rounding = Self::rounding_of_time(stretch.elapsed + stretch.length);
-        let beyond = beyond(off, rounding);
+        let beyond = excess(off, rounding);
         let unit = self.tolerance() * self.time_scale() * self.of_length(stretch.length);
         if (beyond / unit).abs() <= NEGLIGIBLE_DEFECT || stretch.length <= 0.0 {
             return beyond / unit;
@@ -108,7 +108,7 @@ impl Units<'_> {
         guard: usize,
     ) -> Vec<f64> {
         let growth = self.motion.growth_of_states(&self.segment(stretch), guard);
-        larger(&self.motion.weights(state), &growth)
+        elementwise_max(&self.motion.weights(state), &growth)
     }
 
     /// The defect of a state along a stretch.
@@ -147,10 +147,10 @@ impl Units<'_> {
             .iter()
             .zip(exact)
             .zip(&weights)
-            .map(|((own, exact), weight)| beyond((own - exact) / weight, STATE_ROUNDING));
+            .map(|((own, exact), weight)| excess((own - exact) / weight, STATE_ROUNDING));
         let along: f64 = off.zip(&parts).map(|(off, part)| off * part).sum();
         let rounding = Self::rounding_of_time(end) / scale;
-        Some(beyond(along / square, rounding) / self.tolerance())
+        Some(excess(along / square, rounding) / self.tolerance())
     }
 
     fn of_states(
@@ -166,7 +166,7 @@ impl Units<'_> {
         // No state is known better than its time.
         let rounding =
             |n: usize| STATE_ROUNDING * weights[n] + Self::rounding_of_time(end) * rates[n].abs();
-        let off = |n: usize| beyond(own[n] - exact[n], rounding(n)).abs();
+        let off = |n: usize| excess(own[n] - exact[n], rounding(n)).abs();
         let worst_by = |sizes: &[f64]| {
             let each =
                 (0..own.len()).map(|n| if own[n].is_nan() { f64::NAN } else { off(n) / sizes[n] });
@@ -176,7 +176,7 @@ impl Units<'_> {
         if plain <= NEGLIGIBLE_DEFECT || stretch.length <= 0.0 || !plain.is_finite() {
             return plain;
         }
-        worst_by(&larger(&weights, &grown(&self.segment(stretch))))
+        worst_by(&elementwise_max(&weights, &grown(&self.segment(stretch))))
     }
 
     /// What the errors that are allowed along a stretch make of a row's value at its end.
@@ -188,11 +188,11 @@ impl Units<'_> {
 }
 
 /// The larger of each two sizes.
-fn larger(weights: &[f64], growth: &[f64]) -> Vec<f64> {
+fn elementwise_max(weights: &[f64], growth: &[f64]) -> Vec<f64> {
     weights.iter().zip(growth).map(|(a, b)| a.max(*b)).collect()
 }
 
 /// What is left of an error beyond the rounding that hides in it, with its sign.
-fn beyond(off: f64, rounding: f64) -> f64 {
+fn excess(off: f64, rounding: f64) -> f64 {
     (off.abs() - rounding).max(0.0).copysign(off)
 }

@@ -58,7 +58,7 @@ impl Walk<'_> {
         self.place = Place { elapsed: event.elapsed, mode: named.next, state, late: 0 };
         self.drop_untrue();
         self.place.state = self.judge.projected(&mut self.coarse, &self.place);
-        self.place.late = self.late();
+        self.place.late = self.guards_returning();
     }
 
     /// The record's state; where it is no number, what the state before the reset makes of it.
@@ -95,7 +95,7 @@ impl Walk<'_> {
     }
 
     /// The guards of the present mode that are outside and on their way back.
-    fn late(&mut self) -> u64 {
+    fn guards_returning(&mut self) -> u64 {
         let imposed = self.coarse.imposed(self.place.elapsed, &self.place.state);
         let motion = self.motion();
         let (mode, place) = (self.place.mode, &self.place);

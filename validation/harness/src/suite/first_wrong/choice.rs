@@ -34,11 +34,11 @@ pub fn first_wrong_events<'a>(
     let observe = |RowChoice { row, prepared, mismatch, again }: RowChoice<'a>| {
         FirstWrongEvent::observed((prepared, row), mismatch, again)
     };
-    chosen(candidates).into_par_iter().with_max_len(1).filter_map(observe).collect()
+    choose(candidates).into_par_iter().with_max_len(1).filter_map(observe).collect()
 }
 
 /// Chooses as many as can be shown, in the order of the rows.
-fn chosen(candidates: Vec<RowChoice<'_>>) -> Vec<RowChoice<'_>> {
+fn choose(candidates: Vec<RowChoice<'_>>) -> Vec<RowChoice<'_>> {
     let key = |i: &usize| {
         let row = candidates[*i].row;
         let before = candidates[..*i].iter().filter(|it| it.row.case == row.case).count();

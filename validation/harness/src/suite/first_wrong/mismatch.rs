@@ -116,7 +116,7 @@ impl EventMismatch {
             }
             Some((_, kind, i)) => Some(Self::of(kind, &truth, i, pairs)),
             None if row.judgement.verdict == Verdict::Fail => {
-                let (i, j) = farthest(prepared, (&truth, &engine), &pairs)?;
+                let (i, j) = farthest_pair(prepared, (&truth, &engine), &pairs)?;
                 let reach = (truth[i].0 - engine[j].0).abs();
                 Some(Self { reach, ..Self::of(MismatchKind::Displaced, &truth, i, pairs) })
             }
@@ -173,7 +173,7 @@ fn pairs(prepared: &PreparedCase, measures: &Measures, outcome: &Outcome) -> Vec
 }
 
 /// The pair whose times differ most for what errors have grown to there.
-fn farthest(
+fn farthest_pair(
     prepared: &PreparedCase,
     (truth, engine): (&Events, &Events),
     pairs: &[(usize, usize)],
