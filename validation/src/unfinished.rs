@@ -50,12 +50,12 @@ impl Unfinished {
 
     /// Gives the file its final name.
     pub(crate) fn finish(self, target: &Path) -> io::Result<()> {
-        self.kept(|file| file.persist(target))
+        self.keep(|file| file.persist(target))
     }
 
     /// Gives it its own name, unless there is a file of that name.
     pub(crate) fn finish_new(self, target: &Path) -> io::Result<()> {
-        self.kept(|file| file.persist_noclobber(target))
+        self.keep(|file| file.persist_noclobber(target))
     }
 
     /// Waits until what was written is on the disk.
@@ -63,7 +63,7 @@ impl Unfinished {
         self.file.as_file().sync_all()
     }
 
-    fn kept(
+    fn keep(
         self,
         persist: impl FnOnce(NamedTempFile) -> Result<File, PersistError>,
     ) -> io::Result<()> {

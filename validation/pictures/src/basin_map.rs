@@ -89,7 +89,7 @@ impl Drawing for BasinMap {
     fn draw_within(&self, canvas: &mut Canvas, size: (u32, u32)) {
         let first_line = |name: &str| name.lines().next().unwrap_or_default().to_owned();
         let names = self.attractors.iter().map(|it| first_line(&it.name));
-        let others = self.others().into_iter().map(|it| it.0.to_owned());
+        let others = self.other_labels().into_iter().map(|it| it.0.to_owned());
         let widths = names.chain(others).map(|it| font::width(&it, KEY_TEXT_SIZE));
         let key = KEY_SAMPLE_WIDTH + widths.fold(0.0, f64::max);
         let to = (f64::from(size.0) - key - MARGIN, f64::from(size.1) - BOTTOM_MARGIN);
@@ -129,7 +129,7 @@ impl BasinMap {
     }
 
     /// The names and colours of the labels of no attractor that occur.
-    fn others(&self) -> Vec<(&'static str, Colour)> {
+    fn other_labels(&self) -> Vec<(&'static str, Colour)> {
         let others = [
             (Label::Unresolved, "unresolved", palette::UNRESOLVED),
             (Label::Escaping, "escaping (white)", WHITE),
@@ -156,7 +156,7 @@ impl BasinMap {
             })
         });
         let others = self
-            .others()
+            .other_labels()
             .into_iter()
             .map(|(name, colour)| KeyItem::new(name, move |canvas, at| swatch(canvas, at, colour)));
         key(canvas, from, layout, KEY_TEXT_SIZE, attractors.chain(others));

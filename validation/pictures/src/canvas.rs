@@ -245,10 +245,10 @@ impl Canvas {
 
     /// Fills a rectangle up to whole pixels, so that nothing shows between neighbours.
     pub(super) fn fill(&mut self, from: At, to: At, colour: Colour) {
-        self.crisp(|canvas| canvas.rectangle(from, to, colour));
+        self.draw_crisply(|canvas| canvas.rectangle(from, to, colour));
     }
 
-    fn crisp(&mut self, draw: impl FnOnce(&mut Self)) {
+    fn draw_crisply(&mut self, draw: impl FnOnce(&mut Self)) {
         self.with(format_args!("shape-rendering=\"crispEdges\""), draw);
     }
 
@@ -264,7 +264,7 @@ impl Canvas {
         rows: impl ExactSizeIterator<Item = &'a [Colour]>,
     ) {
         let height = (to.1 - from.1) / rows.len() as f64;
-        self.crisp(|canvas| {
+        self.draw_crisply(|canvas| {
             for (i, row) in rows.enumerate() {
                 let bottom = to.1 - height * i as f64;
                 canvas.row((from.0, bottom - height), (to.0, bottom), row);

@@ -56,7 +56,7 @@ impl Drawing for Curves {
 
     fn draw(&self, canvas: &mut Canvas) {
         canvas.title(&self.title);
-        let points = || self.curves.iter().flat_map(Curve::all).filter(|it| finite(it));
+        let points = || self.curves.iter().flat_map(Curve::points).filter(|it| finite(it));
         let x = Ruler::over(self.x.scale, points().map(|point| point.0));
         let y = Ruler::over(self.y.scale, points().map(|point| point.1));
         let (Some(x), Some(y)) = (x, y) else {
@@ -108,7 +108,7 @@ impl Curve {
     }
 
     /// All its points.
-    fn all(&self) -> impl Iterator<Item = &(f64, f64)> {
+    fn points(&self) -> impl Iterator<Item = &(f64, f64)> {
         self.points.iter().chain(&self.apart)
     }
 

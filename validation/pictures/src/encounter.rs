@@ -109,14 +109,14 @@ impl Drawing for Encounter {
 impl Encounter {
     fn stretch(&self, canvas: &mut Canvas, it: &TimeStretch, (left, right): (f64, f64)) {
         let times = Factor::of([it.from, it.to].into_iter());
-        let values = Factor::of(it.shown());
+        let values = Factor::of(it.shown_values());
         let (from, to) = (times.scaled(it.from), times.scaled(it.to));
-        let vertical = Ruler::over(AxisScale::Linear, it.shown().map(|v| values.scaled(v)));
+        let vertical = Ruler::over(AxisScale::Linear, it.shown_values().map(|v| values.scaled(v)));
         let Some(y) = vertical.filter(|_| from < to) else { return };
         let x = Ruler::between(from, to);
         let panel = Panel { from: (left, TOP), to: (right, BOTTOM), x, y };
-        let below = times.named(&format!("time \u{2212} {:.7}", self.centre));
-        panel.draw(canvas, &below, &values.named(&self.guard));
+        let below = times.labelled(&format!("time \u{2212} {:.7}", self.centre));
+        panel.draw(canvas, &below, &values.labelled(&self.guard));
         let at = |t: f64, v: f64| panel.at((times.scaled(t), values.scaled(v)));
         let guide = [panel.place((0.0, 0.0)).0, panel.place((0.0, 0.0)).1];
         canvas.line((left, guide[1]), (right, guide[1]), 1.4, palette::INK);
@@ -132,7 +132,8 @@ impl Encounter {
         };
         canvas.trace(&curve(&it.truth), 6.0, Stroke::Solid, TRUTH_COLOUR);
         canvas.trace(&curve(&it.engine), 2.4, Stroke::Solid, self.colour);
-        let ends = it.steps.iter().filter_map(|t| at(*t, it.engine.along(it.from, it.to, *t)?));
+        let ends =
+            it.steps.iter().filter_map(|t| at(*t, it.engine.interpolated(it.from, it.to, *t)?));
         ends.for_each(|at| canvas.marker(Marker::Circle, at, 5.0, self.colour));
         let looks = it.looks.iter().filter_map(|[t, v]| at(*t, *v));
         looks.for_each(|at| hollow(canvas, at, self.colour));
@@ -145,7 +146,7 @@ impl Encounter {
             if *matched {
                 canvas.marker(Marker::Circle, at, 4.5, palette::INK);
             } else {
-                wrong(canvas, at, false);
+                draw_wrong_event(canvas, at, false);
             }
         }
         for (t, _, matched) in &it.engine.events {
@@ -153,7 +154,7 @@ impl Encounter {
             if *matched {
                 canvas.marker(Marker::Triangle, (at.0, at.1 + 12.0), 6.0, self.colour);
             } else {
-                wrong(canvas, at, true);
+                draw_wrong_event(canvas, at, true);
             }
         }
     }
@@ -175,8 +176,8 @@ impl Encounter {
             }),
             KeyItem::new("true event", mark(Marker::Circle, 4.5, palette::INK)),
             KeyItem::new("engine's event", mark(Marker::Triangle, 6.0, self.colour)),
-            KeyItem::new("missed", |canvas, at| wrong(canvas, middle(at), false)),
-            KeyItem::new("spurious", |canvas, at| wrong(canvas, middle(at), true)),
+            KeyItem::new("missed", |canvas, at| draw_wrong_event(canvas, middle(at), false)),
+            KeyItem::new("spurious", |canvas, at| draw_wrong_event(canvas, middle(at), true)),
         ];
         key(canvas, (24.0, 664.0), KeyLayout::Row, TEXT_SIZE - 1.0, items);
     }
@@ -184,7 +185,7 @@ impl Encounter {
 
 impl TimeStretch {
     /// All values that the vertical axis has to show, the event's zero among them.
-    fn shown(&self) -> impl Iterator<Item = f64> + '_ {
+    fn shown_values(&self) -> impl Iterator<Item = f64> + '_ {
         let looks = self.looks.iter().map(|look| look[1]);
         let curves = self.truth.values.iter().chain(&self.engine.values).copied();
         curves.chain(looks).chain([0.0])
@@ -199,7 +200,7 @@ impl Trail {
     }
 
     /// The value between those that are known.
-    fn along(&self, from: f64, to: f64, t: f64) -> Option<f64> {
+    fn interpolated(&self, from: f64, to: f64, t: f64) -> Option<f64> {
         let last = self.values.len().checked_sub(1).filter(|last| *last > 0)?;
         let place = (t - from) / (to - from) * last as f64;
         let k = (place.max(0.0) as usize).min(last - 1);
@@ -242,7 +243,7 @@ impl Factor {
         value / 10.0_f64.powi(self.0)
     }
 
-    fn named(&self, label: &str) -> String {
+    fn labelled(&self, label: &str) -> String {
         match self.0 {
             0 => label.to_owned(),
             exponent => format!("{label}, in {}", power_of_ten(exponent.into())),
@@ -251,7 +252,7 @@ impl Factor {
 }
 
 /// A disc, with a cross where the engine alone has the event.
-fn wrong(canvas: &mut Canvas, at: At, spurious: bool) {
+fn draw_wrong_event(canvas: &mut Canvas, at: At, spurious: bool) {
     canvas.marker(Marker::Circle, at, 9.0, palette::INK);
     canvas.marker(Marker::Circle, at, 7.4, WRONG_COLOUR);
     if spurious {
@@ -274,15 +275,15 @@ mod tests {
     fn a_step_stands_on_the_curve() {
         let stage = Stage::phase(Phase::Contact);
         let trail = Trail { values: vec![0.0, 1.0, 4.0], stage, events: Vec::new() };
-        assert_eq!(trail.along(2.0, 4.0, 3.5), Some(2.5));
-        assert_eq!(trail.along(2.0, 4.0, 4.0), Some(4.0));
+        assert_eq!(trail.interpolated(2.0, 4.0, 3.5), Some(2.5));
+        assert_eq!(trail.interpolated(2.0, 4.0, 4.0), Some(4.0));
         let none = Trail { values: Vec::new(), ..trail };
-        assert_eq!(none.along(0.0, 1.0, 0.5), None);
+        assert_eq!(none.interpolated(0.0, 1.0, 0.5), None);
     }
 
     #[test]
     fn axes_count_in_powers_of_ten_where_that_is_shorter() {
-        assert_eq!(Factor::of([-3e-7, 1e-7].into_iter()).named("gap"), "gap, in 10⁻⁷");
-        assert_eq!(Factor::of([0.5, f64::NAN].into_iter()).named("gap"), "gap");
+        assert_eq!(Factor::of([-3e-7, 1e-7].into_iter()).labelled("gap"), "gap, in 10⁻⁷");
+        assert_eq!(Factor::of([0.5, f64::NAN].into_iter()).labelled("gap"), "gap");
     }
 }

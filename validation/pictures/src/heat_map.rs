@@ -47,19 +47,19 @@ pub struct HeatMap {
 }
 
 impl HeatMap {
-    fn across(&self) -> usize {
+    fn columns(&self) -> usize {
         self.rows.iter().map(|row| row.1.len()).chain([self.columns.len(), 1]).max().unwrap_or(1)
     }
 
     /// Width of a cell: a table of few columns is not stretched, one of many is not cut.
     fn cell(&self) -> f64 {
-        (1120.0 / self.across() as f64).clamp(110.0, 190.0)
+        (1120.0 / self.columns() as f64).clamp(110.0, 190.0)
     }
 }
 
 impl Drawing for HeatMap {
     fn size(&self) -> (u32, u32) {
-        let width = 2 * MARGIN + LABEL_WIDTH + (self.cell() * self.across() as f64).ceil() as u32;
+        let width = 2 * MARGIN + LABEL_WIDTH + (self.cell() * self.columns() as f64).ceil() as u32;
         let rows = u32::try_from(self.rows.len()).unwrap_or(0).clamp(1, 400);
         (width.clamp(900, 4000), HEAD_HEIGHT + rows * ROW_HEIGHT + MARGIN)
     }

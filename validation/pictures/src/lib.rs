@@ -104,7 +104,7 @@ const MIN_SCALE: f64 = 0.7;
 /// A drawing as an SVG.
 #[must_use]
 pub fn svg(drawing: &impl Drawing) -> String {
-    drawn(drawing, Letters::Text)
+    svg_text(drawing, Letters::Text)
 }
 
 /// A drawing as a PNG, which is rendered from its SVG.
@@ -113,12 +113,12 @@ pub fn svg(drawing: &impl Drawing) -> String {
 /// [`DrawError`] with the rendering library's reason.
 pub fn png(drawing: &impl Drawing) -> Result<Vec<u8>, DrawError> {
     // The library's own fonts would triple the time that it takes to compile.
-    let svg = drawn(drawing, Letters::Outlines);
-    rendered(&svg, drawing.size(), (1.0, 1.0))
+    let svg = svg_text(drawing, Letters::Outlines);
+    svg_in_pixels(&svg, drawing.size(), (1.0, 1.0))
 }
 
 /// An SVG in so many pixels across and down, each of its own being so many of these.
-fn rendered(
+fn svg_in_pixels(
     svg: &str,
     (width, height): (u32, u32),
     scale: (f64, f64),
@@ -131,7 +131,7 @@ fn rendered(
     pixels.encode_png().map_err(DrawError::new)
 }
 
-fn drawn(drawing: &impl Drawing, letters: Letters) -> String {
+fn svg_text(drawing: &impl Drawing, letters: Letters) -> String {
     let mut canvas = Canvas::new(drawing.size(), letters);
     drawing.draw(&mut canvas);
     canvas.finish()

@@ -1,7 +1,7 @@
 //! Pictures of a given size on paper, whose letters are as large as those of a paper's text.
 
 use super::canvas::{Canvas, Letters, Sheet};
-use super::{DrawError, Drawing, rendered};
+use super::{DrawError, Drawing, svg_in_pixels};
 
 /// Pixels of a drawing's layout in an inch: at it the letters of an axis have a line height of 9
 /// points, and a capital of 5.6, as in the captions of journals.
@@ -94,7 +94,7 @@ impl Print {
         }
         let svg = self.drawn(drawing, sheet, Letters::Outlines);
         let scale = (width / f64::from(sheet.size.0), height / f64::from(sheet.size.1));
-        let bytes = rendered(&svg, (width as u32, height as u32), scale)?;
+        let bytes = svg_in_pixels(&svg, (width as u32, height as u32), scale)?;
         Ok(with_density(&bytes, dpi))
     }
 }

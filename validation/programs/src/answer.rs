@@ -62,7 +62,7 @@ pub(crate) fn checked(
     limits: &Limits,
 ) -> Result<Outcome, Wrong> {
     let size = task.state.len();
-    let ended = ended(reply, task)?;
+    let ended = ending_of(reply, task)?;
     let events = events(&reply.events.0, task, limits)?;
     let ended_at = ended_at(reply, ended, &events, task)?;
     has_states(reply.end.0.len(), size, AnswerPart::End)?;
@@ -123,7 +123,7 @@ fn derivatives(reply: &GradientReply) -> RunDerivatives {
     RunDerivatives { events: reply.events.0.iter().map(event).collect(), end: reply.end.0 }
 }
 
-fn ended(reply: &RunReply, task: &Task) -> Result<Ending, Wrong> {
+fn ending_of(reply: &RunReply, task: &Task) -> Result<Ending, Wrong> {
     if reply.ended == Ending::LeavesDomain && !task.system.is_backward() {
         return Err(
             AnswerPart::Run.wrong("ended with leaves-domain, which only runs back in time do")

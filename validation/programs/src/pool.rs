@@ -52,13 +52,13 @@ impl Pool {
                 return Err(Failure::new("answered something else where a run was asked for"));
             }
         };
-        self.idle().push(process);
+        self.idle_processes().push(process);
         answered
     }
 
     /// A process that waits for a request.
     fn process(&self) -> Result<Process, String> {
-        let waiting = self.idle().pop();
+        let waiting = self.idle_processes().pop();
         if let Some(process) = waiting.filter(|process| !process.is_disturbed()) {
             return Ok(process);
         }
@@ -68,7 +68,7 @@ impl Pool {
         Ok(process)
     }
 
-    fn idle(&self) -> MutexGuard<'_, Vec<Process>> {
+    fn idle_processes(&self) -> MutexGuard<'_, Vec<Process>> {
         // Its processes are as good after a panic as before it.
         self.idle.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -139,7 +139,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let derivatives_of = gradients::answered(&judged.chosen, &arguments.answers)?;
     let differentiated: Vec<&str> = derivatives_of.iter().map(|it| it.name.as_str()).collect();
     let cases = judged.open(&differentiated)?;
-    let answered = answered(&arguments.answers)?;
+    let answered = answered_cases(&arguments.answers)?;
     // What probes ask needs an engine that is there.
     let cases = cases.prepare(None)?;
     let all = &cases.all;
@@ -218,7 +218,7 @@ impl Arguments {
 }
 
 /// The cases that a folder holds answers to.
-fn answered(folder: &Path) -> Result<BTreeSet<String>> {
+fn answered_cases(folder: &Path) -> Result<BTreeSet<String>> {
     let unreadable = |error: std::io::Error| {
         let folder = folder.display();
         anyhow!(

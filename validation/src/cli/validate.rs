@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         judged.compare(baseline, (&report, &mut evidence), asked)?;
     }
     let code = judged.write(&report, &evidence, all.len())?;
-    Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code })
+    Ok(if is_unnoticed(&findings) { OUT_OF_BOUNDS } else { code })
 }
 
 /// The verdicts on derivatives through events. They decide neither ranks nor the exit code: an
@@ -171,7 +171,7 @@ impl WrongEngines {
 }
 
 /// Whether a wrong engine passes every bound of all cases together; said on stderr.
-fn unnoticed(findings: &[Finding]) -> bool {
+fn is_unnoticed(findings: &[Finding]) -> bool {
     let missed: Vec<_> = findings.iter().filter(|it| !it.caught()).collect();
     missed.iter().for_each(|it| say(&format!("no bound notices {}: {}", it.engine, it.fault)));
     !missed.is_empty()

@@ -116,7 +116,7 @@ impl Baseline {
                 Some(row) => {
                     compared.common += 1;
                     compared.worse.extend(earlier.against(row).map(|it| format!("{who}: {it}")));
-                    compared.dearer.extend(earlier.dearer(row).map(|it| format!("{who} {it}")));
+                    compared.dearer.extend(earlier.cost_ratio(row).map(|it| format!("{who} {it}")));
                 }
                 None if asked(&earlier.place()) => compared.gone.push(who),
                 None => {}
@@ -164,7 +164,7 @@ impl Earlier {
     }
 
     /// How many times as many right-hand sides a row takes, where they are many more.
-    fn dearer(&self, row: &ReportRow) -> Option<String> {
+    fn cost_ratio(&self, row: &ReportRow) -> Option<String> {
         let factor = row.rhs_evaluations? as f64 / self.rhs_evaluations? as f64;
         (factor > MAX_COST_RATIO && factor.is_finite()).then(|| format!("{factor:.2} times"))
     }

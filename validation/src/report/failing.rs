@@ -21,12 +21,12 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
     for it in failing {
         let head =
             format!("  {}: {} of {}", it.engine, it.fails_on.len(), report.number_of_cases());
-        let names = wrapped(&format!("{head}: {}", marked(report, it).join(", ")));
+        let names = wrapped(&format!("{head}: {}", marked_names(report, it).join(", ")));
         let is_short = all_names || names.lines().count() <= MAX_NAMED_LINES;
         let groups = if is_short { Vec::new() } else { by_system(report, evidence, it) };
         any_counted |= !groups.is_empty();
         let unexpected: Vec<_> =
-            marked(report, it).into_iter().filter(|it| it.ends_with('!')).collect();
+            marked_names(report, it).into_iter().filter(|it| it.ends_with('!')).collect();
         lines += &match groups[..] {
             [] => names,
             _ => wrapped(&format!("{head}: {}", [unexpected, groups].concat().join(", "))),
@@ -41,7 +41,7 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
 }
 
 /// The names of an engine's failing cases, with a mark where nothing excuses a row.
-fn marked(report: &Report, it: &Ranked) -> Vec<String> {
+fn marked_names(report: &Report, it: &Ranked) -> Vec<String> {
     let name = |case: &String| {
         if is_unexpected(report, it, case) { format!("{case}!") } else { case.clone() }
     };

@@ -43,8 +43,11 @@ struct GrazingEntry {
 impl Grazing {
     /// The table that follows from the evidence, or from the rows of cases that state a margin.
     pub fn of(report: &Report, evidence: &ReportEvidence) -> Self {
-        let mut entries =
-            if evidence.grazes.is_empty() { of_rows(report, evidence) } else { given(evidence) };
+        let mut entries = if evidence.grazes.is_empty() {
+            of_rows(report, evidence)
+        } else {
+            given_entries(evidence)
+        };
         entries.sort_by(|a, b| b.fineness.total_cmp(&a.fineness));
         let mut margins: Vec<f64> = entries.iter().map(|entry| entry.margin).collect();
         margins.sort_by(|a, b| order(*a).total_cmp(&order(*b)));
@@ -79,7 +82,7 @@ fn label(margin: f64) -> String {
     if margin < 0.0 { format!("\u{2212}{text}") } else { format!("+{text}") }
 }
 
-fn seen(missed: usize, spurious: usize) -> Seen {
+fn seen_of(missed: usize, spurious: usize) -> Seen {
     match (missed, spurious) {
         (0, 0) => Seen::Right,
         (0, _) => Seen::Spurious,
@@ -87,13 +90,13 @@ fn seen(missed: usize, spurious: usize) -> Seen {
     }
 }
 
-fn given(evidence: &ReportEvidence) -> Vec<GrazingEntry> {
+fn given_entries(evidence: &ReportEvidence) -> Vec<GrazingEntry> {
     let entry = |graze: &super::GrazeRow| GrazingEntry {
         engine: graze.engine.clone(),
         margin: graze.margin,
         fineness: graze.tolerance.unwrap_or(0.0),
         setting: setting(graze.tolerance, None),
-        seen: seen(graze.missed, graze.spurious),
+        seen: seen_of(graze.missed, graze.spurious),
     };
     evidence.grazes.iter().map(entry).collect()
 }
@@ -106,7 +109,7 @@ fn of_rows(report: &Report, evidence: &ReportEvidence) -> Vec<GrazingEntry> {
         let seen = match (row.verdict, row.records.events_missed, row.records.events_spurious) {
             (Verdict::NotScored, ..) => Seen::Nothing,
             (Verdict::Undecidable, ..) => Seen::Undecidable,
-            (_, Some(missed), Some(spurious)) => seen(missed, spurious),
+            (_, Some(missed), Some(spurious)) => seen_of(missed, spurious),
             _ => Seen::Nothing,
         };
         let fineness = row.tolerance.or(row.step).unwrap_or(0.0);

@@ -45,11 +45,11 @@ pub fn pictures(report: &Report, evidence: &ReportEvidence) -> Result<Vec<Pictur
     let clouds: Vec<_> = evidence.sections.iter().enumerate().map(attractors).collect();
     let events: Vec<_> = events(report, evidence, &palette).collect();
     let drawn = [
-        drawn(&events, |_| true)?,
-        drawn(&curves, |_| true)?,
-        drawn(&heat_maps, |_| true)?,
-        drawn(&histograms, |_| true)?,
-        drawn(&clouds, |it| it.points() <= MAX_SVG_POINTS)?,
+        draw_all(&events, |_| true)?,
+        draw_all(&curves, |_| true)?,
+        draw_all(&heat_maps, |_| true)?,
+        draw_all(&histograms, |_| true)?,
+        draw_all(&clouds, |it| it.points() <= MAX_SVG_POINTS)?,
     ];
     Ok(drawn.into_iter().flatten().collect())
 }
@@ -65,7 +65,7 @@ fn events<'a>(
     shown.map(|it| (it.file_name(), it.encounter(palette.colour(&it.engine))))
 }
 
-fn drawn<D: Drawing + Sync>(
+fn draw_all<D: Drawing + Sync>(
     drawings: &[(String, D)],
     small: impl Fn(&D) -> bool + Sync,
 ) -> Result<Vec<PictureFile>, DrawError> {

@@ -72,7 +72,7 @@ impl SettingSummary {
             rows: rows.len(),
             runs: ran.len(),
             is_comparable: is_comparable(rows, ran.len()),
-            of: over(rows, ran.len()),
+            of: basis(rows, ran.len()),
             failed: ran.iter().filter(|row| row.status != "ok").count(),
             expected: sum(|row| row.events_expected),
             total: rows.iter().map(|row| row.events_total).sum(),
@@ -116,7 +116,7 @@ fn is_comparable(rows: &[&ReportRow], ran: usize) -> bool {
 }
 
 /// What figures are over: events of one row, or rows.
-fn over(rows: &[&ReportRow], ran: usize) -> String {
+fn basis(rows: &[&ReportRow], ran: usize) -> String {
     let [row] = rows else { return format!("{ran} of {} rows", rows.len()) };
     let found = row.events_matched.unwrap_or_default();
     let spurious = match row.records.events_spurious {

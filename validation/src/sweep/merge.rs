@@ -70,7 +70,7 @@ impl<'a> Merge<'a> {
     /// What cannot be written, and a shard that has changed meanwhile.
     pub fn write(&self, folder: &Path, out: &mut dyn Write, done: &dyn Fn()) -> Result<()> {
         let Self { sweep, places } = self;
-        let spools = spooled(sweep, places, folder, done)?;
+        let spools = spool(sweep, places, folder, done)?;
         archive(sweep, spools, out)
     }
 }
@@ -126,7 +126,7 @@ fn places(sweep: &Sweep<'_>) -> Result<Vec<TileLocation>> {
     Ok(places.into_iter().map(|(_, place)| place).collect())
 }
 
-fn spooled(
+fn spool(
     sweep: &Sweep<'_>,
     places: &[TileLocation],
     folder: &Path,

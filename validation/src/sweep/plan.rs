@@ -147,7 +147,7 @@ impl PlanFile {
             read.system(system, folder);
         }
         for (name, value) in &fixed {
-            read.fixed(name, value, folder)?;
+            read.add_fixed(name, value, folder)?;
         }
         let PlanWords { places, flags, off, files } = read;
         let hash = Hashed { verb: &verb, shards, words: &flags, axes: &axes, files: &files };
@@ -182,7 +182,7 @@ impl PlanWords {
     }
 
     /// Takes up an entry of `[fixed]`.
-    fn fixed(&mut self, name: &str, value: &toml::Value, folder: &Path) -> Result<()> {
+    fn add_fixed(&mut self, name: &str, value: &toml::Value, folder: &Path) -> Result<()> {
         if OUTPUT_FLAGS.contains(&name) {
             bail!("[fixed] {name} is not accepted: the sweep decides where and how it writes");
         }
@@ -197,7 +197,9 @@ impl PlanWords {
         match value {
             toml::Value::Boolean(true) => self.flags.push(format!("--{name}")),
             toml::Value::Boolean(false) => self.off.push(name.to_owned()),
-            value if REPEATED_FLAGS.contains(&name) => self.flags.extend(repeated(name, value)?),
+            value if REPEATED_FLAGS.contains(&name) => {
+                self.flags.extend(repeated_flag(name, value)?)
+            }
             toml::Value::Array(values) => {
                 let texts: Result<Vec<_>> = values.iter().map(|it| plain(name, it)).collect();
                 self.flags.push(format!("--{name}={}", texts?.join(",")));
@@ -267,7 +269,7 @@ fn check_parameters(axes: &[SweepAxis], fixed: &toml::Table) -> Result<()> {
 }
 
 /// A flag once for each entry of a table, or for each text of a list.
-fn repeated(name: &str, value: &toml::Value) -> Result<Vec<String>> {
+fn repeated_flag(name: &str, value: &toml::Value) -> Result<Vec<String>> {
     let entry = |text: String| format!("--{name}={text}");
     match value {
         toml::Value::Table(entries) => entries

@@ -122,7 +122,7 @@ impl<'a> Sweep<'a> {
             }
         }
         for shard in left {
-            let _lock = self.awaited(shard, longest)?;
+            let _lock = self.wait_for_lock(shard, longest)?;
             if self.shard(shard).is_err() {
                 self.compute(shard, observer)?;
             } else {
@@ -134,7 +134,7 @@ impl<'a> Sweep<'a> {
 
     /// The lock of a shard that another process computes, once that is free, or held by the other
     /// for longer than is waited: the lock of a machine that is lost may stay.
-    fn awaited(&self, shard: u32, patience: Duration) -> Result<Lock> {
+    fn wait_for_lock(&self, shard: u32, patience: Duration) -> Result<Lock> {
         let begun = Instant::now();
         loop {
             let lock = self.folder.lock(shard)?;

@@ -29,7 +29,7 @@ impl Folder {
 
     /// Runs a program, whose lines go to the terminal, and says how it ended.
     pub fn status(&self, program: &str, arguments: &[&str]) -> Result<ExitStatus> {
-        println!("$ {}", shown(program, arguments));
+        println!("$ {}", command_line(program, arguments));
         let status = self.command(program, arguments).status();
         status.with_context(|| format!("{program} cannot be started"))
     }
@@ -38,7 +38,7 @@ impl Folder {
     pub fn run(&self, program: &str, arguments: &[&str]) -> Result<()> {
         let status = self.status(program, arguments)?;
         if !status.success() {
-            bail!("`{}` ended with {status}", shown(program, arguments));
+            bail!("`{}` ended with {status}", command_line(program, arguments));
         }
         Ok(())
     }
@@ -49,7 +49,12 @@ impl Folder {
         let output = output.with_context(|| format!("{program} cannot be started"))?;
         if !output.status.success() {
             let said = String::from_utf8_lossy(&output.stderr);
-            bail!("`{}` ended with {}: {}", shown(program, arguments), output.status, said.trim());
+            bail!(
+                "`{}` ended with {}: {}",
+                command_line(program, arguments),
+                output.status,
+                said.trim()
+            );
         }
         Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
     }
@@ -67,7 +72,7 @@ impl Folder {
 }
 
 /// A command as one would type it; a text of several lines is cut after the first one.
-fn shown(program: &str, arguments: &[&str]) -> String {
+fn command_line(program: &str, arguments: &[&str]) -> String {
     let first_line = |text: &&str| {
         let line = text.lines().next().unwrap_or_default().to_owned();
         if line.contains(' ') { format!("'{line}'") } else { line }

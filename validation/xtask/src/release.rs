@@ -75,7 +75,7 @@ pub fn run(root: &Folder, arguments: &Arguments) -> Result<()> {
         steps(arguments).iter().for_each(|step| println!("{step}"));
         return Ok(());
     }
-    clean(root)?;
+    check_clean(root)?;
     make(root, arguments, &plan)
 }
 
@@ -153,7 +153,7 @@ fn steps(arguments: &Arguments) -> Vec<String> {
 }
 
 /// What is not committed would be in no version, or in one that nobody has seen.
-fn clean(root: &Folder) -> Result<()> {
+fn check_clean(root: &Folder) -> Result<()> {
     let changed = root.output("git", &["status", "--porcelain"])?;
     ensure!(changed.is_empty(), "not everything is committed:\n{changed}");
     Ok(())

@@ -146,7 +146,7 @@ impl Layer {
             }
             Self::Named { at, name, colour } => {
                 if let Some(at) = panel.at((at[0], at[1])) {
-                    named(canvas, at, name, *colour, panel.to.0);
+                    draw_named_mark(canvas, at, name, *colour, panel.to.0);
                 }
             }
             Self::Key(entries) => {
@@ -157,7 +157,7 @@ impl Layer {
 }
 
 /// Draws a mark and its name, on white, up to the right edge of the panel.
-fn named(canvas: &mut Canvas, (x, y): At, name: &str, colour: Colour, right: f64) {
+fn draw_named_mark(canvas: &mut Canvas, (x, y): At, name: &str, colour: Colour, right: f64) {
     canvas.fill(
         (x - HALF_NAMED_MARK, y - HALF_NAMED_MARK),
         (x + HALF_NAMED_MARK, y + HALF_NAMED_MARK),

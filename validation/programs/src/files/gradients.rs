@@ -52,14 +52,14 @@ pub(super) fn gradients(
         let time = Some(cells.word(3)).filter(|it| !it.is_empty());
         let time = time.map(|_| cells.number(3, COLUMNS[3])).transpose()?;
         let event = EventGradientReply { time, state };
-        placed(&mut reply.events.0, cells, event, limits)
+        place_event(&mut reply.events.0, cells, event, limits)
     })?;
     // A name without its end has no answer.
     Ok(found.into_iter().filter(|(_, has_end)| *has_end).map(|(reply, _)| reply).collect())
 }
 
 /// Puts the derivatives of an event in its place.
-fn placed(
+fn place_event(
     events: &mut Vec<EventGradientReply>,
     cells: &Cells<'_>,
     event: EventGradientReply,

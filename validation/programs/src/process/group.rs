@@ -40,7 +40,7 @@ impl Group {
         let mut command = Command::new(name);
         command.args(arguments).current_dir(&program.folder);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        apart(&mut command);
+        set_own_group(&mut command);
         let mut leader = live::start(&mut command)?;
         let streams = (leader.stdin.take(), leader.stdout.take(), leader.stderr.take());
         let group = Self { leader, is_ended: false };
@@ -56,7 +56,7 @@ impl Group {
     pub(super) fn exit(&mut self, wait: Duration) -> Option<ProgramExit> {
         let until = Instant::now() + wait;
         loop {
-            match ended(&mut self.leader) {
+            match program_exit(&mut self.leader) {
                 None if Instant::now() < until => std::thread::sleep(POLL_INTERVAL),
                 exit => return exit,
             }
@@ -89,17 +89,17 @@ impl Drop for Group {
 }
 
 #[cfg(unix)]
-fn apart(command: &mut Command) {
+fn set_own_group(command: &mut Command) {
     use std::os::unix::process::CommandExt;
     command.process_group(0);
 }
 
 #[cfg(not(unix))]
-fn apart(_: &mut Command) {}
+fn set_own_group(_: &mut Command) {}
 
 /// How a process ended, which keeps its number: the group that bears it can still be ended.
 #[cfg(unix)]
-fn ended(leader: &mut Child) -> Option<ProgramExit> {
+fn program_exit(leader: &mut Child) -> Option<ProgramExit> {
     use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
     let pid = Pid::from_raw(i32::try_from(leader.id()).ok()?)?;
     let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
@@ -113,7 +113,7 @@ fn ended(leader: &mut Child) -> Option<ProgramExit> {
 }
 
 #[cfg(not(unix))]
-fn ended(leader: &mut Child) -> Option<ProgramExit> {
+fn program_exit(leader: &mut Child) -> Option<ProgramExit> {
     match leader.try_wait() {
         Ok(None) => None,
         Ok(Some(status)) => Some(status.code().map_or(ProgramExit::Unknown, ProgramExit::Code)),

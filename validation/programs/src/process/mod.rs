@@ -100,15 +100,15 @@ impl Process {
                 Err(format!("wrote a line of more than {MAX_LINE_BYTES} bytes"))
             }
             Some(OutputLine::Unfinished(count)) => {
-                Err(self.ended(&format!("in a line of {count} bytes that is not whole")))
+                Err(self.why_ended(&format!("in a line of {count} bytes that is not whole")))
             }
-            Some(OutputLine::Closed) => Err(self.ended("without an answer")),
-            None => Err(self.late(wait)),
+            Some(OutputLine::Closed) => Err(self.why_ended("without an answer")),
+            None => Err(self.why_late(wait)),
         }
     }
 
     /// Why there is no answer from a program whose output has ended.
-    fn ended(&mut self, how: &str) -> String {
+    fn why_ended(&mut self, how: &str) -> String {
         let what = match self.group.exit(EXIT_TIMEOUT) {
             Some(ProgramExit::Code(code)) => format!("ended {how}, with exit code {code}"),
             Some(ProgramExit::Signal(signal)) => format!("ended {how}, killed by signal {signal}"),
@@ -120,7 +120,7 @@ impl Process {
     }
 
     /// Why there is no answer from a program that had time enough.
-    fn late(&mut self, wait: Duration) -> String {
+    fn why_late(&mut self, wait: Duration) -> String {
         let seconds = wait.as_secs_f64();
         let has_ended = self.group.exit(Duration::ZERO).is_some();
         let state = match (self.streams.partial(), self.group.is_stopped()) {

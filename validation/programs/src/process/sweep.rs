@@ -37,7 +37,7 @@ pub(super) fn end(id: u32, mark: &str) {
             let _ = kill_process_group(group, Signal::KILL);
         }
         for &(descendant, began) in &known {
-            kill_if(descendant, || shown(descendant).is_some_and(|it| it.began == began));
+            kill_if(descendant, || process_status(descendant).is_some_and(|it| it.began == began));
         }
         let left: Vec<u32> =
             processes().into_iter().filter(|it| *it != id && bears(*it, &mark)).collect();
@@ -46,7 +46,7 @@ pub(super) fn end(id: u32, mark: &str) {
             kill_if(process, || bears(process, &mark));
         }
         known.retain(|(it, began)| {
-            shown(*it).is_some_and(|it| it.began == *began && it.state != 'Z')
+            process_status(*it).is_some_and(|it| it.began == *began && it.state != 'Z')
         });
         if (left.is_empty() && known.is_empty()) || Instant::now() > until {
             return;
@@ -57,7 +57,7 @@ pub(super) fn end(id: u32, mark: &str) {
 
 /// The state of a process: `T` where it is stopped.
 pub(super) fn state(id: u32) -> Option<char> {
-    shown(id).map(|it| it.state)
+    process_status(id).map(|it| it.state)
 }
 
 fn pid(id: u32) -> Option<Pid> {
@@ -89,7 +89,7 @@ fn bears(id: u32, mark: &str) -> bool {
 /// beginnings.
 fn descendants(id: u32) -> BTreeSet<(u32, u64)> {
     let all: Vec<(u32, ProcessStatus)> =
-        processes().into_iter().filter_map(|it| Some((it, shown(it)?))).collect();
+        processes().into_iter().filter_map(|it| Some((it, process_status(it)?))).collect();
     let mut parents = BTreeSet::from([id]);
     let mut found = BTreeSet::new();
     loop {
@@ -107,7 +107,7 @@ fn descendants(id: u32) -> BTreeSet<(u32, u64)> {
 
 /// What the system shows of a process: `id (name) state parent ...`, where a name may hold
 /// anything.
-fn shown(id: u32) -> Option<ProcessStatus> {
+fn process_status(id: u32) -> Option<ProcessStatus> {
     let text = std::fs::read(format!("/proc/{id}/stat")).ok()?;
     let text = String::from_utf8_lossy(&text).into_owned();
     let (_, rest) = text.rsplit_once(") ")?;

@@ -66,10 +66,10 @@ pub struct SetUp {
     /// The way in which the engine's accuracy is chosen.
     pub stepping: SteppingKind,
     /// Whether it runs back in time, where the end of a mode ends the run.
-    #[serde(default = "yes")]
+    #[serde(default = "default_true")]
     pub backward: bool,
     /// Whether the program reports events that do not end their mode.
-    #[serde(default = "yes")]
+    #[serde(default = "default_true")]
     pub watch: bool,
     /// Whether the program answers derivatives through events where they are asked for.
     #[serde(default)]
@@ -161,7 +161,7 @@ enum EndingWord {
     Undecided,
 }
 
-fn yes() -> bool {
+fn default_true() -> bool {
     true
 }
 
@@ -253,14 +253,14 @@ fn parse<'de, T: Deserialize<'de>>(text: &'de str) -> Result<T, String> {
     let parsed = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
         let path = error.path().to_string();
         let column = error.inner().column();
-        format!("answered wrongly at {path}: {}{}", error.into_inner(), near(text, column))
+        format!("answered wrongly at {path}: {}{}", error.into_inner(), shown_near(text, column))
     })?;
     reader.end().map_err(|error| format!("answered more than one object: {error}"))?;
     Ok(parsed)
 }
 
 /// The text around a column of a line.
-fn near(text: &str, column: usize) -> String {
+fn shown_near(text: &str, column: usize) -> String {
     const SHOWN_BYTES: usize = 20;
     let bytes = text.as_bytes();
     let from = column.saturating_sub(SHOWN_BYTES).min(bytes.len());

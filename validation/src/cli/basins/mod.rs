@@ -152,7 +152,7 @@ pub(super) struct Survey {
 }
 
 pub(super) fn attractors(arguments: &AttractorArguments, threads: Option<u16>) -> Result<()> {
-    let outputs = arguments.output.outputs(usual)?;
+    let outputs = arguments.output.outputs(default_format)?;
     let AttractorArguments { system, grid, section, model, .. } = arguments;
     if let Some(chosen) = system.chosen(model)? {
         let survey = system::Survey::of(&chosen, grid, section, threads)?;
@@ -165,8 +165,8 @@ pub(super) fn attractors(arguments: &AttractorArguments, threads: Option<u16>) -
 
 pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result<()> {
     let outputs = outputs_of_labels(arguments)?;
-    let shown = only(&arguments.format, BasinFormat::of_attractors)?;
-    let shown = shown.unwrap_or(usual(&Destination::Stdout));
+    let shown = only_format(&arguments.format, BasinFormat::of_attractors)?;
+    let shown = shown.unwrap_or(default_format(&Destination::Stdout));
     let BasinArguments { system, grid, section, model, print, .. } = arguments;
     if let Some(chosen) = system.chosen(model)? {
         let survey = system::Survey::of(&chosen, grid, section, threads)?;
@@ -197,7 +197,7 @@ fn outputs_of_labels(arguments: &BasinArguments) -> Result<Outputs<Labels>> {
              ends in .npz, .png or .svg"
         );
     }
-    let labels = only(&arguments.format, BasinFormat::of_labels)?;
+    let labels = only_format(&arguments.format, BasinFormat::of_labels)?;
     let outputs = Outputs::of(paths, labels, |_| Labels::Npz)?;
     arguments.print.check(&outputs.pictures())?;
     let [columns, rows] = arguments.grid.grid;
@@ -208,12 +208,15 @@ fn outputs_of_labels(arguments: &BasinArguments) -> Result<Outputs<Labels>> {
 }
 
 /// The default format: a table on a terminal, JSON elsewhere.
-fn usual(destination: &Destination) -> AttractorFormat {
+fn default_format(destination: &Destination) -> AttractorFormat {
     if destination.is_terminal() { AttractorFormat::Table } else { AttractorFormat::Json }
 }
 
 /// The one format of a kind that was given, if any.
-fn only<F>(given: &[BasinFormat], kind: impl Fn(BasinFormat) -> Option<F>) -> Result<Option<F>> {
+fn only_format<F>(
+    given: &[BasinFormat],
+    kind: impl Fn(BasinFormat) -> Option<F>,
+) -> Result<Option<F>> {
     let mut of_kind = given.iter().filter_map(|it| kind(*it));
     let first = of_kind.next();
     if of_kind.next().is_some() {

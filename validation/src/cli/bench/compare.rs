@@ -57,7 +57,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
                 "--slowdown {share} has no effect on recorded versions: accepted are two binaries"
             )
         }
-        (None, None) => recorded(arguments)?,
+        (None, None) => record_comparison(arguments)?,
         (old, _) => {
             let file = if old.is_some() { &arguments.old } else { &arguments.new };
             bail!(
@@ -83,7 +83,7 @@ fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
     let pair = Pair { old, new, burden: arguments.slowdown };
     let Common { shared, lost, versions } = common(&pair)?;
     lost.iter().for_each(|bench| note(&format!("{bench}: only in {}", arguments.old)));
-    let benches = chosen(arguments, shared.into_iter())?;
+    let benches = chosen_benches(arguments, shared.into_iter())?;
     let bar = long_work::bar(u64::from(LIVES) * benches.len() as u64, "turns");
     let first = quotients(&pair, &benches, &|| bar.inc(1))?;
     let doubtful: Vec<String> =
@@ -105,13 +105,13 @@ fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
     Ok((lines, verdicts))
 }
 
-fn recorded(arguments: &Arguments) -> Result<Said> {
+fn record_comparison(arguments: &Arguments) -> Result<Said> {
     let file = arguments.history.as_deref().unwrap_or(Path::new(history::FILE));
     let history = History::read(file).map_err(|what| anyhow!("--history {what}"))?;
     let [old, new] = [&arguments.old, &arguments.new].map(|side| version(file, &history, side));
     let (old, new) = (old?, new?);
     let both = old.iter().filter(|it| new.iter().any(|other| other.bench == it.bench));
-    let benches = chosen(arguments, both.map(|it| it.bench.clone()))?;
+    let benches = chosen_benches(arguments, both.map(|it| it.bench.clone()))?;
     let mut lines = vec!["bench,figure,old,new,quotient,verdict".to_owned()];
     let mut verdicts = Vec::new();
     let side = |all: &[&HistoryRecord], bench: &str| {
@@ -149,7 +149,10 @@ fn version<'a>(file: &Path, history: &'a History, side: &str) -> Result<Vec<&'a 
     Ok(found)
 }
 
-fn chosen(arguments: &Arguments, benches: impl Iterator<Item = String>) -> Result<Vec<String>> {
+fn chosen_benches(
+    arguments: &Arguments,
+    benches: impl Iterator<Item = String>,
+) -> Result<Vec<String>> {
     let wanted = |name: &String| {
         arguments.bench.is_empty() || arguments.bench.iter().any(|it| it.is_match(name))
     };

@@ -60,7 +60,7 @@ impl Equations<'_> {
         let mut text = format!("mode {}\n", mode.name);
         for (state, row) in self.system.states.iter().zip(&mode.matrix) {
             let rate = written.and_then(|it| it.rate(state));
-            text.push_str(&both("  ", &format!("{state}' = "), rate, &self.form(row)));
+            text.push_str(&both_forms("  ", &format!("{state}' = "), rate, &self.form(row)));
         }
         for (n, until) in mode.until.iter().enumerate() {
             let written = written.and_then(|it| it.until.get(n));
@@ -101,7 +101,12 @@ impl Equations<'_> {
         for (n, (state, row)) in self.system.states.iter().zip(reset).enumerate() {
             let assigned = written(state);
             if assigned.is_some() || !is_unit(row, n) {
-                text.push_str(&both("    ", &format!("{state} = "), assigned, &self.form(row)));
+                text.push_str(&both_forms(
+                    "    ",
+                    &format!("{state} = "),
+                    assigned,
+                    &self.form(row),
+                ));
             }
         }
         text
@@ -149,7 +154,7 @@ impl Equations<'_> {
 }
 
 /// An equation as it is written, and with all numbers put in where that differs.
-fn both(indent: &str, left: &str, written: Option<&str>, form: &str) -> String {
+fn both_forms(indent: &str, left: &str, written: Option<&str>, form: &str) -> String {
     match written.filter(|it| !is_alike(it, form)) {
         None => format!("{indent}{left}{form}\n"),
         Some(written) => {
@@ -250,7 +255,7 @@ mod tests {
 
     #[test]
     fn the_same_equation_is_printed_once() {
-        assert_eq!(both("  ", "x' = ", Some("v"), "v"), "  x' = v\n");
-        assert_eq!(both("  ", "v' = ", Some("-g"), "-1"), "  v' = -g\n     = -1\n");
+        assert_eq!(both_forms("  ", "x' = ", Some("v"), "v"), "  x' = v\n");
+        assert_eq!(both_forms("  ", "v' = ", Some("-g"), "-1"), "  v' = -g\n     = -1\n");
     }
 }

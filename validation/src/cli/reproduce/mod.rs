@@ -41,7 +41,7 @@ pub(super) struct Arguments {
 const SIZED_ITEM: &str = "figure-7";
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
-    let chosen = chosen(&arguments.only)?;
+    let chosen = chosen_items(&arguments.only)?;
     if arguments.size.is_some() && !chosen.iter().any(|item| item.id == SIZED_ITEM) {
         bail!("--size has no effect on what --only names: it is accepted with {SIZED_ITEM}");
     }
@@ -80,8 +80,9 @@ fn finish(
     for (item, outcome) in chosen.iter().zip(done) {
         match outcome {
             Ok(claims) => {
-                settled
-                    .extend(claims.into_iter().filter(|it| wanted(&arguments.only, item, &it.id)));
+                settled.extend(
+                    claims.into_iter().filter(|it| is_wanted(&arguments.only, item, &it.id)),
+                );
             }
             Err(failure) => {
                 failed = true;
@@ -101,12 +102,12 @@ fn finish(
 }
 
 /// Whether a claim of an item was asked for, by its own name or the item's.
-fn wanted(only: &[String], item: &Item, claim: &str) -> bool {
+fn is_wanted(only: &[String], item: &Item, claim: &str) -> bool {
     only.is_empty() || only.iter().any(|id| id == item.id || id == claim)
 }
 
 /// Items that settle what was asked for; all where nothing was.
-fn chosen(only: &[String]) -> Result<Vec<&'static Item>> {
+fn chosen_items(only: &[String]) -> Result<Vec<&'static Item>> {
     for id in only {
         if !items().iter().any(|item| item.answers_to(id)) {
             let names = items().iter().flat_map(|it| std::iter::once(&it.id).chain(it.claims));

@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use serde_json::{Value, json};
 
-    fn written(value: &Value) -> String {
+    fn to_text(value: &Value) -> String {
         let mut out = Vec::new();
         write(value, &mut out).unwrap();
         String::from_utf8(out).unwrap()
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn a_point_is_a_line() {
-        let text = written(&json!({"points": [[0.5, -1.0, null], [2, 3, 4]], "words": ["a", "b"]}));
+        let text = to_text(&json!({"points": [[0.5, -1.0, null], [2, 3, 4]], "words": ["a", "b"]}));
         let expected = "{\n  \"points\": [\n    [0.5, -1.0, null],\n    [2, 3, 4]\n  ],\n  \"words\": [\"a\", \"b\"]\n}";
         assert_eq!(text, expected);
     }
@@ -143,7 +143,7 @@ mod tests {
             json!([1, [2, 3], 4, {"a": [true, {"b": []}]}, "x"]),
             json!({"a": {"b": [{"c": [1.5e-300, -0.0]}]}, "d": null}),
         ] {
-            assert_eq!(serde_json::from_str::<Value>(&written(&value)).unwrap(), value);
+            assert_eq!(serde_json::from_str::<Value>(&to_text(&value)).unwrap(), value);
         }
     }
 }

@@ -74,7 +74,7 @@ impl Destination {
                 (name, OpenFile::new(path).map(Open::File), self.folder())
             }
         };
-        let out = out.map_err(|error| named(&name, &error))?;
+        let out = out.map_err(|error| named_error(&name, &error))?;
         Ok(Opened { name, out, folder })
     }
 }
@@ -103,7 +103,7 @@ impl Opened {
             Open::Stdout(mut out) => out.flush(),
             Open::File(file) => file.finish(),
         };
-        Ok(finished.map_err(|error| named(&self.name, &error))?)
+        Ok(finished.map_err(|error| named_error(&self.name, &error))?)
     }
 }
 
@@ -113,7 +113,7 @@ impl Write for Opened {
             Open::Stdout(out) => out.write(bytes),
             Open::File(file) => file.write(bytes),
         };
-        written.map_err(|error| named(&self.name, &error))
+        written.map_err(|error| named_error(&self.name, &error))
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -121,12 +121,12 @@ impl Write for Opened {
             Open::Stdout(out) => out.flush(),
             Open::File(file) => file.flush(),
         };
-        flushed.map_err(|error| named(&self.name, &error))
+        flushed.map_err(|error| named_error(&self.name, &error))
     }
 }
 
 /// An error of the same kind with the name of what could not be written.
-fn named(name: &str, error: &io::Error) -> io::Error {
+fn named_error(name: &str, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{}: {error}", cannot_be_written(name)))
 }
 

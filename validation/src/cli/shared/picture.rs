@@ -57,14 +57,14 @@ pub(in crate::cli) struct PictureFlags {
 
 impl PrintFlags {
     /// The flags that are given, as they are written: the size, and the density.
-    fn given(&self) -> [Option<String>; 2] {
+    fn given_flags(&self) -> [Option<String>; 2] {
         let size = self.size.as_ref().map(|it| format!("--size {it}"));
         [size, self.dpi.as_ref().map(|it| format!("--dpi {it}"))]
     }
 
     /// Refuses the flags where no picture is drawn, and those that it takes no notice of.
     pub(in crate::cli) fn check(&self, pictures: &[PictureFormat]) -> Result<()> {
-        let [size, dpi] = self.given();
+        let [size, dpi] = self.given_flags();
         refuse(size.filter(|_| pictures.is_empty()), "png and svg")?;
         refuse(dpi.filter(|_| !pictures.contains(&PictureFormat::Png)), "png")
     }
@@ -84,7 +84,7 @@ impl PrintFlags {
             PictureFormat::Png => print.png(drawing),
             PictureFormat::Svg => print.svg(drawing).map(String::into_bytes),
         };
-        let flags: Vec<String> = self.given().into_iter().flatten().collect();
+        let flags: Vec<String> = self.given_flags().into_iter().flatten().collect();
         let bytes = bytes.map_err(|error| match flags.is_empty() {
             true => anyhow!(error),
             false => anyhow!("{}: {error}", flags.join(" ")),

@@ -34,7 +34,7 @@ impl PlannedRun {
         let max_periods = arguments.max_periods.unwrap_or(DEFAULT_MAX_PERIODS);
         let horizon = match (arguments.periods, &arguments.until) {
             (Some(count), _) => periods(count),
-            (None, Some(tau)) => until(&problem, tau)?,
+            (None, Some(tau)) => horizon_of(&problem, tau)?,
             (None, None) => periods(max_periods),
         };
         let omega = problem.model.parameters().omega;
@@ -56,13 +56,13 @@ impl PlannedRun {
     pub(super) fn ending(&self, last: Option<&Segment>, segments: &Segments<'_>) -> RunEnding {
         let undecided = last.filter(|segment| *segment.exit() == Exit::Undecidable);
         let how = match undecided {
-            Some(segment) => Some(self.undecided(segment)),
+            Some(segment) => Some(self.undecided_note(segment)),
             None => last.and_then(|last| self.how_it_ends(last, segments.events)),
         };
         RunEnding { how, touches: segments.touches(), undecided: undecided.is_some() }
     }
 
-    fn undecided(&self, last: &Segment) -> String {
+    fn undecided_note(&self, last: &Segment) -> String {
         format!(
             "undecidable: rounding hides how the phase {} ends that begins at tau = {:?}, it is \
              followed to tau = {:?}",
@@ -195,7 +195,7 @@ impl RunEnding {
 }
 
 /// The horizon that `--until` states.
-fn until(problem: &Problem, stated: &Typed<f64>) -> Result<Instant> {
+fn horizon_of(problem: &Problem, stated: &Typed<f64>) -> Result<Instant> {
     let tau = stated.value;
     let omega = problem.model.parameters().omega;
     let start = problem.entry.instant;

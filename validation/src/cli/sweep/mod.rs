@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     match &arguments.step {
         SweepStep::Run(arguments) => compute(arguments, threads),
         SweepStep::Status(arguments) => status(arguments),
-        SweepStep::Merge(arguments) => merged(arguments, threads),
+        SweepStep::Merge(arguments) => merge_shards(arguments, threads),
     }
 }
 
@@ -157,7 +157,7 @@ fn status(arguments: &StatusArguments) -> Result<u8> {
     Ok(if status.is_complete() { DONE } else { OUT_OF_BOUNDS })
 }
 
-fn merged(arguments: &MergeArguments, threads: Option<u16>) -> Result<u8> {
+fn merge_shards(arguments: &MergeArguments, threads: Option<u16>) -> Result<u8> {
     let output = &arguments.output;
     if output.extension().is_none_or(|it| it != "npz") {
         bail!(

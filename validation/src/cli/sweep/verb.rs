@@ -37,23 +37,23 @@ pub(super) fn work(plan: &Plan) -> Result<Box<dyn SweepVerb>> {
 /// The work of a verb that was read, of the system that it names or of the impact oscillator.
 fn of_verb(verb: Verb, plan: &Plan) -> Result<Box<dyn SweepVerb>> {
     Ok(match verb {
-        Verb::Basins(it) => match swept(&it.system, &it.model, plan)? {
+        Verb::Basins(it) => match swept_system(&it.system, &it.model, plan)? {
             Some(swept) => Box::new(SystemBasinWork::labels(swept, *it)?),
             None => Box::new(BasinWork::labels(*it)?),
         },
-        Verb::Attractors(it) => match swept(&it.system, &it.model, plan)? {
+        Verb::Attractors(it) => match swept_system(&it.system, &it.model, plan)? {
             Some(swept) => Box::new(SystemBasinWork::attractors(swept, *it)?),
             None => Box::new(BasinWork::attractors(*it)?),
         },
-        Verb::Lyapunov(it) => match swept(&it.system, &it.model, plan)? {
+        Verb::Lyapunov(it) => match swept_system(&it.system, &it.model, plan)? {
             Some(swept) => Box::new(SystemExponentWork::new(swept, *it)?),
             None => Box::new(ExponentWork::new(*it)?),
         },
-        Verb::Bifurcation(it) => match swept(&it.system, &it.model, plan)? {
+        Verb::Bifurcation(it) => match swept_system(&it.system, &it.model, plan)? {
             Some(swept) => Box::new(SystemDiagramWork::new(swept, *it, plan)?),
             None => Box::new(DiagramWork::new(*it, plan)?),
         },
-        Verb::Continue(it) => match swept(&it.system, &it.model, plan)? {
+        Verb::Continue(it) => match swept_system(&it.system, &it.model, plan)? {
             Some(swept) => Box::new(SystemBranchWork::new(swept, *it)?),
             None => Box::new(BranchWork::new(*it)?),
         },
@@ -62,7 +62,11 @@ fn of_verb(verb: Verb, plan: &Plan) -> Result<Box<dyn SweepVerb>> {
 }
 
 /// The system of a plan, if it has one; the flags of a system are refused without it.
-fn swept(choice: &SystemChoice, model: &ModelFlags, plan: &Plan) -> Result<Option<SweptSystem>> {
+fn swept_system(
+    choice: &SystemChoice,
+    model: &ModelFlags,
+    plan: &Plan,
+) -> Result<Option<SweptSystem>> {
     let chosen = choice.chosen(model)?;
     chosen.map(|chosen| SweptSystem::new(chosen, choice, plan)).transpose()
 }

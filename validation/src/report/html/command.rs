@@ -14,7 +14,7 @@ pub(super) fn rest(suite: Suite, folders: &[(&str, String)]) -> String {
         Suite::Quick => "quick",
         Suite::Full => "full",
     };
-    let flags = folders.iter().map(|(flag, folder)| format!(" {flag} {}", quoted(folder)));
+    let flags = folders.iter().map(|(flag, folder)| format!(" {flag} {}", quote(folder)));
     let flags = flags.collect::<String>();
     if verb(folders) == "score" {
         return format!("--rows{flags}");
@@ -23,7 +23,7 @@ pub(super) fn rest(suite: Suite, folders: &[(&str, String)]) -> String {
 }
 
 /// A word that a shell takes as it is.
-fn quoted(text: &str) -> String {
+fn quote(text: &str) -> String {
     format!("'{}'", text.replace('\'', "'\\''"))
 }
 
@@ -31,7 +31,7 @@ fn quoted(text: &str) -> String {
 pub(super) fn pattern(name: &str) -> String {
     // regex::escape takes hyphens for special, which they are in brackets only.
     let escaped = regex::escape(name).replace("\\-", "-");
-    quoted(&format!("^{escaped}$"))
+    quote(&format!("^{escaped}$"))
 }
 
 #[cfg(test)]

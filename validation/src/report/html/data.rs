@@ -25,7 +25,7 @@ pub(super) fn json(
             "library": engine.library,
             "pattern": command::pattern(engine.name),
             "marker": looks.get(i).map(|look| look.marker),
-            "settings": engines.get(i).map(|it| rounded(json!(it.settings))),
+            "settings": engines.get(i).map(|it| round_numbers(json!(it.settings))),
         })
     };
     let data = json!({
@@ -34,8 +34,8 @@ pub(super) fn json(
         "columns": columns(&report.results),
         "bounds": report.results.iter().map(|row| bounds(row, &mut texts)).collect::<Vec<_>>(),
         "texts": texts.all,
-        "growth": rounded(json!(evidence.growth)),
-        "restarts": rounded(json!(evidence.restarts)),
+        "growth": round_numbers(json!(evidence.growth)),
+        "restarts": round_numbers(json!(evidence.restarts)),
         "sections": evidence.sections.iter().map(section).collect::<Vec<_>>(),
         "events": evidence.events.iter().filter_map(|it| event(report, it)).collect::<Vec<_>>(),
         "state_error": scope.state_error_briefly,
@@ -69,7 +69,7 @@ fn cases(report: &Report, evidence: &ReportEvidence) -> Vec<Value> {
 
 /// Each key of a row as an array over the rows; keys of nested objects with a dot.
 fn columns(rows: &[ReportRow]) -> Map<String, Value> {
-    let flat: Vec<BTreeMap<String, Value>> = rows.iter().map(flat).collect();
+    let flat: Vec<BTreeMap<String, Value>> = rows.iter().map(flat_row).collect();
     let names = flat.iter().flat_map(|row| row.keys().cloned());
     let names: std::collections::BTreeSet<String> = names.collect();
     let column = |name: &String| {
@@ -81,9 +81,9 @@ fn columns(rows: &[ReportRow]) -> Map<String, Value> {
     all.map(|(name, column)| (name, Value::Array(column))).collect()
 }
 
-fn flat(row: &ReportRow) -> BTreeMap<String, Value> {
+fn flat_row(row: &ReportRow) -> BTreeMap<String, Value> {
     let mut flat = BTreeMap::from([("setting".to_owned(), json!(row.setting()))]);
-    if let Value::Object(fields) = rounded(json!(row)) {
+    if let Value::Object(fields) = round_numbers(json!(row)) {
         for (name, value) in fields {
             flatten(&name, value, &mut flat);
         }
@@ -130,7 +130,7 @@ fn event(report: &Report, picture: &EventPicture) -> Option<Value> {
             && (row.tolerance, row.step) == (picture.tolerance, picture.step)
     };
     let row = report.results.iter().position(is_its)?;
-    let mut value = rounded(json!(picture));
+    let mut value = round_numbers(json!(picture));
     value["row"] = json!(row);
     // About this time the others are told: it keeps its digits.
     value["centre"] = json!(picture.centre);
@@ -149,7 +149,7 @@ fn bounds(row: &ReportRow, texts: &mut Texts) -> Vec<Value> {
             statistic => format!("{quantity}, {statistic}"),
         };
         let verdict = texts.number(&word(json!(it.verdict)));
-        let [limit, value] = [it.limit, it.value].map(|number| rounded(json!(number)));
+        let [limit, value] = [it.limit, it.value].map(|number| round_numbers(json!(number)));
         json!([texts.number(&what), limit, value, verdict, texts.number(&it.why)])
     };
     row.bounds.iter().map(&mut bound).collect()
@@ -177,7 +177,7 @@ fn in_words(quantity: &str) -> &str {
 fn section(pair: &super::super::SectionPair) -> Value {
     let thinned = |points: &[[f64; 2]]| {
         let stride = points.len().div_ceil(MAX_POINTS).max(1);
-        rounded(json!(points.iter().step_by(stride).collect::<Vec<_>>()))
+        round_numbers(json!(points.iter().step_by(stride).collect::<Vec<_>>()))
     };
     json!({
         "omega": pair.omega,
@@ -190,16 +190,16 @@ fn section(pair: &super::super::SectionPair) -> Value {
 }
 
 /// Numbers to four digits after the first.
-fn rounded(value: Value) -> Value {
+fn round_numbers(value: Value) -> Value {
     match value {
         Value::Number(number) if number.is_f64() => {
             let short = number.as_f64().and_then(|it| format!("{it:.4e}").parse::<f64>().ok());
             json!(short)
         }
-        Value::Array(values) => values.into_iter().map(rounded).collect(),
-        Value::Object(fields) => {
-            Value::Object(fields.into_iter().map(|(key, value)| (key, rounded(value))).collect())
-        }
+        Value::Array(values) => values.into_iter().map(round_numbers).collect(),
+        Value::Object(fields) => Value::Object(
+            fields.into_iter().map(|(key, value)| (key, round_numbers(value))).collect(),
+        ),
         value => value,
     }
 }
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let value = rounded(json!([0.123_456_789, 1, {"a": f64::NAN, "b": -1.234_567e-12}]));
+        let value = round_numbers(json!([0.123_456_789, 1, {"a": f64::NAN, "b": -1.234_567e-12}]));
         assert_eq!(value, json!([0.12346, 1, {"a": null, "b": -1.2346e-12}]));
     }
 }

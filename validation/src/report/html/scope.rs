@@ -34,10 +34,10 @@ impl ReportScope {
             oscillator,
             systems: !systems.is_empty(),
             lead: lead(report, (oscillator, &systems), own),
-            replayed: replayed(evidence),
+            replayed: replayed_cases(evidence),
             truth: truth(evidence),
             state_error: state_error(oscillator, &systems),
-            state_error_briefly: briefly(oscillator, &systems),
+            state_error_briefly: brief_scope(oscillator, &systems),
         }
     }
 }
@@ -69,18 +69,18 @@ fn lead(report: &Report, (oscillator, systems): (bool, &[&CaseNote]), own: bool)
     format!(
         "Integrators{whose} of {}, held against the true events: {} on {}.",
         what.join(" and "),
-        counted(engines, "engine"),
-        counted(cases, "case"),
+        count_of(engines, "engine"),
+        count_of(cases, "case"),
     )
 }
 
-fn counted(count: usize, of: &str) -> String {
+fn count_of(count: usize, of: &str) -> String {
     if count == 1 { format!("1 {of}") } else { format!("{count} {of}s") }
 }
 
 /// Names, or how many of what they are.
-fn named(names: &[String], what: &str) -> String {
-    if names.len() <= MAX_NAMES { names.join(", ") } else { counted(names.len(), what) }
+fn names_or_count(names: &[String], what: &str) -> String {
+    if names.len() <= MAX_NAMES { names.join(", ") } else { count_of(names.len(), what) }
 }
 
 const TABLES: &str = "Tables of events and states with 25 proved digits, made once in ball \
@@ -88,13 +88,13 @@ const TABLES: &str = "Tables of events and states with 25 proved digits, made on
 const REPLAYED_RUN: &str = "the exact solver's run made again in 106 bits, twice as many as the \
                           numbers that engines return";
 
-fn replayed(evidence: &ReportEvidence) -> String {
+fn replayed_cases(evidence: &ReportEvidence) -> String {
     match &evidence.replayed[..] {
         [] => String::new(),
         names if names.len() == evidence.cases.len() => {
             format!("The truth is {REPLAYED_RUN}: there are no tables of these cases.")
         }
-        names => format!("The truth of {} is {REPLAYED_RUN}.", named(names, "case")),
+        names => format!("The truth of {} is {REPLAYED_RUN}.", names_or_count(names, "case")),
     }
 }
 
@@ -105,15 +105,16 @@ fn truth(evidence: &ReportEvidence) -> String {
     let own = "Tables of 25 digits that owe nothing to the solver are made by \
                reference_data/generate_systems.py, and --reference judges by them.";
     let first = if evidence.replayed.len() < evidence.cases.len() { TABLES } else { "" };
-    format!("{first} {} {own}", replayed(evidence)).trim_start().to_owned()
+    format!("{first} {} {own}", replayed_cases(evidence)).trim_start().to_owned()
 }
 
 /// The states of each system, or of the oscillator alone.
 fn states(systems: &[&CaseNote]) -> String {
     match systems {
-        [only] => named(&only.states, "state"),
+        [only] => names_or_count(&only.states, "state"),
         few if few.len() <= MAX_NAMES => {
-            let of = |it: &&CaseNote| format!("{}: {}", it.system, named(&it.states, "state"));
+            let of =
+                |it: &&CaseNote| format!("{}: {}", it.system, names_or_count(&it.states, "state"));
             few.iter().map(of).collect::<Vec<_>>().join("; ")
         }
         _ => "each system's own".to_owned(),
@@ -135,10 +136,10 @@ fn state_error(oscillator: bool, systems: &[&CaseNote]) -> String {
     }
 }
 
-fn briefly(oscillator: bool, systems: &[&CaseNote]) -> String {
+fn brief_scope(oscillator: bool, systems: &[&CaseNote]) -> String {
     match (oscillator, systems) {
         (_, []) => "largest of |dp|, |dy|, |dq|".to_owned(),
-        (false, [only]) => format!("largest error of {}", named(&only.states, "state")),
+        (false, [only]) => format!("largest error of {}", names_or_count(&only.states, "state")),
         _ => "largest error of a state".to_owned(),
     }
 }
@@ -157,7 +158,7 @@ mod tests {
         let notes = [note("house", &["air", "wall"]), note("house", &["air", "wall"])];
         let of_house = systems(&notes);
         assert_eq!(of_house.len(), 1);
-        assert_eq!(briefly(false, &of_house), "largest error of air, wall");
+        assert_eq!(brief_scope(false, &of_house), "largest error of air, wall");
         let notes = [note("house", &["air", "wall"]), note("ball", &["x", "v"])];
         assert_eq!(states(&systems(&notes)), "house: air, wall; ball: x, v");
     }

@@ -54,7 +54,7 @@ pub(super) fn engines(
         |(place, (engine, summary)): (usize, (&super::super::EngineEntry, &EngineSummary))| {
             let finest = summary.settings.last();
             let figure = |figure: fn(&SettingSummary) -> f64| {
-                finest.map_or(String::new(), |it| shown(figure(it)))
+                finest.map_or(String::new(), |it| formatted(figure(it)))
             };
             EngineLine {
                 place,
@@ -74,14 +74,14 @@ pub(super) fn engines(
                 partial: finest.is_some_and(|it| !it.is_over_most_rows()),
                 finest: finest.map_or(String::new(), |it| it.setting.clone()),
                 recall: summary.settings.iter().map(recall).collect(),
-                overall: overall(summary),
+                overall: events_found(summary),
                 incomplete: summary.settings.iter().any(|it| it.matched < it.expected),
             }
         };
     lines.map(line).collect()
 }
 
-fn shown(value: f64) -> String {
+fn formatted(value: f64) -> String {
     if value.is_nan() {
         "\u{2013}".to_owned()
     } else if value.is_infinite() {
@@ -149,7 +149,7 @@ fn recall(summary: &SettingSummary) -> RecallCell {
 }
 
 /// Events found, checked and all, over all settings.
-fn overall(summary: &EngineSummary) -> String {
+fn events_found(summary: &EngineSummary) -> String {
     let sum =
         |count: fn(&SettingSummary) -> usize| -> usize { summary.settings.iter().map(count).sum() };
     format!("{}/{}/{}", sum(|it| it.matched), sum(|it| it.expected), sum(|it| it.total))

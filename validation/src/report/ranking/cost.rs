@@ -49,7 +49,7 @@ impl<'a> Common<'a> {
     pub fn profiles(&self, engines: &[EngineRows<'_>]) -> Vec<Cost> {
         let of = |engine: &EngineRows<'_>| {
             let counted = !engine.is_exact() && engine.rows.iter().any(|it| work(it).is_some());
-            counted.then(|| self.least(engine))
+            counted.then(|| self.least_costs(engine))
         };
         let costs: Vec<Option<Vec<f64>>> = engines.iter().map(of).collect();
         let best = |at: usize| {
@@ -64,7 +64,7 @@ impl<'a> Common<'a> {
     }
 
     /// The least cost at an error of at most [`MAX_COMPARED_ERROR`], for each of the cases.
-    fn least(&self, engine: &EngineRows<'_>) -> Vec<f64> {
+    fn least_costs(&self, engine: &EngineRows<'_>) -> Vec<f64> {
         let least = |(case, _): &(&str, usize)| {
             let own = engine.rows.iter().filter(|row| row.case == *case);
             let exact = own.filter(|row| row.state_error.max <= MAX_COMPARED_ERROR);

@@ -68,12 +68,12 @@ fn markdown(ranking: &[Ranked]) -> String {
 fn cells(it: &Ranked) -> [String; 12] {
     let dash = || "\u{2013}".to_owned();
     let shown = |value: Option<f64>| value.map_or_else(dash, figure);
-    let counts = |it: &SettingCounts| joined(it, |(_, count)| count.to_string(), " / ");
+    let counts = |it: &SettingCounts| join_counts(it, |(_, count)| count.to_string(), " / ");
     let engine = if it.clean { it.engine.to_owned() } else { format!("{} (!)", it.engine) };
     [
         it.shown_rank().map_or_else(dash, |rank| rank.to_string()),
         engine,
-        joined(&it.cases_right, |(key, _)| key.clone(), " / "),
+        join_counts(&it.cases_right, |(key, _)| key.clone(), " / "),
         counts(&it.cases_right),
         counts(&it.cases_total),
         it.events_missed.to_string(),
@@ -87,7 +87,11 @@ fn cells(it: &Ranked) -> [String; 12] {
 }
 
 /// The settings, or their counts, in one cell.
-fn joined(counts: &SettingCounts, part: fn(&(String, usize)) -> String, between: &str) -> String {
+fn join_counts(
+    counts: &SettingCounts,
+    part: fn(&(String, usize)) -> String,
+    between: &str,
+) -> String {
     counts.0.iter().map(part).collect::<Vec<_>>().join(between)
 }
 
@@ -104,12 +108,12 @@ fn csv(ranking: &[Ranked]) -> io::Result<String> {
 /// A line of the CSV; of the settings' counts one beside the other in a cell.
 fn record(it: &Ranked) -> [String; 19] {
     let figure = |value: Option<f64>| value.map_or(String::new(), shortest);
-    let counts = |it: &SettingCounts| joined(it, |(_, count)| count.to_string(), " ");
+    let counts = |it: &SettingCounts| join_counts(it, |(_, count)| count.to_string(), " ");
     [
         it.rank.map_or(String::new(), |rank| rank.to_string()),
         it.engine.to_owned(),
         it.clean.to_string(),
-        joined(&it.cases_right, |(key, _)| key.clone(), " "),
+        join_counts(&it.cases_right, |(key, _)| key.clone(), " "),
         counts(&it.cases_right),
         counts(&it.cases_total),
         it.stiff.cases_right.to_string(),

@@ -51,7 +51,7 @@ impl<'a> Best<'a> {
     }
 
     /// A choice by the name that the table of engines gives it.
-    fn named(&self, choice: &Choice<'_>) -> String {
+    fn displayed_name(&self, choice: &Choice<'_>) -> String {
         let name = self.names.get(choice.engine()).copied().unwrap_or(choice.engine());
         format!("{name} at {}", choice.key())
     }
@@ -71,7 +71,7 @@ impl<'a> Best<'a> {
         let cases = loosest.rows.iter().map(|row| row.case.as_str());
         let shared: Vec<&str> =
             cases.filter(|case| equal.iter().all(|it| it.is_right_on(case))).collect();
-        Some(format!("{} ({})", self.named(cheapest), achieved(cheapest, &shared)))
+        Some(format!("{} ({})", self.displayed_name(cheapest), achieved(cheapest, &shared)))
     }
 
     /// Advises the cheapest of the engines that stay near the truth for about as long as the best
@@ -85,7 +85,7 @@ impl<'a> Best<'a> {
         let loosest = about.first()?.key();
         let loosest: Vec<_> = about.into_iter().filter(|it| it.key() == loosest).collect();
         let best = self.cheapest(&loosest)?;
-        let (named, periods) = (self.named(best), best.valid_periods());
+        let (named, periods) = (self.displayed_name(best), best.valid_periods());
         Some(format!("{named} (within 1e-3 for {periods:.0} periods on average)"))
     }
 }

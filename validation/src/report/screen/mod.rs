@@ -49,11 +49,11 @@ pub fn screen(report: &Report, evidence: &ReportEvidence, parts: ScreenParts) ->
 
 /// The blocks of the screen: what is shown in full, and what gives way.
 fn first_screen(report: &Report, evidence: &ReportEvidence) -> String {
-    let above = above(report);
+    let above = lines_above_table(report);
     let advice = advice(report);
     let derivatives = derivatives::gradient_lines(&report.gradients);
     let below: Vec<String> = power(evidence).into_iter().chain([counts(report)]).collect();
-    let bad = unexpected(report);
+    let bad = unexpected_rows(report);
     let table = EngineTable::of(report);
     let fixed = above.len() + table.header_lines() + advice.len() + derivatives.len() + below.len();
     let room = MAX_LINES.saturating_sub(fixed);
@@ -66,11 +66,11 @@ fn first_screen(report: &Report, evidence: &ReportEvidence) -> String {
     let spaced = lines + filled.clone().count() <= MAX_LINES;
     let between = if spaced { "\n\n" } else { "\n" };
     let text = filled.map(|it| it.join("\n")).collect::<Vec<_>>().join(between);
-    [text, "\n".to_owned(), worse(evidence), dearer(evidence)].concat()
+    [text, "\n".to_owned(), worse(evidence), cost_note(evidence)].concat()
 }
 
 /// The rows that nothing excuses, the first of each engine before the others.
-fn unexpected(report: &Report) -> Vec<&ReportRow> {
+fn unexpected_rows(report: &Report) -> Vec<&ReportRow> {
     let (mut first, mut others) = (Vec::<&ReportRow>::new(), Vec::new());
     for row in report.results.iter().filter(|row| row.is_unexpected()) {
         let is_known = first.iter().any(|it| it.engine == row.engine);
@@ -80,7 +80,7 @@ fn unexpected(report: &Report) -> Vec<&ReportRow> {
 }
 
 /// What stands above the table: that little was answered, and the question.
-fn above(report: &Report) -> Vec<String> {
+fn lines_above_table(report: &Report) -> Vec<String> {
     let unanswered = report
         .unanswered()
         .map(|it| format!("More than half is missing: {} (--allow-unanswered)", it.sentence()));
@@ -105,7 +105,7 @@ fn worse(evidence: &ReportEvidence) -> String {
     lines.map(|it| wrapped(&format!("worse than the baseline: {it}"))).collect()
 }
 
-fn dearer(evidence: &ReportEvidence) -> String {
+fn cost_note(evidence: &ReportEvidence) -> String {
     match evidence.dearer.as_slice() {
         [] => String::new(),
         rows => wrapped(&format!("right-hand sides beside the baseline: {}", rows.join("; "))),

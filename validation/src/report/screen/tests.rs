@@ -6,11 +6,11 @@ use crate::score::Checked;
 
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
-fn leaked(name: String) -> &'static str {
+fn leak(name: String) -> &'static str {
     Box::leak(name.into_boxed_str())
 }
 
-fn failing(row: &mut ReportRow, quantity: Quantity, verdict: Verdict) {
+fn fail(row: &mut ReportRow, quantity: Quantity, verdict: Verdict) {
     row.verdict = verdict;
     row.why = "a reason of many words that goes on and on\nand on another line ".repeat(9);
     row.bounds = vec![Checked {
@@ -24,9 +24,9 @@ fn failing(row: &mut ReportRow, quantity: Quantity, verdict: Verdict) {
 }
 
 /// Engines with long names, every third of which fails, on cases of all kinds.
-fn many(engines: usize) -> Report {
+fn report_of_many(engines: usize) -> Report {
     let mut rows = Vec::new();
-    let name = |engine| leaked(format!("a-library-with-a-name-and-a-method-{engine:02}"));
+    let name = |engine| leak(format!("a-library-with-a-name-and-a-method-{engine:02}"));
     let names: Vec<&'static str> = (0..engines).map(name).collect();
     for case in 0..12 {
         for (engine, name) in names.iter().enumerate() {
@@ -36,7 +36,7 @@ fn many(engines: usize) -> Report {
                 row.traits.is_chaotic = case < 3;
                 row.rhs_evaluations = Some(1_000_000_000 + engine as u64);
                 if engine % 3 == 1 {
-                    failing(&mut row, Quantity::TimeDefect, Verdict::Fail);
+                    fail(&mut row, Quantity::TimeDefect, Verdict::Fail);
                 }
                 rows.push(row);
             }
@@ -45,14 +45,14 @@ fn many(engines: usize) -> Report {
     report(rows)
 }
 
-fn shown(report: &Report) -> String {
+fn screen_text(report: &Report) -> String {
     screen(report, &ReportEvidence::default(), ScreenParts::default())
 }
 
 #[test]
 fn the_screen_is_at_most_thirty_lines_of_a_hundred_columns() {
     for engines in [1, 2, 17, 20, 24, 60] {
-        let said = shown(&many(engines));
+        let said = screen_text(&report_of_many(engines));
         assert!(said.lines().count() <= MAX_LINES, "{engines}: {said}");
         let widest = said.lines().map(|line| line.chars().count()).max();
         assert!(widest.is_some_and(|widest| widest <= WIDTH), "{engines}: {said}");
@@ -60,22 +60,22 @@ fn the_screen_is_at_most_thirty_lines_of_a_hundred_columns() {
             assert!(said.contains(part), "{part}: {said}");
         }
     }
-    let said = shown(&many(60));
+    let said = screen_text(&report_of_many(60));
     assert!(said.contains(" engines more: --details\n") && said.contains(" more: --details\n"));
     assert!(said.contains("tied"), "{said}");
-    assert!(shown(&many(20)).contains("less exact than its class"));
+    assert!(screen_text(&report_of_many(20)).contains("less exact than its class"));
 }
 
 #[test]
 fn all_engines_of_the_suite_and_some_failures_are_shown() {
-    let said = shown(&many(20));
+    let said = screen_text(&report_of_many(20));
     assert!((0..20).all(|it| said.contains(&format!("and-a-method-{it:02}"))), "{said}");
     assert!(!said.contains("engines more") && said.contains("\nfail: case-00 "), "{said}");
 }
 
 #[test]
 fn little_that_is_answered_is_said_on_top() {
-    let mut half = many(2);
+    let mut half = report_of_many(2);
     let asked = half.results.len();
     for row in half.results.iter_mut().take(asked / 2) {
         row.verdict = Verdict::NotScored;
@@ -84,7 +84,11 @@ fn little_that_is_answered_is_said_on_top() {
     half.results[asked / 2].status = "failed";
     let found = half.unanswered().map(|it| (it.rows, it.asked));
     assert_eq!(found, Some((asked / 2 + 1, asked)));
-    assert!(shown(&half).starts_with("More than half is missing: "), "{}", shown(&half));
+    assert!(
+        screen_text(&half).starts_with("More than half is missing: "),
+        "{}",
+        screen_text(&half)
+    );
     // What was not asked does not count, on either side.
     half.results[asked / 2].status = "unavailable";
     half.results[asked / 2].verdict = Verdict::Unavailable;
@@ -98,10 +102,10 @@ fn a_remark_says_what_goes_wrong_most_often() {
         let mut rows: Vec<ReportRow> =
             (0..9).map(|case| row(&format!("case-{case}"), "one", Some(1e-9))).collect();
         for (case, quantity) in spoiled {
-            failing(&mut rows[*case], *quantity, Verdict::Known);
+            fail(&mut rows[*case], *quantity, Verdict::Known);
         }
         let report = report(rows);
-        let said = shown(&report);
+        let said = screen_text(&report);
         said.lines().find(|line| line.contains(" one ")).unwrap_or_default().to_owned()
     };
     let twice =
@@ -133,7 +137,7 @@ fn advice_is_the_cheapest_of_equals_at_the_loosest_tolerance() {
             }
         }
     }
-    let said = shown(&report(rows));
+    let said = screen_text(&report(rows));
     let expected = "advice, non-stiff: cheap at 1e-9 (30/30 right, 90 % of errors < ";
     assert!(said.contains(expected) && said.contains(", 10 rhs)"), "{said}");
     assert!(said.contains("advice, chaos:     dear at 1e-6 (within"), "{said}");
@@ -144,6 +148,6 @@ fn advice_is_the_cheapest_of_equals_at_the_loosest_tolerance() {
 fn advice_says_where_nothing_is_right() {
     let mut rows = vec![row("case", "one", Some(1e-9))];
     rows[0].verdict = Verdict::Known;
-    let said = shown(&report(rows));
+    let said = screen_text(&report(rows));
     assert!(said.contains("non-stiff: no integrator gets any case right"), "{said}");
 }

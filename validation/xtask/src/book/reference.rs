@@ -72,7 +72,7 @@ fn section(name: &str, path: &str, schema: &Value) -> String {
 
 /// Adds a row for each key below a part of a schema; `[]` stands for the items of an array.
 fn add_keys(schema: &Value, part: &Value, path: &str, rows: &mut Vec<[String; 3]>) {
-    let part = resolved(schema, part);
+    let part = resolve(schema, part);
     if let Some(items) = part.get("items") {
         add_keys(schema, items, &format!("{path}[]"), rows);
     }
@@ -82,7 +82,7 @@ fn add_keys(schema: &Value, part: &Value, path: &str, rows: &mut Vec<[String; 3]
     for (key, value) in part["properties"].as_object().into_iter().flatten() {
         let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
         let meaning = value["description"].as_str();
-        let value = resolved(schema, value);
+        let value = resolve(schema, value);
         let meaning = meaning.or(value["description"].as_str()).unwrap_or_default();
         let row = [format!("`{path}`"), kind(value), meaning.replace('|', "\\|")];
         if !rows.contains(&row) {
@@ -93,7 +93,7 @@ fn add_keys(schema: &Value, part: &Value, path: &str, rows: &mut Vec<[String; 3]
 }
 
 /// A part of a schema, or what it refers to.
-fn resolved<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
+fn resolve<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
     let pointer = part["$ref"].as_str().and_then(|it| it.strip_prefix('#'));
     pointer.and_then(|it| schema.pointer(it)).unwrap_or(part)
 }

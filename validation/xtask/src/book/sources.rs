@@ -45,13 +45,13 @@ impl Sources {
         let mut sources = Self {
             site: site(root)?,
             summary: links::replaced(&summary, |page| {
-                Ok(named(&shown(&below_root(folder, page))))
+                Ok(book_path(&slashed(&below_root(folder, page))))
             })?,
             pages: Vec::new(),
             shown: BTreeSet::new(),
         };
         for path in order.iter().filter(|path| !is_generated(path)) {
-            let text = root.read(&shown(path))?;
+            let text = root.read(&slashed(path))?;
             sources.add(root, (path, &order), &text)?;
         }
         Ok(sources)
@@ -68,7 +68,7 @@ impl Sources {
     /// Adds a page with its links made good.
     fn add(&mut self, root: &Folder, (page, order): (&Path, &[PathBuf]), text: &str) -> Result<()> {
         let moved = |target: &str| self.moved(root, (page, order), target);
-        let text = links::replaced(text, moved).with_context(|| shown(page))?;
+        let text = links::replaced(text, moved).with_context(|| slashed(page))?;
         self.pages.push((page.to_owned(), text));
         Ok(())
     }
@@ -84,11 +84,11 @@ impl Sources {
         };
         std::fs::write(file(Path::new("SUMMARY.md"))?, &self.summary)?;
         for (path, text) in &self.pages {
-            let path = named(&shown(path));
+            let path = book_path(&slashed(path));
             std::fs::write(file(Path::new(&path))?, text).context(path)?;
         }
         for path in &self.shown {
-            std::fs::copy(root.path(&shown(path)), file(path)?).with_context(|| shown(path))?;
+            std::fs::copy(root.path(&slashed(path)), file(path)?).with_context(|| slashed(path))?;
         }
         for [from, to] in SETTINGS {
             std::fs::copy(root.path(from), book.join(to)).with_context(|| from.to_owned())?;
@@ -111,13 +111,13 @@ impl Sources {
         if is_generated(&path) {
             return Ok(target.to_owned());
         }
-        let there = root.path(&shown(&path));
+        let there = root.path(&slashed(&path));
         ensure!(there.exists(), "the link to {target} leads nowhere");
         if order.contains(&path) {
-            let anchors = links::anchors(&root.read(&shown(&path))?);
+            let anchors = links::anchors(&root.read(&slashed(&path))?);
             let leads = anchor.is_none_or(|anchor| anchors.contains(anchor));
             ensure!(leads, "the link to {target} leads to no heading");
-            return Ok(named(target));
+            return Ok(book_path(target));
         }
         if path.starts_with(FILE_FOLDER) && there.is_file() {
             self.shown.insert(path);
@@ -125,23 +125,23 @@ impl Sources {
         }
         let kind = if there.is_dir() { "tree" } else { "blob" };
         let anchor = anchor.map(|it| format!("#{it}")).unwrap_or_default();
-        Ok(format!("{}/{kind}/{BRANCH}/{}{anchor}", self.site, shown(&path)))
+        Ok(format!("{}/{kind}/{BRANCH}/{}{anchor}", self.site, slashed(&path)))
     }
 }
 
 /// Whether a page is generated when the book is built.
 fn is_generated(page: &Path) -> bool {
-    [VERBS, KEYS].contains(&shown(page).as_str())
+    [VERBS, KEYS].contains(&slashed(page).as_str())
 }
 
 /// A path with slashes on every platform.
-fn shown(path: &Path) -> String {
+fn slashed(path: &Path) -> String {
     let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")
 }
 
 /// The path of a page as the book names it.
-fn named(page: &str) -> String {
+fn book_path(page: &str) -> String {
     page.replace(FIRST_PAGE[0], FIRST_PAGE[1])
 }
 
@@ -169,8 +169,8 @@ fn complete(root: &Folder, order: &[PathBuf]) -> Result<()> {
         for entry in entries {
             let path = Path::new(folder).join(entry?.file_name());
             let is_page = path.extension().is_some_and(|it| it == "md");
-            if is_page && shown(&path) != SUMMARY && !placed.contains(&path) {
-                bail!("{} has no place in {SUMMARY}", shown(&path));
+            if is_page && slashed(&path) != SUMMARY && !placed.contains(&path) {
+                bail!("{} has no place in {SUMMARY}", slashed(&path));
             }
         }
     }

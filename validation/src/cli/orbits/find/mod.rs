@@ -65,7 +65,7 @@ struct StartGridFlags {
 
 impl StartGridFlags {
     /// A flag that is given, and its value.
-    fn given(&self) -> Option<(&'static str, String)> {
+    fn given_flag(&self) -> Option<(&'static str, String)> {
         let axes = self.axes.clone().map(|it| ("--axes", it));
         let grid = self.grid.map(|[across, up]| ("--grid", format!("{across}x{up}")));
         let window = self.window.map(|Window { p: [left, right], y: [low, high] }| {
@@ -75,11 +75,11 @@ impl StartGridFlags {
     }
 
     fn refuse_without_system(&self) -> Result<()> {
-        self.given().map_or(Ok(()), |(flag, value)| bail!("{}", without_system(flag, &value)))
+        self.given_flag().map_or(Ok(()), |(flag, value)| bail!("{}", without_system(flag, &value)))
     }
 
     fn refuse_without_all(&self) -> Result<()> {
-        self.given().map_or(Ok(()), |(flag, value)| {
+        self.given_flag().map_or(Ok(()), |(flag, value)| {
             bail!("{flag} {value} is not accepted without --all, which scans a grid of starts")
         })
     }
@@ -95,12 +95,12 @@ enum OrbitFormat {
 }
 
 /// The default format: a table on a terminal, JSON elsewhere.
-fn usual(destination: &Destination) -> OrbitFormat {
+fn default_format(destination: &Destination) -> OrbitFormat {
     if destination.is_terminal() { OrbitFormat::Table } else { OrbitFormat::Json }
 }
 
 pub(crate) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
-    let outputs = arguments.output.outputs(usual)?;
+    let outputs = arguments.output.outputs(default_format)?;
     if let Some(chosen) = arguments.system.chosen(&arguments.model)? {
         return of_system::run(arguments, &chosen, &outputs, threads);
     }
@@ -120,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         let one = Orbit::find(&map, problem.entry.point(), arguments.period);
         one.map(|it| vec![it]).map_err(|none| (none.residual, none.to_string()))
     } else {
-        scanned(&map, arguments.period)
+        scan_orbits(&map, arguments.period)
     };
     let orbits = found.as_ref().map_or(&[][..], Vec::as_slice);
     if outputs.any(|it| it == OrbitFormat::Json) && !arguments.all {
@@ -142,7 +142,7 @@ pub(crate) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
 }
 
 /// The orbits that a scan finds, the preferred one first; at least one.
-fn scanned(map: &StrobeMap, period: u32) -> Result<Vec<Orbit>, (f64, String)> {
+fn scan_orbits(map: &StrobeMap, period: u32) -> Result<Vec<Orbit>, (f64, String)> {
     let bar = long_work::share_bar();
     let found = scan(map, period, &mut |share| bar.show_share(share));
     bar.finish_and_clear();
@@ -151,7 +151,7 @@ fn scanned(map: &StrobeMap, period: u32) -> Result<Vec<Orbit>, (f64, String)> {
 
 /// The preferred orbit of a scan; how many others there are is said.
 pub(super) fn first_scanned(map: &StrobeMap, period: u32) -> Result<Orbit, (f64, String)> {
-    let found = scanned(map, period)?;
+    let found = scan_orbits(map, period)?;
     say_which(&found, period);
     preferred(found, period)
 }

@@ -74,10 +74,10 @@ pub(super) fn run(
     let solver = Solver::<f64>::new(&system)?;
     let map = arguments.section.map(&solver)?;
     if arguments.all {
-        return all(arguments, &map, outputs, threads);
+        return write_all(arguments, &map, outputs, threads);
     }
     arguments.starts.refuse_without_all()?;
-    let found = found(&map, arguments)?;
+    let found = orbit_after_transient(&map, arguments)?;
     let text = || found.as_ref().map(|it| table(&system, it)).unwrap_or_default();
     outputs.each(|format, out| match format {
         OrbitFormat::Json => output::json(out, &json(&system, &found)),
@@ -98,7 +98,7 @@ pub(super) fn run(
 }
 
 /// Finds and writes all orbits that are reached from a grid of starts.
-fn all(
+fn write_all(
     arguments: &Arguments,
     map: &SectionMap<'_, f64>,
     outputs: &Outputs<OrbitFormat>,
@@ -161,7 +161,10 @@ fn list<'a>(system: &'a System, found: &'a [Orbit]) -> OrbitsJson<'a> {
 }
 
 /// The orbit that is reached from the return after the transient.
-fn found(map: &SectionMap<'_, f64>, arguments: &Arguments) -> Result<Result<Orbit, NoOrbit>> {
+fn orbit_after_transient(
+    map: &SectionMap<'_, f64>,
+    arguments: &Arguments,
+) -> Result<Result<Orbit, NoOrbit>> {
     let guess = guess(map, arguments.transient)?;
     Ok(guess.and_then(|it| map.orbit(&it, arguments.period)))
 }

@@ -55,7 +55,7 @@ fn lines(branch: &[DrawnOrbit], bifurcations: &[DrawnBifurcation]) -> Vec<Layer>
         let [first, last] = [&stretch[0].at, &stretch[stretch.len() - 1].at];
         let count = first.points.len();
         let next = branch.get(end).map(|it| &it.at).filter(|it| it.points.len() == count);
-        let cut = next.and_then(|next| span.between([last, next], bifurcations));
+        let cut = next.and_then(|next| span.bifurcation_between([last, next], bifurcations));
         let (width, stroke) =
             if stretch[0].is_stable { (2.4, Stroke::Solid) } else { (1.4, Stroke::Dashed) };
         for n in 0..count {
@@ -84,7 +84,7 @@ impl Span {
     }
 
     /// The bifurcation between two orbits that follow each other.
-    fn between<'a>(
+    fn bifurcation_between<'a>(
         &self,
         [last, next]: [&DrawnPoints; 2],
         bifurcations: &'a [DrawnBifurcation],
@@ -126,18 +126,18 @@ fn marks(found: &DrawnBifurcation) -> Vec<Layer> {
 mod tests {
     use super::*;
 
-    fn at(value: f64, point: f64) -> DrawnPoints {
+    fn points_at(value: f64, point: f64) -> DrawnPoints {
         DrawnPoints { value, points: vec![point] }
     }
 
-    fn drawn(orbits: &[(f64, f64, bool)], marks: &[(f64, f64)]) -> Vec<Vec<[f64; 2]>> {
+    fn draw_branch(orbits: &[(f64, f64, bool)], marks: &[(f64, f64)]) -> Vec<Vec<[f64; 2]>> {
         let orbit = |&(value, point, is_stable): &(f64, f64, bool)| DrawnOrbit {
-            at: at(value, point),
+            at: points_at(value, point),
             is_stable,
         };
         let mark = |&(value, point): &(f64, f64)| DrawnBifurcation {
             name: String::new(),
-            at: at(value, point),
+            at: points_at(value, point),
         };
         let orbits: Vec<_> = orbits.iter().map(orbit).collect();
         let marks: Vec<_> = marks.iter().map(mark).collect();
@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn stability_changes_at_the_bifurcation() {
         let orbits = [(1.0, 0.0, true), (2.0, 0.1, true), (3.0, 0.2, false), (4.0, 0.3, false)];
-        let found = drawn(&orbits, &[(2.2, 0.12)]);
+        let found = draw_branch(&orbits, &[(2.2, 0.12)]);
         assert_eq!(found[0], [[1.0, 0.0], [2.0, 0.1], [2.2, 0.12]]);
         assert_eq!(found[1], [[2.2, 0.12], [3.0, 0.2], [4.0, 0.3]]);
     }
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn stability_changes_at_a_fold() {
         let orbits = [(1.0, 0.0, true), (2.0, 0.4, true), (2.0, 0.6, false), (1.0, 1.0, false)];
-        let found = drawn(&orbits, &[(1.0, 0.5), (2.1, 0.5)]);
+        let found = draw_branch(&orbits, &[(1.0, 0.5), (2.1, 0.5)]);
         assert_eq!(found[0], [[1.0, 0.0], [2.0, 0.4], [2.1, 0.5]]);
         assert_eq!(found[1], [[2.1, 0.5], [2.0, 0.6], [1.0, 1.0]]);
     }
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn without_a_bifurcation_there_is_no_gap() {
         let orbits = [(1.0, 0.0, true), (2.0, 0.1, false)];
-        let found = drawn(&orbits, &[(9.0, 3.0)]);
+        let found = draw_branch(&orbits, &[(9.0, 3.0)]);
         assert_eq!(found, [vec![[1.0, 0.0], [2.0, 0.1]], vec![[2.0, 0.1]]]);
     }
 }

@@ -214,7 +214,7 @@ pub(crate) fn followed(
     let (problem, guessed, family) = family(arguments, model)?;
     let branch = branch(arguments, &problem, guessed, &family, seen);
     let doubled = match &branch {
-        Ok(branch) if arguments.doubled => Some(doubled(branch, &family, from, to, seen)),
+        Ok(branch) if arguments.doubled => Some(doubled_branch(branch, &family, from, to, seen)),
         _ => None,
     };
     let complete = branch.as_ref().is_ok_and(Branch::is_complete);
@@ -288,7 +288,7 @@ fn branch(
 }
 
 /// The branch of twice the period at the first flip of the branch's own orbit, if there is one.
-fn doubled(
+fn doubled_branch(
     branch: &Branch,
     family: &Family,
     from: f64,

@@ -3,7 +3,7 @@
 //! Either each point has a whole diagram in the verb's own parameter, or the last axis takes the
 //! place of that parameter and each point has the returns of one value.
 
-use super::{SweptSystem, columns, counted, number_of};
+use super::{SweptSystem, columns, count_in_file, number_of};
 use crate::cli::bifurcation::{Arguments, MAX_ROWS, system};
 use crate::cli::sweep::diagrams::names_parameter;
 use crate::sweep::{Array, Plan, SweepPoint, SweepVerb, records};
@@ -50,7 +50,7 @@ impl SystemDiagramWork {
         let of = |it: &ReturnDiagramStep| columns(&it.points, returns, states);
         let (modes, all): (Vec<_>, Vec<_>) = steps.iter().map(of).unzip();
         let left_out = steps.iter().map(|it| number_of(it.left_out)).collect();
-        let undecidable = steps.iter().map(|it| counted(it.undecidable)).collect();
+        let undecidable = steps.iter().map(|it| count_in_file(it.undecidable)).collect();
         let mut arrays = vec![
             Array::i4("mode", &[&front[..], &[returns]].concat(), modes.concat()),
             Array::f8("state", &[&front[..], &[returns, states]].concat(), all.concat()),

@@ -1,6 +1,6 @@
 //! `lyapunov SYSTEM` at the points of a sweep.
 
-use super::{SweptSystem, counted, number_of};
+use super::{SweptSystem, count_in_file, number_of};
 use crate::cli::lyapunov::Arguments;
 use crate::cli::shared::long_work;
 use crate::cli::sweep::exponents::stationary;
@@ -37,7 +37,7 @@ impl SystemExponentWork {
         };
         let mean = found.map_or(f64::NAN, |it| it.mean_return_time);
         let settled = found.map_or(-1, |it| stationary(it.stationarity));
-        let undecidable = found.map_or(0, |it| counted(it.undecidable));
+        let undecidable = found.map_or(0, |it| count_in_file(it.undecidable));
         vec![
             list("exponents_per_return", states, &|it| it.per_return.clone()),
             list("exponents_per_time", states, &Exponents::per_time),

@@ -72,7 +72,7 @@ fn number_of(left_out: Option<LeftOut>) -> i32 {
 }
 
 /// A number of ties and touches in files, which hold no larger ones than this type.
-fn counted(number: u64) -> i32 {
+fn count_in_file(number: u64) -> i32 {
     i32::try_from(number).unwrap_or(i32::MAX)
 }
 
