@@ -116,10 +116,10 @@ impl Answers {
             return Err(value(format!("rtol = {tolerance} is not accepted: 1e-16 to 0.1 is")));
         }
         Ok(Answerer {
-            name: lasting(&self.name),
-            library: lasting(&self.library),
-            version: lasting(&self.version),
-            language: lasting(&self.language),
+            name: lasting_text(&self.name),
+            library: lasting_text(&self.library),
+            version: lasting_text(&self.version),
+            language: lasting_text(&self.language),
             class: self.class.as_deref().map(class).transpose()?,
             order: self.order,
             stepping: self.stepping()?,
@@ -158,7 +158,7 @@ fn class(word: &str) -> PyResult<Class> {
 }
 
 /// A text that lasts as long as the process, each once.
-fn lasting(text: &str) -> &'static str {
+fn lasting_text(text: &str) -> &'static str {
     static KEPT_TEXTS: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let Ok(mut kept) = KEPT_TEXTS.lock() else { return "" };
     if let Some(known) = kept.get(text) {

@@ -84,7 +84,7 @@ frame.onload = () => {
 </script>"##;
 
 /// Base 64 without its padding's checks: what the probe says holds no other character.
-fn decoded(text: &str) -> Vec<u8> {
+fn decode(text: &str) -> Vec<u8> {
     const ALPHABET: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let bits = text.bytes().filter_map(|byte| ALPHABET.iter().position(|it| *it == byte));
     let bits: Vec<usize> = bits.collect();
@@ -116,7 +116,7 @@ fn seen_at(width: u32) -> Value {
     let (_, rest) =
         dom.split_once("<pre id=\"seen\">").expect("the page's scripts ran to their end");
     let (seen, _) = rest.split_once('<').expect("an end");
-    serde_json::from_slice(&decoded(seen)).expect("JSON")
+    serde_json::from_slice(&decode(seen)).expect("JSON")
 }
 
 #[test]

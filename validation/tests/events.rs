@@ -18,12 +18,12 @@ fn pictures(case: &str, engine: &str) -> Vec<EventPicture> {
 }
 
 /// The value at the instant next to `t`.
-fn at(view: &View, values: &[f64], t: f64) -> f64 {
+fn value_at(view: &View, values: &[f64], t: f64) -> f64 {
     let share = (t - view.from) / (view.to - view.from);
     values[(share * (values.len() - 1) as f64).round() as usize]
 }
 
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
+fn max_size(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, f64::max)
 }
 
@@ -37,8 +37,8 @@ fn a_missed_touch_shows_what_the_root_finder_did_not_see() {
     assert!((picture.centre - 1.068_286).abs() < 1e-6, "{}", picture.centre);
     for view in &picture.views {
         assert!(view.truth.events.iter().any(|it| it.t.abs() < 1e-9 && !it.matched));
-        assert!(largest(view.looks.iter().map(|look| look[1])) < 0.0);
-        assert!(largest(view.truth.values.iter().copied()) < 1e-15);
+        assert!(max_size(view.looks.iter().map(|look| look[1])) < 0.0);
+        assert!(max_size(view.truth.values.iter().copied()) < 1e-15);
     }
     let close = &picture.views[picture.telling];
     assert_eq!((close.truth.phase.as_str(), close.engine.events.len()), ("no-contact", 0));
@@ -46,9 +46,9 @@ fn a_missed_touch_shows_what_the_root_finder_did_not_see() {
         close.truth.events.iter().map(|it| (it.phase.as_str(), it.matched)).collect();
     assert_eq!(ends, [("contact", false), ("no-contact", false)]);
     // In contact the gap is closed; the margin of 1e-6 is how far it would have opened beyond.
-    let within = at(close, &close.truth.values, close.truth.events[1].t / 2.0);
+    let within = value_at(close, &close.truth.values, close.truth.events[1].t / 2.0);
     assert!(within.abs() < 1e-15, "{within}");
-    let risen = largest(close.engine.values.iter().copied());
+    let risen = max_size(close.engine.values.iter().copied());
     assert!(risen > 0.9e-6 && risen < 1.1e-6, "{risen}");
     let wide = &picture.views[0];
     assert!(wide.steps.len() > 3, "{:?}", wide.steps);
@@ -64,7 +64,7 @@ fn a_spurious_touch_is_the_engine_s_own() {
     let own = close.engine.events.iter().find(|it| it.t == 0.0).expect("it is shown");
     assert!(!own.matched && picture.title.starts_with("The first wrong record, "));
     assert!(close.truth.events.iter().all(|it| it.t.abs() > 1e-12));
-    assert!(at(close, &close.truth.values, 0.0).abs() > 1e-3);
+    assert!(value_at(close, &close.truth.values, 0.0).abs() > 1e-3);
 }
 
 #[test]
@@ -96,8 +96,8 @@ fn a_wrong_event_of_another_system_is_shown_alike() {
     let wrong = side.events.iter().find(near).expect("it is shown");
     assert!(!wrong.matched && picture.modes.contains(&wrong.phase));
     // The guard is zero at the event on the side that has it.
-    let range = largest(side.values.iter().copied()) + largest(side.values.iter().map(|v| -v));
-    assert!(at(close, &side.values, 0.0).abs() <= 0.1 * range, "{range}");
+    let range = max_size(side.values.iter().copied()) + max_size(side.values.iter().map(|v| -v));
+    assert!(value_at(close, &side.values, 0.0).abs() <= 0.1 * range, "{range}");
     assert_eq!(close.engine.values.len(), close.truth.values.len());
     assert!(!picture.views[0].steps.is_empty() && !picture.views[0].looks.is_empty());
 }
@@ -123,9 +123,9 @@ fn an_answer_of_a_program_is_shown_by_its_records() {
         for (told, watched) in told.views.iter().zip(&watched.views) {
             assert!(told.steps.is_empty() && told.looks.is_empty());
             assert_eq!(told.engine.values.len(), watched.engine.values.len());
-            let size = largest(watched.engine.values.iter().map(|value| value.abs()));
+            let size = max_size(watched.engine.values.iter().map(|value| value.abs()));
             let pairs = told.engine.values.iter().zip(&watched.engine.values);
-            let apart = largest(pairs.map(|(one, other)| (one - other).abs()));
+            let apart = max_size(pairs.map(|(one, other)| (one - other).abs()));
             assert!(apart <= 1e3 * tolerance * size.max(1.0), "{tolerance:e}: {apart:e} of {size}");
         }
     }

@@ -10,7 +10,10 @@ use percuss_validation::suite::PreparedCase;
 use percuss_validation::system::Values;
 
 /// What is said of a right answer to a case that was changed, at two tolerances.
-fn said(case: &str, forge: impl Fn(&PreparedCase, &mut Outcome)) -> [LocalJudgement; 2] {
+fn forged_judgements(
+    case: &str,
+    forge: impl Fn(&PreparedCase, &mut Outcome),
+) -> [LocalJudgement; 2] {
     let prepared = exact::prepared(|name| name == case, None).remove(0);
     [1e-6, 1e-9].map(|tolerance| {
         let engine = engine("differential-equations-rkv767e");
@@ -46,7 +49,9 @@ fn one_record_does_not_stand_for_an_instant() {
         (first.event, first.state) = (event, after);
     };
     let meeting = Values::of(&[1.0, 2.0, 3.0, -9.0, -6.0, -3.0]);
-    for found in said("spheres-meet-inelastic", |case, it| whole(case, it, "two-three", meeting)) {
+    for found in forged_judgements("spheres-meet-inelastic", |case, it| {
+        whole(case, it, "two-three", meeting)
+    }) {
         assert_eq!(first_kind(&found), Some(WrongKind::Inconsistent));
     }
     for (case, name) in [("cradle-two", "one-two"), ("cradle-one", "two-three")] {
@@ -54,14 +59,14 @@ fn one_record_does_not_stand_for_an_instant() {
             let after = answer.events.last().expect("an event").state;
             whole(case, answer, name, after);
         };
-        said(case, last);
+        forged_judgements(case, last);
     }
 }
 
 /// The impacts of an accumulation that are left out are missed, wherever the last record is.
 #[test]
 fn a_tail_of_impacts_cannot_be_left_out() {
-    let found = said("ball-long-accumulation", |_, answer| {
+    let found = forged_judgements("ball-long-accumulation", |_, answer| {
         let last = answer.events.last().cloned();
         answer.events.truncate(52);
         answer.events.extend(last);
@@ -81,12 +86,12 @@ fn copies_of_a_record_are_spurious() {
         }
     };
     for (case, from) in [("ball-moving-in", 98), ("height-touched", 1)] {
-        for found in said(case, copies(from, 500)) {
+        for found in forged_judgements(case, copies(from, 500)) {
             assert!(found.spurious > 400, "{case}: {found:?}");
         }
     }
     // A model that makes no progress has 64 events in an instant, and ends with them.
-    for found in said("rigid-rests-on-stop", copies(0, 1000)) {
+    for found in forged_judgements("rigid-rests-on-stop", copies(0, 1000)) {
         assert!(found.spurious > 900, "{found:?}");
     }
 }
@@ -94,7 +99,7 @@ fn copies_of_a_record_are_spurious() {
 /// At a graze that is left open the reset still has to be the event's.
 #[test]
 fn an_open_event_has_no_free_state() {
-    let found = said("stop-graze-miss-1e-9", |case, answer| {
+    let found = forged_judgements("stop-graze-miss-1e-9", |case, answer| {
         let event = place(case, case.task.mode, "impact");
         let graze = |it: &&percuss_validation::score::Graze| it.elapsed > 4.0 && it.elapsed < 4.3;
         let elapsed = case.grazes.iter().find(graze).expect("a graze").elapsed;
@@ -119,7 +124,7 @@ fn an_early_ending_needs_a_reason() {
         ("slow-forcing", Ending::NoProgress, WrongKind::Spurious),
         ("slow-forcing", Ending::Horizon, WrongKind::Missed),
     ] {
-        let found = said(case, |_, answer| {
+        let found = forged_judgements(case, |_, answer| {
             let last = answer.events.last().expect("an event");
             (answer.ended_at, answer.end) = (last.elapsed, last.state);
             answer.ended = ended;

@@ -14,7 +14,7 @@ fn cells(words: &[&str], name: &str) -> Vec<Vec<f64>> {
 }
 
 /// A printed number of 17 digits is off by half a unit of its last place, and so is its f64.
-fn near(found: f64, expected: f64) -> bool {
+fn is_near(found: f64, expected: f64) -> bool {
     (found - expected).abs() <= 4.0 * f64::EPSILON * expected.abs()
 }
 
@@ -37,7 +37,7 @@ fn a_bouncing_ball_has_its_derivatives_in_closed_form() {
         ];
         for (found, expected) in expected {
             let pairs = || found[row].iter().zip(expected);
-            assert!(pairs().all(|(a, b)| near(*a, b)), "{n}: {:?} {expected:?}", found[row]);
+            assert!(pairs().all(|(a, b)| is_near(*a, b)), "{n}: {:?} {expected:?}", found[row]);
         }
     }
 }
@@ -85,7 +85,7 @@ x = 0
     for (n, row) in found.iter().enumerate().skip(1) {
         let time = 1.0 / (1.0 - d) + (n - 1) as f64 * 2.0 / (1.0 - d * d);
         let state = if n % 2 == 1 { 1.0 } else { -1.0 };
-        assert!(near(row[0], time) && row[1] == state, "{n}: {row:?}");
+        assert!(is_near(row[0], time) && row[1] == state, "{n}: {row:?}");
     }
 }
 
@@ -138,7 +138,7 @@ fn a_start_has_the_derivatives_of_its_expressions() {
 }
 
 /// The exit code, the rows and the messages of a run.
-fn told(words: &[&str]) -> (Option<i32>, Vec<Vec<String>>, String) {
+fn run_gradient(words: &[&str]) -> (Option<i32>, Vec<Vec<String>>, String) {
     let output = run(&[&["gradient"], words].concat());
     (output.status.code(), rows(&text(&output.stdout)), text(&output.stderr))
 }
@@ -157,19 +157,19 @@ fn first_empty(rows: &[Vec<String>]) -> usize {
 #[test]
 fn a_start_on_a_guard_has_the_derivatives_of_one_side() {
     let ball = ["bouncing-ball", "--events", "2", "--wrt"];
-    let (code, rows, said) = told(&[&ball[..], &["start.x"]].concat());
+    let (code, rows, said) = run_gradient(&[&ball[..], &["start.x"]].concat());
     let places: Vec<_> = rows.iter().map(|it| (it[0].as_str(), it[4].as_str())).collect();
     assert_eq!(places, [("0", ""), ("1", "-"), ("1", "+"), ("2", "-"), ("2", "+")]);
     assert!(rows.iter().filter(|it| it[4] == "-").all(|it| it[5..].iter().all(String::is_empty)));
     let above: Vec<f64> = rows[2][5..].iter().map(|it| number(it)).collect();
     // 1/v, and e g/v of the speed.
     let expected = [1.0 / 1.5, 0.0, 1.0 / 1.5];
-    assert!(above.iter().zip(expected).all(|(a, b)| near(*a, b)), "{above:?}");
+    assert!(above.iter().zip(expected).all(|(a, b)| is_near(*a, b)), "{above:?}");
     let wanted =
         "from row 1 on, no derivative by start.x below its value: the run has other events";
     assert!(said.contains(wanted) && said.lines().count() == 1 && code == Some(1), "{said}");
     // Other names keep theirs.
-    let (code, rows, said) = told(&[&ball[..], &["start.x,g"]].concat());
+    let (code, rows, said) = run_gradient(&[&ball[..], &["start.x,g"]].concat());
     let by_g =
         rows.iter().filter(|it| it[3] == "g").all(|it| !it[5].is_empty() && it[4].is_empty());
     assert!(code == Some(1) && by_g && rows.len() == 8 && said.lines().count() == 1, "{said}");
@@ -195,7 +195,7 @@ y = 0
 "#;
     std::fs::write(&path, text).expect("written");
     let path = path.to_str().expect("UTF-8");
-    let (code, rows, said) = told(&[path, "--until", "0.25", "--wrt", "start.x"]);
+    let (code, rows, said) = run_gradient(&[path, "--until", "0.25", "--wrt", "start.x"]);
     let cells: Vec<_> = rows.iter().map(|it| it[4..].join(" ")).collect();
     // Just after it x is 0 and y is 3/2 (1 - x); at the end x = 1 - 1 + 1/2 moves with the start.
     let expected = [" 0 1 0", "- -0.5 0 -1.5", "+   ", "- 0 1 0", "+   "];
@@ -211,11 +211,11 @@ y = 0
 #[test]
 fn cells_are_empty_from_where_there_is_no_derivative() {
     // An impact at the end.
-    let (code, rows, said) = told(&["bouncing-ball", "--until", "1.5", "--wrt", "g"]);
+    let (code, rows, said) = run_gradient(&["bouncing-ball", "--until", "1.5", "--wrt", "g"]);
     assert_eq!((code, first_empty(&rows)), (Some(1), 2), "{said}");
     assert!(said.contains("from row 2 on") && said.contains("horizon"), "{said}");
     // What the run itself says comes with its own line, and keeps its exit code.
-    let (code, rows, said) = told(&["bouncing-ball", "--until", "9", "--wrt", "g"]);
+    let (code, rows, said) = run_gradient(&["bouncing-ball", "--until", "9", "--wrt", "g"]);
     assert_eq!((code, rows.last().map(|it| it[1].as_str())), (Some(0), Some("accumulation")));
     assert!(said.contains("infinitely many impacts accumulate"), "{said}");
     // The row of the ending has the time and the state of the last impact.

@@ -110,7 +110,7 @@ fn events(
     state: [DoubleDouble; 3],
     end: Instant,
 ) -> Vec<[DoubleDouble; 5]> {
-    let passages = Replay::varied(parameters, entry, state, end);
+    let passages = Replay::from_two_words(parameters, entry, state, end);
     let rows = passages.map_while(|passage| {
         let next = passage.expect("it is decided").next?;
         let elapsed = next.instant.since(&entry.instant, parameters.omega);

@@ -41,7 +41,7 @@ fn the_exact_solver_lasts_as_long_as_the_truths_growth_lets_it() {
     assert!(least >= -MAX_LOSS_PERIODS, "{least}");
     assert!(MEDIAN_GAIN_PERIODS.contains(&found.gained.median), "{:?}", found.gained);
     // The truth is the better one by far wherever the solver is judged.
-    for (run, trusted) in found.runs.iter().zip(test.trusted()) {
+    for (run, trusted) in found.runs.iter().zip(test.trusted_periods()) {
         assert!(trusted > run.valid, "{run:?}: {trusted}");
     }
 }
@@ -53,7 +53,7 @@ fn the_exact_solver_lasts_as_long_as_the_truths_growth_lets_it() {
 fn the_truth_lasts_as_long_as_it_says() {
     const STATE_TOLERANCE: f64 = 20.0 * 1e-5;
     let test = HorizonTest::new(&chaos(), 20, 250).expect("it is made");
-    let (problem, trusted) = (exact::problem(&chaos()), test.trusted());
+    let (problem, trusted) = (exact::problem(&chaos()), test.trusted_periods());
     let mut sorted = trusted.clone();
     sorted.sort_unstable();
     println!("the truth lasts {sorted:?} periods");
@@ -71,7 +71,7 @@ fn apart_after(start: &Problem, periods: u64) -> f64 {
     let horizon = entry.instant.after_periods(periods, 1);
     let [p, y, q] = [entry.state.p, entry.state.y, entry.state.q].map(DoubleDouble::exact);
     let end = |y: DoubleDouble| {
-        let last = Replay::varied(parameters, &entry, [p, y, q], horizon).last();
+        let last = Replay::from_two_words(parameters, &entry, [p, y, q], horizon).last();
         last.expect("there is a phase").expect("it is decided").at(&horizon)
     };
     let (one, other) =

@@ -12,16 +12,16 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Follows chaos from rest for this many forcing periods; its events, and the most that is held
 /// on the heap when a phase has been found, bytes.
-fn followed(periods: u64) -> (u64, usize) {
+fn follow(periods: u64) -> (u64, usize) {
     let model = Model::new(Parameters { omega: 1.4, ..Parameters::default() }).expect("a model");
     let rest = model.start(&Start::default()).expect("a start");
     let region = Region::new(ALLOCATOR);
     let mut run = model.trajectory(rest).until(rest.instant.after_periods(periods, 1));
-    let held = run.by_ref().map(|_| held(&region)).max().unwrap_or_default();
+    let held = run.by_ref().map(|_| held_bytes(&region)).max().unwrap_or_default();
     (run.counters().switches, held)
 }
 
-fn held(region: &Region<'_, System>) -> usize {
+fn held_bytes(region: &Region<'_, System>) -> usize {
     let change = region.change();
     change.bytes_allocated - change.bytes_deallocated
 }
@@ -30,12 +30,12 @@ fn held(region: &Region<'_, System>) -> usize {
 /// usual harness: what its threads hold would be counted too.
 fn main() {
     for periods in [1_000, 1_000_000] {
-        let (events, held) = followed(periods);
+        let (events, held) = follow(periods);
         assert!(events * 2 > periods, "{events}");
         assert_eq!(held, 0, "{periods} periods");
     }
     // The counter counts.
     let region = Region::new(ALLOCATOR);
     let kept = std::hint::black_box(vec![0_u8; 1 << 20]);
-    assert!(held(&region) >= kept.len());
+    assert!(held_bytes(&region) >= kept.len());
 }

@@ -31,7 +31,7 @@ why = \"Each wall is met twice.\"
 until = 8.0
 ";
 
-fn written() -> tempfile::TempDir {
+fn shuttle_folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let cases = folder.path().join("cases");
     std::fs::create_dir(&cases).expect("made");
@@ -46,7 +46,7 @@ fn path(folder: &Path, name: &str) -> String {
 
 #[test]
 fn the_report_of_own_cases_speaks_of_them() {
-    let folder = written();
+    let folder = shuttle_folder();
     let (cases, out) = (path(folder.path(), "cases"), path(folder.path(), "out"));
     let engines = "^(exact|ode_solvers-dopri5)$";
     let output = run(&["validate", "--cases", &cases, "-e", engines, "--out", &out]);
@@ -110,15 +110,15 @@ fn labels_of_large_states_share_a_power_of_ten() {
 }
 
 /// The folder of the shuttle and its case, one of whose files is changed.
-fn spoiled(name: &str, change: impl Fn(Vec<u8>) -> Vec<u8>) -> tempfile::TempDir {
-    let folder = written();
+fn spoiled_folder(name: &str, change: impl Fn(Vec<u8>) -> Vec<u8>) -> tempfile::TempDir {
+    let folder = shuttle_folder();
     let file = folder.path().join("cases").join(name);
     let bytes = std::fs::read(&file).expect("read");
     std::fs::write(&file, change(bytes)).expect("written");
     folder
 }
 
-fn replaced(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
+fn replace(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
     let whole = text(bytes);
     assert!(whole.contains(from), "{from}");
     whole.replace(from, to).into_bytes()
@@ -139,7 +139,7 @@ fn mistakes_in_cases_name_their_line_and_what_is_accepted() {
         ("[horizon]\nuntil = 8.0\n", "", vec![":4: [horizon] is missing", "[horizon] with"]),
     ];
     for (from, to, parts) in wrong {
-        let folder = spoiled(case, |bytes| replaced(&bytes, from, to));
+        let folder = spoiled_folder(case, |bytes| replace(&bytes, from, to));
         let cases = path(folder.path(), "cases");
         refused(&["validate", "--cases", &cases], &[[case].as_slice(), &parts].concat());
     }
@@ -148,7 +148,7 @@ fn mistakes_in_cases_name_their_line_and_what_is_accepted() {
 #[test]
 fn bytes_that_are_no_utf8_have_their_line() {
     for (name, line) in [("there-and-back.toml", 7), ("shuttle.system.toml", 19)] {
-        let folder = spoiled(name, |bytes| [&bytes[..], b"# \xe9\n"].concat());
+        let folder = spoiled_folder(name, |bytes| [&bytes[..], b"# \xe9\n"].concat());
         let cases = path(folder.path(), "cases");
         let place = format!("{name}:{line}: the byte 0xe9 is not accepted: a text in UTF-8 is");
         refused(&["validate", "--cases", &cases], &[&place]);
@@ -162,7 +162,7 @@ fn bytes_that_are_no_utf8_have_their_line() {
 #[test]
 fn a_missing_start_names_the_last_line_and_what_it_holds() {
     let start = "[start]\nmode = \"free\"\nplace = 0\nspeed = 1\n";
-    let folder = spoiled("shuttle.system.toml", |bytes| replaced(&bytes, start, ""));
+    let folder = spoiled_folder("shuttle.system.toml", |bytes| replace(&bytes, start, ""));
     let accepted = "[start] is missing: accepted after this line, the last, is one with mode and \
                     the states place, speed";
     let cases = path(folder.path(), "cases");
@@ -173,7 +173,7 @@ fn a_missing_start_names_the_last_line_and_what_it_holds() {
 
 #[test]
 fn a_pattern_without_cases_names_those_of_the_folder() {
-    let folder = written();
+    let folder = shuttle_folder();
     let cases = path(folder.path(), "cases");
     let held = format!("matches no case: {cases} holds there-and-back");
     refused(&["validate", "--cases", &cases, "--case", "nosuch"], &["--case nosuch", &held]);

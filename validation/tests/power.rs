@@ -53,7 +53,7 @@ fn light_touch() -> Vec<PreparedCase> {
 }
 
 /// The wrong engines whose faults show in no one way of running a case, and those that do.
-fn anywhere(all: &[WrongEngine]) -> Vec<WrongEngine> {
+fn split_by_way(all: &[WrongEngine]) -> Vec<WrongEngine> {
     all.iter().copied().filter(|it| it.way.is_none()).collect()
 }
 
@@ -70,7 +70,7 @@ fn findings(wrong: &[WrongEngine], cases: &[PreparedCase], standard: Standard) -
 fn every_fault_is_caught_and_every_gate_catches_one() {
     let cases = prepared();
     assert_eq!(cases.len(), CASES.len());
-    let found = findings(&anywhere(wrong()), &cases, EXACT_STANDARD);
+    let found = findings(&split_by_way(wrong()), &cases, EXACT_STANDARD);
     for finding in &found {
         println!("{} ({}): {:?}", finding.engine, finding.fault, finding.gates);
         assert!(finding.gates.values().any(|trip| trip.failed > 0), "{} passes", finding.engine);
@@ -93,7 +93,7 @@ fn the_control_passes_where_the_faults_do_not() {
         cases.partition(|it| it.case.name.starts_with("graze"));
     let control = WrongEngine { engine: CONTROL, fault: "none", way: None };
     for finding in findings(&[control], &others, standard) {
-        assert!(!finding.caught(), "the control fails: {:?}", finding.gates);
+        assert!(!finding.is_caught(), "the control fails: {:?}", finding.gates);
     }
     let failed = |wrong: WrongEngine| -> usize {
         let cases = [&others, &grazes].into_iter();
@@ -128,7 +128,7 @@ const INTEGRATED_CASES: [&str; 6] = [
 fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
     let cases = exact::prepared(|name| INTEGRATED_CASES.contains(&name), Some(Suite::Quick));
     for standard in Standard::of_faulty() {
-        let found = findings(&anywhere(faulty()), &cases, standard);
+        let found = findings(&split_by_way(faulty()), &cases, standard);
         for finding in &found {
             println!("{} ({}): {:?}", finding.engine, finding.fault, finding.gates);
             let caught = finding.gates.values().any(|trip| trip.failed > 0);
@@ -140,7 +140,7 @@ fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
         }
         let control = WrongEngine { engine: FAULTY_CONTROL, fault: "none", way: None };
         for finding in findings(&[control], &cases, standard) {
-            assert!(!finding.caught(), "{} {:?}", finding.engine, finding.gates);
+            assert!(!finding.is_caught(), "{} {:?}", finding.engine, finding.gates);
         }
     }
 }
@@ -158,7 +158,7 @@ fn faults_in_ways_of_running_are_caught_there_and_nowhere_else() {
         let finding = examine(&it, &cases, standard, &defaults);
         let Finding { engine, fault, gates, failed_on, elsewhere, .. } = &finding;
         println!("{engine} ({fault}): {gates:?}, {failed_on:?}, elsewhere {elsewhere:?}");
-        assert!(finding.caught(), "{engine}: {fault}");
+        assert!(finding.is_caught(), "{engine}: {fault}");
         // An engine's own motion in chaos, which is judged too, may be run in any way.
         let is_chaotic = |name: &String| {
             let case = cases.iter().find(|it| it.case.name == *name).expect("a case");

@@ -39,7 +39,7 @@ pub(super) fn engine(name: &str) -> &'static dyn Engine {
 }
 
 /// The answer of an engine, and what its class of methods is allowed.
-fn answered(engine: &dyn Engine, case: &PreparedCase) -> (Outcome, Allowance) {
+fn answer_of(engine: &dyn Engine, case: &PreparedCase) -> (Outcome, Allowance) {
     answered_to(engine, case, ACCURACY)
 }
 
@@ -78,7 +78,7 @@ fn right_answers_are_right_whatever_the_method() {
     for case in cases() {
         for engine in engines.map(engine) {
             let name = engine.declaration().name;
-            let (right, allowance) = answered(engine, &case);
+            let (right, allowance) = answer_of(engine, &case);
             let found = judged(&case, &right, allowance);
             assert_eq!(found.first_wrong, None, "{name} on {}", case.case.name);
             assert!(!found.is_wrong(&allowance), "{name} on {}", case.case.name);
@@ -90,11 +90,11 @@ fn right_answers_are_right_whatever_the_method() {
 }
 
 /// On how many cases a variant is caught, and spoils anything; and what is said of it first.
-fn caught(variant: Variant) -> (usize, usize, Vec<WrongKind>) {
+fn count_caught(variant: Variant) -> (usize, usize, Vec<WrongKind>) {
     let engine = engine("ode_solvers-dopri5");
     let (mut caught, mut spoiled, mut kinds) = (0, 0, Vec::new());
     for case in cases() {
-        let (right, allowance) = answered(engine, &case);
+        let (right, allowance) = answer_of(engine, &case);
         let Some(wrong) =
             variant.of(&case.task, (&right, case.local.judged(&right)), allowance.tolerance)
         else {
@@ -111,7 +111,7 @@ fn caught(variant: Variant) -> (usize, usize, Vec<WrongKind>) {
 #[test]
 fn late_events_are_seen_where_they_are_located() {
     for by in [30.0, 100.0] {
-        let (caught, spoiled, kinds) = caught(Variant::Late(by));
+        let (caught, spoiled, kinds) = count_caught(Variant::Late(by));
         assert_eq!((caught, spoiled), (CASES.len(), CASES.len()), "{by}");
         let located = kinds.iter().filter(|it| **it == WrongKind::Location).count();
         assert!(located + 1 >= CASES.len(), "{by}: {kinds:?}");
@@ -134,7 +134,7 @@ fn wrong_answers_are_caught_wherever_they_are_wrong() {
         Variant::WrongMode,
     ];
     for variant in variants {
-        let (caught, spoiled, kinds) = caught(variant);
+        let (caught, spoiled, kinds) = count_caught(variant);
         assert!(spoiled > 0 && caught == spoiled, "{variant:?}: {caught} of {spoiled} {kinds:?}");
     }
 }
@@ -145,7 +145,7 @@ fn wrong_answers_are_caught_wherever_they_are_wrong() {
 fn one_wrong_record_costs_one() {
     let engine = engine("ode_solvers-dopri5");
     for case in cases().iter().filter(|it| it.case.name.starts_with("fig7a")) {
-        let (right, allowance) = answered(engine, case);
+        let (right, allowance) = answer_of(engine, case);
         let all = right.events.len();
         let mut twice = right.clone();
         twice.events.insert(all / 2, right.events[all / 2]);
@@ -170,12 +170,12 @@ fn an_ending_is_held_against_the_exact_one() {
     let cases = cases();
     let named = |name: &str| cases.iter().find(|it| it.case.name == name).expect("a case");
     let first = |case: &PreparedCase, spoil: fn(&mut Outcome)| {
-        let (mut answer, allowance) = answered(engine, case);
+        let (mut answer, allowance) = answer_of(engine, case);
         spoil(&mut answer);
         judged(case, &answer, allowance).first_wrong
     };
     let backward = named("ball-backward");
-    assert_eq!(answered(engine, backward).0.ended, Ending::LeavesDomain);
+    assert_eq!(answer_of(engine, backward).0.ended, Ending::LeavesDomain);
     let goes_on = first(backward, |it| {
         (it.ended, it.ended_at) = (Ending::Horizon, 1e9);
     });

@@ -50,7 +50,7 @@ struct Place {
 }
 
 /// The growth of tau, p, y, q and v.
-fn grown(row: &TruthRow, time: f64) -> [f64; 5] {
+fn growth_of(row: &TruthRow, time: f64) -> [f64; 5] {
     let [p, y, q, v] = row.growth[..] else { panic!("four states") };
     [time, p, y, q, v]
 }
@@ -93,7 +93,13 @@ fn every_proved_digit_of_every_case_is_met() {
             let what = format!("switch {} of {name}", n + 1);
             let place = Place { events: n + 1, time: proved.elapsed.value() - begins };
             begins = proved.elapsed.value();
-            compare((found, proved), &grown(proved, proved.growth_time), place, &what, &mut here);
+            compare(
+                (found, proved),
+                &growth_of(proved, proved.growth_time),
+                place,
+                &what,
+                &mut here,
+            );
         }
         let place = |row: &TruthRow| {
             let since = |switch: &TruthRow| row.elapsed.minus(switch.elapsed).value();
@@ -103,11 +109,11 @@ fn every_proved_digit_of_every_case_is_met() {
         };
         for (k, rows) in replayed.samples.iter().zip(&truth.samples).enumerate() {
             let what = format!("sample {k} of {name}");
-            compare(rows, &grown(rows.1, 1.0), place(rows.1), &what, &mut here);
+            compare(rows, &growth_of(rows.1, 1.0), place(rows.1), &what, &mut here);
         }
         let what = format!("end of {name}");
         let ends = (&replayed.end, &truth.end);
-        compare(ends, &grown(&truth.end, 1.0), place(&truth.end), &what, &mut here);
+        compare(ends, &growth_of(&truth.end, 1.0), place(&truth.end), &what, &mut here);
         assert_eq!(replayed.samples.len(), truth.samples.len(), "{name}");
         (events, samples) = (events + truth.events.len(), samples + truth.samples.len());
         println!("{name}: {:.2} at {}", here.units, here.place);

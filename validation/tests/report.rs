@@ -9,7 +9,7 @@ use percuss_validation::score::Verdict;
 use serde_json::Value;
 use std::path::Path;
 
-fn written(name: &str, report: &Report, evidence: &ReportEvidence) -> String {
+fn html_of(name: &str, report: &Report, evidence: &ReportEvidence) -> String {
     let exporter = exporters().iter().find(|it| it.file_name() == name).expect("the format");
     let mut bytes = Vec::new();
     exporter.write(report, evidence, &mut bytes).expect("written");
@@ -29,7 +29,7 @@ fn data(html: &str) -> Value {
 #[test]
 fn the_page_holds_every_row() {
     let report = report();
-    let html = written("report.html", &report, &evidence());
+    let html = html_of("report.html", &report, &evidence());
     let data = data(&html);
     let column = |name: &str| data["columns"][name].as_array().cloned().unwrap_or_default();
     assert_eq!(data["bounds"].as_array().map(Vec::len), Some(report.results.len()));
@@ -55,7 +55,7 @@ fn the_page_holds_every_row() {
 
 #[test]
 fn nothing_is_loaded_and_nothing_gets_out_of_its_place() {
-    let html = written("report.html", &report(), &evidence());
+    let html = html_of("report.html", &report(), &evidence());
     for part in ["src=", "url(", "@import", "<link", "fetch(", "XMLHttpRequest", "import("] {
         assert!(!html.contains(part), "{part}");
     }
@@ -79,12 +79,12 @@ fn sections_without_data_are_left_out() {
         assert!(sections.iter().all(|it| there(it) == linked(it)));
         sections.iter().filter(|it| there(it)).count()
     };
-    assert_eq!(shown(&written("report.html", &report(), &full)), 5);
+    assert_eq!(shown(&html_of("report.html", &report(), &full)), 5);
     // Valid horizons are of the rows, and the page has rows.
-    assert_eq!(shown(&written("report.html", &report(), &empty)), 1);
+    assert_eq!(shown(&html_of("report.html", &report(), &empty)), 1);
     let nothing =
         Report { results: Vec::new(), engines: Vec::new(), ranking: Vec::new(), ..report() };
-    assert!(written("report.html", &nothing, &empty).contains("No engine was run"));
+    assert!(html_of("report.html", &nothing, &empty).contains("No engine was run"));
 }
 
 /// The report in which an engine was run at its finest tolerance on the first `ran` cases alone.
@@ -101,7 +101,7 @@ fn with_few_rows(engine: &str, ran: usize) -> Report {
 #[test]
 fn a_median_over_few_rows_is_marked_and_sorted_last() {
     let shown = |ran: usize| {
-        let html = written("report.html", &with_few_rows("de-radau5", ran), &evidence());
+        let html = html_of("report.html", &with_few_rows("de-radau5", ran), &evidence());
         let (_, table) = html.split_once("<table class=\"engines").expect("the table");
         let (_, line) = table.split_once("data-engine=\"de-radau5\"").expect("the engine");
         line.split_once("</tr>").expect("an end").0.to_owned()
@@ -153,7 +153,7 @@ fn a_run_with_other_events_counts_as_infinitely_wrong_in_a_median() {
             row.records.events_spurious = Some(1);
             row.verdict = verdict;
         }
-        let data = data(&written("report.html", &report, &evidence()));
+        let data = data(&html_of("report.html", &report, &evidence()));
         let engines = data["engines"].as_array().expect("a list").clone();
         let engine = engines.into_iter().find(|it| it["name"] == "de-radau5").expect("the engine");
         let setting = &engine["settings"][1];
@@ -200,7 +200,7 @@ fn a_failing_case_that_is_all_of_its_system_is_named_once() {
 fn every_format_takes_every_number() {
     for exporter in exporters() {
         for evidence in [evidence(), ReportEvidence::default()] {
-            written(exporter.file_name(), &report(), &evidence);
+            html_of(exporter.file_name(), &report(), &evidence);
         }
     }
 }

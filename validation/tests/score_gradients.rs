@@ -12,7 +12,7 @@ fn reference(file: &str) -> PathBuf {
 }
 
 /// The proved table as an answer: `n,event,wrt,dtime` and the states.
-fn proved() -> String {
+fn proved_table() -> String {
     let table = fs::read_to_string(reference(&format!("{CASE}.csv"))).expect("a table");
     let lines = table.lines().filter(|it| !it.starts_with('#'));
     let cells = lines.map(|it| it.split(',').collect::<Vec<_>>());
@@ -21,7 +21,7 @@ fn proved() -> String {
 }
 
 /// The exit code, stderr, and the names, verdicts and reasons of `score` on a file of derivatives.
-fn scored(gradients: &str) -> (Option<i32>, String, Vec<[String; 3]>) {
+fn score(gradients: &str) -> (Option<i32>, String, Vec<[String; 3]>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
     let system = reference(&format!("{CASE}.system.toml"));
@@ -40,7 +40,7 @@ fn scored(gradients: &str) -> (Option<i32>, String, Vec<[String; 3]>) {
 }
 
 fn verdicts(gradients: &str) -> Vec<String> {
-    let (code, said, found) = scored(gradients);
+    let (code, said, found) = score(gradients);
     assert_eq!(code, Some(0), "{said}");
     let names: Vec<&str> = found.iter().map(|it| it[0].as_str()).collect();
     assert_eq!(names, ["bound", "collapse", "drift", "leak"]);
@@ -49,7 +49,7 @@ fn verdicts(gradients: &str) -> Vec<String> {
 
 #[test]
 fn proved_derivatives_are_right_and_others_are_named() {
-    let proved = proved();
+    let proved = proved_table();
     assert_eq!(verdicts(&proved), ["right"; 4]);
     // By one name all are zero, and by another there is no end.
     let change = |line: &str| {
@@ -80,7 +80,7 @@ fn mistakes_are_named_with_their_line() {
         ("2,end,bound,0,0,0\n3,a,bound,0,0,0", "line 3: a line by \"bound\" after its end"),
         ("1,collapse,bound,0,0", "line 2: 5 columns; accepted are 6"),
     ] {
-        let (code, said, found) = scored(&format!("{header}{lines}\n"));
+        let (code, said, found) = score(&format!("{header}{lines}\n"));
         assert_eq!(code, Some(0), "{said}");
         assert!(found.iter().all(|it| it[1] == "refused"), "{lines}: {found:?}");
         assert!(found.iter().all(|it| it[2].contains(expected)), "{lines}: {found:?}");

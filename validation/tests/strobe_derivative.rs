@@ -33,7 +33,7 @@ fn image(
 ) -> [DoubleDouble; 3] {
     let mut state = entry.point().map(DoubleDouble::exact);
     state[column] = state[column] + DoubleDouble::exact(step);
-    let last = Replay::varied(parameters, entry, state, end).last().unwrap().unwrap();
+    let last = Replay::from_two_words(parameters, entry, state, end).last().unwrap().unwrap();
     let [p, y, q, _] = last.at(&end);
     [p, y, q]
 }
@@ -48,7 +48,7 @@ fn differences(model: &Model, entry: &Entry, end: Instant) -> Jacobian {
     [0, 1, 2].map(|row| [0, 1, 2].map(|column| columns[column][row]))
 }
 
-fn less(a: &Jacobian, b: &Jacobian) -> Jacobian {
+fn difference(a: &Jacobian, b: &Jacobian) -> Jacobian {
     std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] - b[i][j]))
 }
 
@@ -79,7 +79,7 @@ fn over_several_periods_for_both_targets_of_an_impact() {
                 let end = entry.instant.after_periods(periods, 1);
                 let found = passage.jacobian();
                 let wanted = differences(map.model(), entry, end);
-                let apart = norm(&less(&found, &wanted)) / norm(&found).max(1.0);
+                let apart = norm(&difference(&found, &wanted)) / norm(&found).max(1.0);
                 assert!(
                     apart <= DERIVATIVE_TOLERANCE,
                     "{entry:?} {periods}: {apart:e}\n{found:?}\n{wanted:?}"
@@ -141,7 +141,7 @@ impl GrazingStart {
     }
 }
 
-fn between(model: &Model, entry: Entry, end: Instant) -> Matrix {
+fn derivative_between(model: &Model, entry: Entry, end: Instant) -> Matrix {
     let mut derivative = IDENTITY;
     for segment in model.trajectory(entry).until(end) {
         let step = match segment.exit() {
@@ -155,7 +155,7 @@ fn between(model: &Model, entry: Entry, end: Instant) -> Matrix {
     derivative
 }
 
-fn bounded(matrix: &Matrix) -> Jacobian {
+fn without_growth(matrix: &Matrix) -> Jacobian {
     [P, Y, Q].map(|row| [P, Y, Q].map(|column| matrix[row][column]))
 }
 
@@ -168,9 +168,9 @@ fn the_map_has_a_corner_at_a_graze_and_no_square_root() {
     for distance in [1e-6, 1e-8, 1e-10] {
         let [touching, missing] = [distance, -distance].map(|distance| {
             let entry = graze.entry(distance);
-            let found = bounded(&between(&model, entry, end));
+            let found = without_growth(&derivative_between(&model, entry, end));
             let wanted = differences(&model, &entry, end);
-            let apart = norm(&less(&found, &wanted)) / norm(&found);
+            let apart = norm(&difference(&found, &wanted)) / norm(&found);
             assert!(
                 apart <= DERIVATIVE_TOLERANCE,
                 "{distance:e}: {apart:e}\n{found:?}\n{wanted:?}"
@@ -183,16 +183,16 @@ fn the_map_has_a_corner_at_a_graze_and_no_square_root() {
             impact.entry().instant.after(TwoWord::new(impact.duration()), model.parameters().omega);
         let flight = graze.first(-distance);
         let before = flight.variation(flight.elapsed_at(&at));
-        let after = between(&model, flight.entry_at(&at), end);
+        let after = derivative_between(&model, flight.entry_at(&at), end);
         let mut swallowed = [[0.0; 5]; 5];
         let two_xi = 2.0 * model.parameters().xi;
         for (row, change) in [(Y, -two_xi), (Q, 1.0)] {
             swallowed[row][P] = change;
             swallowed[row][Q] = -change;
         }
-        let predicted = bounded(&product(&after, &product(&swallowed, &before)));
-        let jump = less(&touching, &missing);
-        let rest = norm(&less(&jump, &predicted)) / norm(&predicted);
+        let predicted = without_growth(&product(&after, &product(&swallowed, &before)));
+        let jump = difference(&touching, &missing);
+        let rest = norm(&difference(&jump, &predicted)) / norm(&predicted);
         assert!(norm(&jump) > 0.1, "{jump:?}");
         let slope = impact.switch_derivative().unwrap().time[P].abs();
         if let Some((rest_before, slope_before)) = last {
@@ -225,7 +225,8 @@ fn one_sided_differences_at_the_graze_are_the_two_derivatives() {
         let (near, far) = (at(side * 1e-9), at(side * width));
         let quotient: StrobePoint =
             std::array::from_fn(|i| (far[i] - near[i]) / (side * (width - 1e-9)));
-        let exact = bounded(&between(&graze.model, graze.entry(side * 0.5 * width), end));
+        let exact =
+            without_growth(&derivative_between(&graze.model, graze.entry(side * 0.5 * width), end));
         for (row, quotient) in exact.iter().zip(quotient) {
             // The square root of the width, from what the short contact adds.
             assert!((row[1] - quotient).abs() <= 10.0 * width.sqrt(), "{side}: {row:?} {quotient}");

@@ -35,11 +35,11 @@ const ROUNDING_TOLERANCE: f64 = 1e-13;
 /// A decay over 2 pi by exp(-2 pi).
 const DECAY_EXPONENT: f64 = -TAU;
 
-fn near(value: f64, known: f64) {
+fn assert_near(value: f64, known: f64) {
     assert!((value - known).abs() < ROUNDING_TOLERANCE, "{value} {known}");
 }
 
-fn told(arguments: &[&str], code: i32) -> Value {
+fn run_json(arguments: &[&str], code: i32) -> Value {
     let output = run(arguments);
     assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", text(&output.stderr));
     serde_json::from_slice(&output.stdout).expect("JSON")
@@ -58,13 +58,16 @@ fn walking(key: &str, call: impl Fn(&str)) {
 fn an_orbit_closes_without_its_drift() {
     for key in ["drift = [\"s\"]\n", ""] {
         walking(key, |path| {
-            let orbit = told(&["orbit", path, "--period", "1", "--transient", "5"], 0);
+            let orbit = run_json(&["orbit", path, "--period", "1", "--transient", "5"], 0);
             assert_eq!((&orbit["converged"], &orbit["stable"]), (&true.into(), &true.into()));
-            near(orbit["points"][0]["state"][0].as_f64().expect("x"), 0.25);
-            near(orbit["drift_per_return"]["s"].as_f64().expect("a drift"), DRIFT_PER_RETURN);
+            assert_near(orbit["points"][0]["state"][0].as_f64().expect("x"), 0.25);
+            assert_near(
+                orbit["drift_per_return"]["s"].as_f64().expect("a drift"),
+                DRIFT_PER_RETURN,
+            );
             let multipliers = orbit["multipliers"].as_array().expect("multipliers");
             assert_eq!(multipliers.len(), 1, "{orbit}");
-            near(multipliers[0][0].as_f64().expect("a number"), DECAY_EXPONENT.exp());
+            assert_near(multipliers[0][0].as_f64().expect("a number"), DECAY_EXPONENT.exp());
             assert_eq!(orbit["events"], serde_json::json!(["up@on"]));
         });
     }
@@ -73,7 +76,7 @@ fn an_orbit_closes_without_its_drift() {
 #[test]
 fn an_orbit_with_a_state_that_is_told_to_be_no_drift_does_not_close() {
     walking("drift = []\n", |path| {
-        let orbit = told(&["orbit", path, "--period", "1", "--transient", "5"], 1);
+        let orbit = run_json(&["orbit", path, "--period", "1", "--transient", "5"], 1);
         assert_eq!(orbit["converged"], false);
         assert_eq!(orbit["drift_per_return"], serde_json::json!({}));
     });
@@ -86,29 +89,29 @@ fn a_section_shows_the_drift_among_the_states() {
         assert_eq!(csv.lines().next(), Some("n,time,mode,x,s"));
         let returns = rows(&csv);
         for two in returns.windows(2) {
-            near(number(&two[1][3]), 0.25);
-            near(number(&two[1][4]) - number(&two[0][4]), DRIFT_PER_RETURN);
+            assert_near(number(&two[1][3]), 0.25);
+            assert_near(number(&two[1][4]) - number(&two[0][4]), DRIFT_PER_RETURN);
         }
         // What x has decayed from its start, 1.75 above the orbit, is gone into s, which begins at
         // 0, where that of the orbit would be: after 6 returns 6 gains.
-        near(number(&returns[3][4]), 9.0 * DRIFT_PER_RETURN + 1.75);
+        assert_near(number(&returns[3][4]), 9.0 * DRIFT_PER_RETURN + 1.75);
     });
 }
 
 #[test]
 fn exponents_have_the_drift_and_its_error_by_name() {
     walking("drift = [\"s\"]\n", |path| {
-        let found = told(&["lyapunov", path, "--transient", "10", "--returns", "64"], 0);
-        near(found["drift_per_return"]["s"].as_f64().expect("a drift"), DRIFT_PER_RETURN);
+        let found = run_json(&["lyapunov", path, "--transient", "10", "--returns", "64"], 0);
+        assert_near(found["drift_per_return"]["s"].as_f64().expect("a drift"), DRIFT_PER_RETURN);
         // On an orbit all batches have the same drift.
         assert!(
             found["drift_standard_error"]["s"].as_f64().expect("an error") < ROUNDING_TOLERANCE
         );
-        near(found["exponents_per_return"][0].as_f64().expect("a number"), 0.0);
-        near(found["exponents_per_return"][1].as_f64().expect("a number"), DECAY_EXPONENT);
+        assert_near(found["exponents_per_return"][0].as_f64().expect("a number"), 0.0);
+        assert_near(found["exponents_per_return"][1].as_f64().expect("a number"), DECAY_EXPONENT);
     });
     walking("drift = []\n", |path| {
-        let found = told(&["lyapunov", path, "--transient", "10", "--returns", "64"], 0);
+        let found = run_json(&["lyapunov", path, "--transient", "10", "--returns", "64"], 0);
         for key in ["drift_per_return", "drift_standard_error"] {
             assert_eq!(found[key], serde_json::json!({}), "{key}");
         }
@@ -120,9 +123,9 @@ fn exponents_have_the_drift_and_its_error_by_name() {
 #[test]
 fn the_oscillators_drift_in_chaos_has_its_error() {
     let counts = ["--transient", "50"];
-    let own = told(&[&["lyapunov", "--periods", "2000"][..], &counts].concat(), 0);
+    let own = run_json(&[&["lyapunov", "--periods", "2000"][..], &counts].concat(), 0);
     let system = ["lyapunov", "percussive-oscillator", "--returns", "2000"];
-    let found = told(&[&system[..], &counts].concat(), 0);
+    let found = run_json(&[&system[..], &counts].concat(), 0);
     let of_own = |key: &str| own[key].as_f64().expect("a number");
     let of_system = |key: &str| found[key]["v"].as_f64().expect("a number");
     let errors = of_own("drift_standard_error").hypot(of_system("drift_standard_error"));

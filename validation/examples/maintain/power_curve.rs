@@ -3,7 +3,7 @@
 use anyhow::Result;
 use percuss_validation::case::{ClassBounds, defaults, embedded};
 use percuss_validation::picture::{Axis, AxisScale, Colour, Curve, Curves, Marker, Stroke, svg};
-use percuss_validation::power::{Variant, loosened, tallies, trials};
+use percuss_validation::power::{Variant, count_loosened, tallies, trials};
 use percuss_validation::suite::{PreparedCase, prepare};
 use percuss_validation::truth::Library;
 use std::path::PathBuf;
@@ -54,7 +54,7 @@ pub(crate) fn run(Arguments { output }: &Arguments) -> Result<()> {
             curve(name, (*colour, *marker), FAULT_SIZES.iter().copied().zip(shares.iter().copied()))
         })
         .collect();
-    curves.push(curve("tolerance loosened", LOOSE_STYLE, loose(&prepared, &classes)));
+    curves.push(curve("tolerance loosened", LOOSE_STYLE, loosened_shares(&prepared, &classes)));
     let dropped = EVENTS_PER_DROPPED.map(|it| 100.0 / it as f64).into_iter();
     let dropped = dropped.zip(shares[KINDS.len() * FAULT_SIZES.len()..].iter().copied());
     curves.push(curve("events dropped, per cent", DROPPED_STYLE, dropped));
@@ -79,9 +79,12 @@ pub(crate) fn run(Arguments { output }: &Arguments) -> Result<()> {
 const LOOSE_STYLE: (Colour, Marker) = (Colour(204, 121, 167), Marker::Diamond);
 const DROPPED_STYLE: (Colour, Marker) = (Colour(60, 60, 60), Marker::Cross);
 
-fn loose(cases: &[PreparedCase], classes: &[ClassBounds]) -> impl Iterator<Item = (f64, f64)> {
+fn loosened_shares(
+    cases: &[PreparedCase],
+    classes: &[ClassBounds],
+) -> impl Iterator<Item = (f64, f64)> {
     FAULT_SIZES.into_iter().map(|factor| {
-        let (caught, all) = loosened(cases, (TOLERANCE, factor), classes);
+        let (caught, all) = count_loosened(cases, (TOLERANCE, factor), classes);
         println!("tolerance loosened {factor} times {caught:4} of {all:4}");
         (factor, 100.0 * caught as f64 / all as f64)
     })

@@ -56,7 +56,7 @@ impl Outcomes {
         }
     }
 
-    fn shown(self) -> String {
+    fn to_cell(self) -> String {
         let Self { pass, known, fail, ran, rows } = self;
         if ran == 0 { "\u{2013}".to_owned() } else { format!("{pass}/{known}/{fail} of {rows}") }
     }
@@ -81,7 +81,7 @@ pub(crate) fn table(report: &Value, systems: &BTreeMap<String, String>) -> Resul
     }
     let line = |engine: &String| {
         let of = |system: &String| counted.get(&(system.clone(), engine.clone())).copied();
-        let cells: Vec<_> = names.iter().map(|it| of(it).unwrap_or_default().shown()).collect();
+        let cells: Vec<_> = names.iter().map(|it| of(it).unwrap_or_default().to_cell()).collect();
         format!("| {engine} | {} |\n", cells.join(" | "))
     };
     let [percuss, commit, suite] = ["percuss", "commit", "suite"].map(|key| text(&report[key]));

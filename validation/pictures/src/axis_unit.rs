@@ -59,7 +59,7 @@ impl AxisUnit {
     pub fn named(&self, name: &str, room: f64) -> String {
         let unit = self.words();
         let room = (room - font::width(&unit, TEXT_SIZE)).max(font::width("\u{2026}", TEXT_SIZE));
-        font::shortened(name, TEXT_SIZE, room) + &unit
+        font::shorten(name, TEXT_SIZE, room) + &unit
     }
 
     fn words(&self) -> String {

@@ -162,7 +162,7 @@ impl Canvas {
     }
 
     /// Draws larger or smaller by a factor.
-    pub(super) fn scaled(&mut self, factor: f64, draw: impl FnOnce(&mut Self)) {
+    pub(super) fn draw_scaled(&mut self, factor: f64, draw: impl FnOnce(&mut Self)) {
         self.with(format_args!("transform=\"scale({factor})\""), draw);
     }
 

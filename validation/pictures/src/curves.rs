@@ -69,7 +69,7 @@ impl Drawing for Curves {
                 palette::INK,
             );
         };
-        let note = font::wrapped(&self.note, NOTE_TEXT_SIZE, f64::from(SIZE.0) - 48.0);
+        let note = font::wrap(&self.note, NOTE_TEXT_SIZE, f64::from(SIZE.0) - 48.0);
         for (n, line) in note.iter().enumerate() {
             let at = (24.0, 62.0 + NOTE_LINE_HEIGHT * n as f64);
             canvas.text(line, at, NOTE_TEXT_SIZE, TextSide::Left, palette::INK);

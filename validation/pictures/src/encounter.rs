@@ -115,8 +115,8 @@ impl Encounter {
         let Some(y) = vertical.filter(|_| from < to) else { return };
         let x = Ruler::between(from, to);
         let panel = Panel { from: (left, TOP), to: (right, BOTTOM), x, y };
-        let below = times.labelled(&format!("time \u{2212} {:.7}", self.centre));
-        panel.draw(canvas, &below, &values.labelled(&self.guard));
+        let below = times.with_factor(&format!("time \u{2212} {:.7}", self.centre));
+        panel.draw(canvas, &below, &values.with_factor(&self.guard));
         let at = |t: f64, v: f64| panel.at((times.scaled(t), values.scaled(v)));
         let guide = [panel.place((0.0, 0.0)).0, panel.place((0.0, 0.0)).1];
         canvas.line((left, guide[1]), (right, guide[1]), 1.4, palette::INK);
@@ -243,7 +243,7 @@ impl Factor {
         value / 10.0_f64.powi(self.0)
     }
 
-    fn labelled(&self, label: &str) -> String {
+    fn with_factor(&self, label: &str) -> String {
         match self.0 {
             0 => label.to_owned(),
             exponent => format!("{label}, in {}", power_of_ten(exponent.into())),
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn axes_count_in_powers_of_ten_where_that_is_shorter() {
-        assert_eq!(Factor::of([-3e-7, 1e-7].into_iter()).labelled("gap"), "gap, in 10⁻⁷");
-        assert_eq!(Factor::of([0.5, f64::NAN].into_iter()).labelled("gap"), "gap");
+        assert_eq!(Factor::of([-3e-7, 1e-7].into_iter()).with_factor("gap"), "gap, in 10⁻⁷");
+        assert_eq!(Factor::of([0.5, f64::NAN].into_iter()).with_factor("gap"), "gap");
     }
 }

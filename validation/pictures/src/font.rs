@@ -19,7 +19,7 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
 }
 
 /// A text in lines that are no longer than `room` pixels, broken at spaces where that is possible.
-pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
+pub(super) fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         let longer = lines.last().map(|line| format!("{line} {word}"));
@@ -32,7 +32,7 @@ pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
 }
 
 /// A name, cut with an ellipsis where it is longer than `room` pixels.
-pub(super) fn shortened(name: &str, size: f64, room: f64) -> String {
+pub(super) fn shorten(name: &str, size: f64, room: f64) -> String {
     if width(name, size) <= room {
         return name.to_owned();
     }
@@ -101,12 +101,12 @@ mod tests {
 
     #[test]
     fn names_are_cut_to_the_room_that_they_have() {
-        assert_eq!(shortened("impact", 20.0, 200.0), "impact");
-        let cut = shortened("second-slips-behind", 20.0, 100.0);
+        assert_eq!(shorten("impact", 20.0, 200.0), "impact");
+        let cut = shorten("second-slips-behind", 20.0, 100.0);
         assert!(cut.starts_with("second") && cut.ends_with('\u{2026}'), "{cut}");
         assert!(width(&cut, 20.0) <= 100.0);
-        assert_eq!(shortened("ab", 20.0, 1.0), "\u{2026}");
-        assert_eq!(wrapped("one two three", 20.0, width("one two", 20.0)), ["one two", "three"]);
+        assert_eq!(shorten("ab", 20.0, 1.0), "\u{2026}");
+        assert_eq!(wrap("one two three", 20.0, width("one two", 20.0)), ["one two", "three"]);
     }
 
     #[test]

@@ -94,7 +94,7 @@ pub trait Drawing {
     fn draw_within(&self, canvas: &mut Canvas, size: (u32, u32)) {
         let own = self.size();
         let scales = [f64::from(size.0) / f64::from(own.0), f64::from(size.1) / f64::from(own.1)];
-        canvas.scaled(scales[0].min(scales[1]), |canvas| self.draw(canvas));
+        canvas.draw_scaled(scales[0].min(scales[1]), |canvas| self.draw(canvas));
     }
 }
 

@@ -7,7 +7,7 @@ const TOLERANCE: f64 = 0.1;
 
 /// The line through some of its places that passes all others within a tenth of a pixel, by the
 /// method of Ramer, Douglas and Peucker.
-pub(super) fn simplified(places: &[At]) -> Vec<At> {
+pub(super) fn simplify_line(places: &[At]) -> Vec<At> {
     let Some(end) = places.len().checked_sub(1) else { return Vec::new() };
     let mut kept = vec![false; places.len()];
     (kept[0], kept[end]) = (true, true);
@@ -46,7 +46,7 @@ mod tests {
             (100.0 * angle.cos(), 100.0 * angle.sin())
         };
         let places: Vec<At> = (0..=628).map(circle).collect();
-        let line = simplified(&places);
+        let line = simplify_line(&places);
         // A chord that passes within a tenth of a pixel spans 0.0894 radians, so that it takes 71
         // of them; halving what is too long takes at most twice as many.
         assert!(line.len() <= 2 * 71 + 1, "{}", line.len());
@@ -60,10 +60,10 @@ mod tests {
     #[test]
     fn a_straight_line_has_two_points_and_a_return_is_kept() {
         let straight: Vec<At> = (0..50).map(|n| (f64::from(n), 2.0 * f64::from(n))).collect();
-        assert_eq!(simplified(&straight), [(0.0, 0.0), (49.0, 98.0)]);
+        assert_eq!(simplify_line(&straight), [(0.0, 0.0), (49.0, 98.0)]);
         let there_and_back = [(0.0, 0.0), (5.0, 0.0), (0.0, 0.0)];
-        assert_eq!(simplified(&there_and_back), there_and_back);
-        assert!(simplified(&[]).is_empty());
-        assert_eq!(simplified(&[(1.0, 2.0)]), [(1.0, 2.0)]);
+        assert_eq!(simplify_line(&there_and_back), there_and_back);
+        assert!(simplify_line(&[]).is_empty());
+        assert_eq!(simplify_line(&[(1.0, 2.0)]), [(1.0, 2.0)]);
     }
 }

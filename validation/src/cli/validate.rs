@@ -172,7 +172,7 @@ impl WrongEngines {
 
 /// Whether a wrong engine passes every bound of all cases together; said on stderr.
 fn is_unnoticed(findings: &[Finding]) -> bool {
-    let missed: Vec<_> = findings.iter().filter(|it| !it.caught()).collect();
+    let missed: Vec<_> = findings.iter().filter(|it| !it.is_caught()).collect();
     missed.iter().for_each(|it| say(&format!("no bound notices {}: {}", it.engine, it.fault)));
     !missed.is_empty()
 }

@@ -1,6 +1,6 @@
 //! The block of `validate`'s summary that says on which cases each engine fails.
 
-use super::table::wrapped;
+use super::table::wrap;
 use super::{Ranked, Report, ReportEvidence, ReportRow};
 use crate::score::Verdict;
 use std::cmp::Reverse;
@@ -21,7 +21,7 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
     for it in failing {
         let head =
             format!("  {}: {} of {}", it.engine, it.fails_on.len(), report.number_of_cases());
-        let names = wrapped(&format!("{head}: {}", marked_names(report, it).join(", ")));
+        let names = wrap(&format!("{head}: {}", marked_names(report, it).join(", ")));
         let is_short = all_names || names.lines().count() <= MAX_NAMED_LINES;
         let groups = if is_short { Vec::new() } else { by_system(report, evidence, it) };
         any_counted |= !groups.is_empty();
@@ -29,7 +29,7 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
             marked_names(report, it).into_iter().filter(|it| it.ends_with('!')).collect();
         lines += &match groups[..] {
             [] => names,
-            _ => wrapped(&format!("{head}: {}", [unexpected, groups].concat().join(", "))),
+            _ => wrap(&format!("{head}: {}", [unexpected, groups].concat().join(", "))),
         };
     }
     let all = match any_counted {
@@ -37,7 +37,7 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
         false => "",
     };
     let title = format!("fails on (expected failures; ! marks an unexpected one{all}):");
-    format!("{}{lines}\n", wrapped(&title))
+    format!("{}{lines}\n", wrap(&title))
 }
 
 /// The names of an engine's failing cases, with a mark where nothing excuses a row.

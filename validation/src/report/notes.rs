@@ -1,7 +1,7 @@
 //! What `validate --details` prints: rows that were not run, engines that are not
 //! installed, orders, valid horizons, and the power of the gates.
 
-use super::table::wrapped;
+use super::table::wrap;
 use super::{FaultRow, Order, Report, ReportEvidence, ReportRow, orders};
 use crate::engine::REFERENCE;
 use crate::integration::NOT_THE_OSCILLATOR;
@@ -39,7 +39,7 @@ fn not_run(rows: &[ReportRow]) -> String {
         engines.sort_by_key(|it| std::cmp::Reverse(it.1));
         let engines: Vec<_> =
             engines.iter().map(|(engine, count)| format!("{engine} {count}")).collect();
-        wrapped(&format!("not run: {total} rows, {why}: {}", engines.join(", ")))
+        wrap(&format!("not run: {total} rows, {why}: {}", engines.join(", ")))
     };
     reasons.into_iter().map(paragraph).collect()
 }
@@ -61,7 +61,7 @@ fn unavailable(rows: &[ReportRow]) -> String {
         format!("{engine} {} ({first}{others})", reasons.len())
     };
     let engines: Vec<_> = engines.iter().map(of_engine).collect();
-    wrapped(&format!("unavailable: {total} rows: {}", engines.join(", ")))
+    wrap(&format!("unavailable: {total} rows: {}", engines.join(", ")))
 }
 
 fn short_orders(report: &Report) -> String {
@@ -92,7 +92,7 @@ fn valid_horizons(rows: &[ReportRow]) -> String {
     if horizons.is_empty() {
         return String::new();
     }
-    wrapped(&format!("valid horizon: {}", horizons.join("; ")))
+    wrap(&format!("valid horizon: {}", horizons.join("; ")))
 }
 
 /// How many of the engines that are wrong on purpose are caught; nothing where none was run.
@@ -106,9 +106,7 @@ pub(super) fn power(evidence: &ReportEvidence) -> Option<String> {
 /// The engines that are wrong on purpose and that no gate catches.
 fn not_caught(evidence: &ReportEvidence) -> String {
     let missed = evidence.faults.iter().filter(|it| !is_caught(it));
-    missed
-        .map(|it| wrapped(&format!("power: no gate catches {}: {}", it.engine, it.fault)))
-        .collect()
+    missed.map(|it| wrap(&format!("power: no gate catches {}: {}", it.engine, it.fault))).collect()
 }
 
 fn is_caught(it: &FaultRow) -> bool {

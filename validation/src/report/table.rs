@@ -54,7 +54,7 @@ pub(super) fn reasons(rows: &[ReportRow]) -> String {
     let bad = |row: &&ReportRow| matches!(row.verdict, Verdict::Fail | Verdict::Error);
     let line = |row: &ReportRow| {
         let (verdict, case, engine) = (row.verdict.as_str(), &row.case, row.engine);
-        wrapped(&format!("{verdict}: {case} {engine} {}: {}", setting(row), row.why))
+        wrap(&format!("{verdict}: {case} {engine} {}: {}", setting(row), row.why))
     };
     rows.iter().filter(bad).map(line).collect()
 }
@@ -98,7 +98,7 @@ fn short_setting(row: &ReportRow) -> String {
 }
 
 /// Breaks a text into lines of at most [`WIDTH`] columns, the later ones indented.
-pub(super) fn wrapped(text: &str) -> String {
+pub(super) fn wrap(text: &str) -> String {
     let options = textwrap::Options::new(WIDTH)
         .subsequent_indent("    ")
         .word_splitter(textwrap::WordSplitter::NoHyphenation);

@@ -138,7 +138,7 @@ fn spool(
         // Either the points of one tile, or the blocks of one point.
         let beside = sweep.tiling.tiles_beside(tile);
         let read = |tile: u64| places[tile as usize].read(sweep.folder);
-        let read = beside.clone().map(|tile| tiling::unpacked(&read(tile)?));
+        let read = beside.clone().map(|tile| tiling::unpack(&read(tile)?));
         let pieces: Vec<Vec<Vec<u8>>> = read.collect::<Result<_>>()?;
         for (at, number) in sweep.tiling.points_of(tile).enumerate() {
             let point = sweep.plan.point(number);
@@ -171,7 +171,7 @@ fn add<T: ArrayNumber + AutoSerialize + Serialize>(
     let shape: Vec<usize> = front.iter().chain(&spool.shape).copied().collect();
     let name = spool.name.clone();
     let points: usize = front.iter().product();
-    let mut reader = spool.rewound()?;
+    let mut reader = spool.rewind()?;
     archive.add_by(&name, &shape, |push| {
         for _ in 0..points {
             for value in reader.next::<T>()? {

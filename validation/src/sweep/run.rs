@@ -28,9 +28,9 @@ pub struct Sweep<'a> {
 /// Hears how the computation of a sweep goes on.
 pub trait SweepObserver: Sync {
     /// A shard's file is there, but cannot be used: why.
-    fn redone(&self, shard: u32, why: &Damage);
+    fn on_damage(&self, shard: u32, why: &Damage);
     /// Another process computes this shard as well.
-    fn doubled(&self, shard: u32);
+    fn on_duplicate(&self, shard: u32);
     /// Says how many tiles are to be done.
     fn begun(&self, tiles: u64);
     /// One more tile is computed.
@@ -89,7 +89,7 @@ impl<'a> Sweep<'a> {
             observer.begun(self.deal.tiles_of(shard).len() as u64);
             let lock = self.folder.lock(shard)?;
             if !lock.is_ours() && self.folder.is_locked(shard) {
-                observer.doubled(shard);
+                observer.on_duplicate(shard);
             }
             self.compute(shard, observer)?;
         }
@@ -150,7 +150,7 @@ impl<'a> Sweep<'a> {
             Ok(_) => false,
             Err(Damage::Missing) => true,
             Err(why) => {
-                observer.redone(shard, &why);
+                observer.on_damage(shard, &why);
                 true
             }
         }
@@ -182,7 +182,7 @@ impl<'a> Sweep<'a> {
             done.map_err(|error| error.context(format!("at {point}")))
         };
         let pieces: Result<Vec<Vec<u8>>> = self.tiling.points_of(tile).map(piece).collect();
-        Ok(tiling::packed(&pieces?))
+        Ok(tiling::pack(&pieces?))
     }
 
     /// Writes a shard's tiles, which took so long.

@@ -67,7 +67,7 @@ impl Spool {
     }
 
     /// Goes back to the first point.
-    pub fn rewound(self) -> Result<SpoolReader> {
+    pub fn rewind(self) -> Result<SpoolReader> {
         let mut file = self.file.into_inner().map_err(std::io::IntoInnerError::into_error)?;
         file.rewind()?;
         Ok(SpoolReader { shape: self.shape, file: BufReader::new(file) })

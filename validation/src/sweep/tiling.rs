@@ -64,7 +64,7 @@ impl Tiling {
 }
 
 /// Puts the pieces of a tile's points one after the other, each after its length.
-pub fn packed(pieces: &[Vec<u8>]) -> Vec<u8> {
+pub fn pack(pieces: &[Vec<u8>]) -> Vec<u8> {
     let mut packed = Vec::with_capacity(pieces.iter().map(|it| it.len() + 8).sum());
     for piece in pieces {
         packed.extend_from_slice(&(piece.len() as u64).to_le_bytes());
@@ -77,7 +77,7 @@ pub fn packed(pieces: &[Vec<u8>]) -> Vec<u8> {
 ///
 /// # Errors
 /// The bytes were not packed so.
-pub fn unpacked(mut bytes: &[u8]) -> Result<Vec<Vec<u8>>> {
+pub fn unpack(mut bytes: &[u8]) -> Result<Vec<Vec<u8>>> {
     let mut pieces = Vec::new();
     while !bytes.is_empty() {
         let (length, rest) = bytes.split_first_chunk::<8>().context("a tile is cut")?;
@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn what_is_packed_is_unpacked() {
         let pieces = vec![vec![1, 2, 3], vec![], vec![4]];
-        assert_eq!(unpacked(&packed(&pieces)).unwrap(), pieces);
-        assert!(unpacked(&packed(&pieces)[..10]).is_err());
+        assert_eq!(unpack(&pack(&pieces)).unwrap(), pieces);
+        assert!(unpack(&pack(&pieces)[..10]).is_err());
     }
 }

@@ -31,7 +31,7 @@ const ENGINES: [(&str, &str); 12] = [
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
 /// A number in [0, 1) that looks like chance.
-fn chance(seed: usize) -> f64 {
+fn pseudorandom(seed: usize) -> f64 {
     (seed as f64 * 12.9898 + 78.233).sin().abs() * 43_758.545_3 % 1.0
 }
 
@@ -44,7 +44,7 @@ fn margins() -> impl Iterator<Item = (String, f64)> {
 }
 
 /// The records of a row, all of them right.
-fn judged() -> JudgedRecords {
+fn right_records() -> JudgedRecords {
     let sample = Quantiles { median: Some(0.1), q99: Some(0.4), max: Some(0.7) };
     JudgedRecords {
         events_judged: Some(40),
@@ -61,7 +61,7 @@ fn judged() -> JudgedRecords {
 pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize) -> ReportRow {
     let unit = tolerance.unwrap_or(1e-15);
     let order = 3.0 + (seed % 5) as f64;
-    let error = unit * 10.0_f64.powf(4.0 * chance(seed));
+    let error = unit * 10.0_f64.powf(4.0 * pseudorandom(seed));
     let chaotic = case.ends_with("-00");
     let rhs = if tolerance.is_none() { 90.0 } else { 400.0 * unit.powf(-1.0 / (2.0 * order)) };
     ReportRow {
@@ -77,7 +77,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
         events_expected: Some(40),
         events_total: 40,
         events_matched: Some(40),
-        records: judged(),
+        records: right_records(),
         phase_word_ok: Some(true),
         event_time_error: Spread { median: error / 8.0, q99: error / 2.0, max: error },
         state_error: Spread { median: error / 9.0, q99: error / 3.0, max: error / 2.0 },
@@ -164,10 +164,10 @@ fn results() -> Vec<ReportRow> {
 
 /// The engines in their order, the first as the reference; the last one is not installed.
 fn ranking() -> Vec<Ranked> {
-    ENGINES.iter().enumerate().map(|(rank, (engine, _))| ranked(rank, engine)).collect()
+    ENGINES.iter().enumerate().map(|(rank, (engine, _))| ranked_row(rank, engine)).collect()
 }
 
-fn ranked(rank: usize, engine: &'static str) -> Ranked {
+fn ranked_row(rank: usize, engine: &'static str) -> Ranked {
     let counts = |count: usize| match rank {
         0 => SettingCounts(vec![("exact".to_owned(), count)]),
         _ => SettingCounts(TOLERANCES.map(|it| (format!("{it:e}"), count)).to_vec()),
@@ -226,7 +226,7 @@ fn growth(engine: &str, tolerance: Option<f64>, seed: usize) -> ErrorGrowth {
     let error = periods.iter().enumerate().map(|(i, t)| match i {
         7 => f64::NAN,
         9 => 0.0,
-        _ => (grown(*t, 3.0 + 30.0 * chance(seed + i))).min(0.5 + chance(i)),
+        _ => (grown(*t, 3.0 + 30.0 * pseudorandom(seed + i))).min(0.5 + pseudorandom(i)),
     });
     ErrorGrowth {
         case: "fig7a-chaos".to_owned(),
@@ -241,7 +241,7 @@ fn growth(engine: &str, tolerance: Option<f64>, seed: usize) -> ErrorGrowth {
 
 fn histogram(engine: &str, tolerance: Option<f64>, seed: usize) -> RestartHistogram {
     let edges: Vec<f64> = (0..=24).map(|k| -4.0 + 0.25 * f64::from(k)).collect();
-    let centre = 6.0 + 10.0 * chance(seed);
+    let centre = 6.0 + 10.0 * pseudorandom(seed);
     let counts =
         (0..24).map(|k| (1000.0 * (-((f64::from(k) - centre) / 3.0).powi(2)).exp()) as u64);
     let unit = if tolerance.is_some() { "tolerance" } else { "eps (1 + |value|) x growth" };
@@ -257,7 +257,7 @@ fn histogram(engine: &str, tolerance: Option<f64>, seed: usize) -> RestartHistog
 
 fn section(count: usize) -> SectionPair {
     let cloud = |seed: usize| {
-        let (mut x, mut y) = (0.1 + 0.1 * chance(seed), 0.1);
+        let (mut x, mut y) = (0.1 + 0.1 * pseudorandom(seed), 0.1);
         let step = |_| {
             (x, y) = (1.0 - 1.4 * x * x + y, 0.3 * x);
             [x, y]

@@ -54,7 +54,7 @@ fn points(case: &Case) -> Vec<Vec<String>> {
 }
 
 /// The verb with the system at a point.
-fn alone(verb: &str, point: &[String], flags: &str) -> Vec<String> {
+fn verb_alone(verb: &str, point: &[String], flags: &str) -> Vec<String> {
     let flags = flags.split_whitespace().map(str::to_owned);
     std::iter::once(verb.to_owned()).chain(point.iter().cloned()).chain(flags).collect()
 }
@@ -71,7 +71,7 @@ fn share<T>(all: &[T], point: usize) -> &[T] {
 }
 
 /// A number as JSON has it: none where it is not finite.
-fn told(number: f64) -> Option<f64> {
+fn json_number(number: f64) -> Option<f64> {
     Some(number).filter(|it| it.is_finite())
 }
 
@@ -101,10 +101,14 @@ fn exponents_are_those_of_the_verb_at_every_point_and_for_every_number_of_shards
     let left_out = integers(&array(&merged, "left_out").1);
     assert_eq!(left_out.iter().filter(|it| **it == -1).count(), 5);
     for (at, point) in points(&whole).iter().enumerate() {
-        let json = json(&alone("lyapunov", point, "--transient=20 --returns=60 --quiet"));
-        assert_eq!(json["mean_return_time"].as_f64(), told(mean[at]), "{point:?}");
+        let json = json(&verb_alone("lyapunov", point, "--transient=20 --returns=60 --quiet"));
+        assert_eq!(json["mean_return_time"].as_f64(), json_number(mean[at]), "{point:?}");
         for (k, exponent) in share(&exponents, at).iter().enumerate() {
-            assert_eq!(json["exponents_per_return"][k].as_f64(), told(*exponent), "{point:?}");
+            assert_eq!(
+                json["exponents_per_return"][k].as_f64(),
+                json_number(*exponent),
+                "{point:?}"
+            );
         }
         let has_returned = json["mean_return_time"].is_number();
         assert_eq!(left_out[at] == -1, has_returned, "{point:?}");
@@ -130,7 +134,7 @@ fn labels_and_attractors_are_those_of_the_verbs() {
     for (at, point) in points(&basins).iter().enumerate() {
         let output = basins.path("verb.npz");
         let flags = format!("{flags} --output={output}");
-        let json = json(&alone("basins", point, &flags));
+        let json = json(&verb_alone("basins", point, &flags));
         let verb = fs::read(&output).expect("read");
         assert_eq!(share(&labels, at), array(&verb, "labels").1, "{point:?}");
         let meta: Value = serde_json::from_slice(share(&meta, at)).expect("JSON");
@@ -140,7 +144,7 @@ fn labels_and_attractors_are_those_of_the_verbs() {
         for (k, attractor) in listed.iter().enumerate() {
             assert_eq!(attractor["fraction"].as_f64(), Some(share(&fraction, at)[k]), "{point:?}");
             let per_return = attractor["lyapunov_per_return"].as_f64();
-            assert_eq!(per_return, told(share(&exponent, at)[k]), "{point:?}");
+            assert_eq!(per_return, json_number(share(&exponent, at)[k]), "{point:?}");
             let x = attractor["points"][0]["state"][0].as_f64();
             assert_eq!(x, Some(share(&state, at)[2 * k]), "{point:?}");
         }
@@ -164,7 +168,7 @@ fn diagrams_are_those_of_the_verb_whole_or_along_an_axis() {
     let flags =
         "--parameter=restitution --from=0.6 --to=0.8 --steps=4 --transient=10 --returns=3 --quiet";
     for (at, point) in points(&whole).iter().enumerate() {
-        let words = alone("bifurcation", point, flags);
+        let words = verb_alone("bifurcation", point, flags);
         let csv = stdout(&words.iter().map(String::as_str).collect::<Vec<_>>());
         let expected = rows(&csv).into_iter().flat_map(|row| [number(&row[3]), number(&row[4])]);
         // Rows of values that are left out are not written.
@@ -179,7 +183,7 @@ fn diagrams_are_those_of_the_verb_whole_or_along_an_axis() {
     let left_out = integers(&array(&merged, "left_out").1);
     assert_eq!(left_out, [-1; 6]);
     let flags = "--parameter=stop --from=0.1 --to=0.3 --steps=2 --transient=10 --returns=3 --reset";
-    let words = alone("bifurcation", &points(&along)[0][..3], flags);
+    let words = verb_alone("bifurcation", &points(&along)[0][..3], flags);
     let csv = stdout(&words.iter().map(String::as_str).collect::<Vec<_>>());
     let expected = rows(&csv).into_iter().flat_map(|row| [number(&row[3]), number(&row[4])]);
     assert_eq!(numbers(&along_axis)[..12], expected.collect::<Vec<_>>());
@@ -195,7 +199,7 @@ fn branches_are_those_of_the_verb() {
     let time = numbers(&array(&merged, "time").1);
     let flags = "--parameter=restitution --from=0.7 --to=0.8 --period=1 --transient=200 --quiet";
     for (at, point) in points(&case).iter().enumerate() {
-        let json = json(&alone("continue", point, flags));
+        let json = json(&verb_alone("continue", point, flags));
         let meta: Value = serde_json::from_slice(share(&meta, at)).expect("JSON");
         assert_eq!(meta, json, "{point:?}");
         let branch = json["branch"].as_array().expect("a list");

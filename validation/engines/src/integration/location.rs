@@ -52,7 +52,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         if let Some(told) = self.meter.scripted_crossings() {
             return Self::scripted_crossing(told, right.t, state_at, counted);
         }
-        self.meter.stepped(right.t);
+        self.meter.record_step(right.t);
         let guards = self.equations.count(self.mode);
         if (0..guards).all(|guard| left.cubic_to(right, guard).stays_inside()) {
             return Ok(None);
@@ -160,7 +160,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
     }
 
     /// The guards of a known state.
-    pub(crate) fn look(&self, t: f64, state: &E::State) -> GuardValues<E::Guards> {
+    pub(crate) fn guards_at(&self, t: f64, state: &E::State) -> GuardValues<E::Guards> {
         if self.meter.scripted_crossings().is_some() {
             return self.no_look(t);
         }
@@ -182,7 +182,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         if self.meter.scripted_crossings().is_some() {
             return Ok(self.no_look(t));
         }
-        Ok(self.look(t, &state_at(t)?))
+        Ok(self.guards_at(t, &state_at(t)?))
     }
 
     /// In place of a look in a run that is told its events.

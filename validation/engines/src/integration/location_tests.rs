@@ -22,7 +22,7 @@ fn searched(force: fn(f64) -> f64, rate: fn(f64) -> f64) -> (Option<GuardRise>, 
         looks += 1;
         Ok([t, 0.0, 0.0, 0.0])
     };
-    let [left, right] = [0.0, 1.0].map(|t| search.look(t, &[t, 0.0, 0.0, 0.0]));
+    let [left, right] = [0.0, 1.0].map(|t| search.guards_at(t, &[t, 0.0, 0.0, 0.0]));
     let found = search.between(&left, &right, &mut state_at, &mut Vec::new());
     (found.ok().flatten(), looks)
 }

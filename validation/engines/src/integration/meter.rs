@@ -41,7 +41,7 @@ impl Meter {
             solves: zero(),
             steps: zero(),
             recorder: OnceCell::new(),
-            told: ToldCrossings::here(),
+            told: ToldCrossings::of_this_thread(),
         }
     }
 
@@ -131,7 +131,7 @@ impl Meter {
         self.call();
         if let Some(recorder) = self.recorder.get() {
             for (guard, value) in guards.iter().copied().enumerate() {
-                recorder.look(GuardSample { t, mode, guard, value });
+                recorder.record_evaluation(GuardSample { t, mode, guard, value });
             }
         }
     }
@@ -140,12 +140,12 @@ impl Meter {
     pub(crate) fn guard(&self, look: GuardSample) {
         self.call();
         if let Some(recorder) = self.recorder.get() {
-            recorder.look(look);
+            recorder.record_evaluation(look);
         }
     }
 
     /// Records the end of an accepted step where that is wanted; [`Self::steps`] counts it.
-    pub(crate) fn stepped(&self, end: f64) {
+    pub(crate) fn record_step(&self, end: f64) {
         if let Some(recorder) = self.recorder.get() {
             recorder.step(end);
         }

@@ -40,7 +40,7 @@ impl Recorder {
     }
 
     /// Records one evaluation of a guard.
-    pub(crate) fn look(&self, look: GuardSample) {
+    pub(crate) fn record_evaluation(&self, look: GuardSample) {
         let looks = &mut self.trace.borrow_mut().looks;
         if self.holds(look.t) && looks.len() < MAX_RECORDS {
             looks.push(look);
@@ -67,7 +67,9 @@ mod tests {
         let recorder = Recorder::new(&Watched { window: [1.0, 2.0], instants: Vec::new() });
         [0.5, 1.0, 2.0, 2.5].into_iter().for_each(|t| recorder.step(t));
         let look = |t, guard| GuardSample { t, mode: 1, guard, value: -0.25 };
-        [look(0.5, 1), look(1.5, 0), look(3.0, 0)].into_iter().for_each(|it| recorder.look(it));
+        [look(0.5, 1), look(1.5, 0), look(3.0, 0)]
+            .into_iter()
+            .for_each(|it| recorder.record_evaluation(it));
         let mut outcome = Outcome::default();
         recorder.hand_over(&mut outcome);
         let expected = Trace { steps: vec![1.0, 2.0], looks: vec![look(1.5, 0)] };

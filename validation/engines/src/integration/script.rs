@@ -84,7 +84,7 @@ pub(crate) struct ToldCrossings {
 
 impl ToldCrossings {
     /// The crossings that the run which begins on this thread is given; none as a rule.
-    pub(crate) fn here() -> Option<Self> {
+    pub(crate) fn of_this_thread() -> Option<Self> {
         let script = SCRIPT.with_borrow(Clone::clone)?;
         script.0.read.set(true);
         Some(Self { script, next: Cell::new(0) })

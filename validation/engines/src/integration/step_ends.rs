@@ -44,7 +44,7 @@ pub(crate) struct StepEnds<'a, E: Equations> {
 impl<'a, E: Equations> StepEnds<'a, E> {
     /// Starts the search at the beginning of a stretch.
     pub(crate) fn new(search: GuardSearch<'a, E>, from: &Moment<E>, anew: bool) -> Self {
-        let look = search.look(from.t, &from.state);
+        let look = search.guards_at(from.t, &from.state);
         Self { search, at: (from.t, from.state), look, anew }
     }
 
@@ -62,7 +62,7 @@ impl<'a, E: Equations> StepEnds<'a, E> {
         ) -> Result<E::State, Failure>,
     ) -> Result<Option<StretchEnd<E::State>>, Failure> {
         let left = self.at;
-        let look = self.search.look(right.0, &right.1);
+        let look = self.search.guards_at(right.0, &right.1);
         let close = if self.anew { MAX_ADVANCE_SHARE * (right.0 - left.0) } else { 0.0 };
         let mut known = KnownStates { looks: Vec::new(), close };
         let mut look_state = |t: f64| match t {

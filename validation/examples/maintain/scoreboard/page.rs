@@ -31,8 +31,9 @@ pub(crate) fn markdown(board: &Board) -> String {
     let mut columns = vec!["engine".to_owned()];
     columns.extend(board.kinds.iter().cloned());
     let line = |it: &BoardLine| {
-        let kinds = (0..board.kinds.len()).map(|k| both(it, |score| percent(&score.kinds[k])));
-        [named(it)].into_iter().chain(kinds).collect()
+        let kinds =
+            (0..board.kinds.len()).map(|k| both_figures(it, |score| percent(&score.kinds[k])));
+        [displayed_name(it)].into_iter().chain(kinds).collect()
     };
     text + &table(&columns, 1, board.lines.iter().map(line))
 }
@@ -56,7 +57,7 @@ fn table(columns: &[String], right: usize, lines: impl Iterator<Item = Vec<Strin
     [line(columns), line(&rules)].into_iter().chain(lines.map(|it| line(&it))).collect()
 }
 
-fn named(line: &BoardLine) -> String {
+fn displayed_name(line: &BoardLine) -> String {
     format!("{} {}", line.name, line.version)
 }
 
@@ -73,7 +74,7 @@ fn cells(line: &BoardLine) -> [String; 13] {
     let [spurious, spurious_default] = pair(|it| it.all.spurious.to_string());
     let [rhs, rhs_default] = pair(|it| figure(it.rhs));
     [
-        named(line),
+        displayed_name(line),
         line.library.clone(),
         line.language.clone(),
         right,
@@ -90,7 +91,7 @@ fn cells(line: &BoardLine) -> [String; 13] {
 }
 
 /// The expert's figure and the default's, where each was run.
-fn both(line: &BoardLine, figure: impl Fn(&SetupResult) -> String) -> String {
+fn both_figures(line: &BoardLine, figure: impl Fn(&SetupResult) -> String) -> String {
     let [expert, default] = [&line.expert, &line.default].map(|it| it.as_ref().map(&figure));
     match (expert, default) {
         (Some(expert), Some(default)) => format!("{expert} / {default}"),
@@ -149,7 +150,7 @@ pub(crate) fn html(board: &Board) -> Result<String> {
         share: score.as_ref().and_then(|it| it.kinds[k].percent()).unwrap_or_default(),
     };
     let line = |it: &BoardLine| HtmlLine {
-        name: named(it),
+        name: displayed_name(it),
         cells: cells(it),
         kinds: (0..board.kinds.len())
             .map(|k| [cell(&it.expert, k), cell(&it.default, k)])

@@ -12,16 +12,16 @@ impl SweepTrial {
         let (times, mut lost, mut doubled) = (50, 0, 0);
         let out = self.path("killed");
         for time in 0..times {
-            if Self::finished(&out).len() == SHARDS as usize {
+            if Self::finished_shards(&out).len() == SHARDS as usize {
                 doubled += self.differs(&out)?;
                 fs::remove_dir_all(&out)?;
             }
-            let before = Self::finished(&out);
+            let before = Self::finished_shards(&out);
             let mut worker = self.start(&out, Some(time % SHARDS))?;
             std::thread::sleep(self.shard.mul_f64(1.2 * fastrand::f64()));
             worker.kill()?;
             worker.wait()?;
-            lost += Self::lost(&out, &before);
+            lost += Self::count_lost(&out, &before);
         }
         doubled += self.differs(&out)?;
         let outcome = "the shard is missing or whole; run again, it is computed";
@@ -32,14 +32,14 @@ impl SweepTrial {
         let (times, mut lost, mut doubled) = (10, 0, 0);
         for _ in 0..times {
             let out = self.begun("lost")?;
-            let before = Self::finished(&out);
+            let before = Self::finished_shards(&out);
             let mut worker = self.start(&out, Some(3))?;
             std::thread::sleep(self.shard.mul_f64(0.9 * fastrand::f64()));
             worker.kill()?;
             worker.wait()?;
             // The engine gives its shard to another.
             self.done("run", &out, &["--shard", "3/6"])?;
-            lost += Self::lost(&out, &before);
+            lost += Self::count_lost(&out, &before);
             doubled += self.differs(&out)?;
         }
         let outcome = "another worker computes its shard; with Dask, `check.sh` does this";
@@ -52,7 +52,7 @@ impl SweepTrial {
         let begun = Instant::now();
         self.merged(&out)?;
         let whole = begun.elapsed();
-        let before = Self::finished(&out);
+        let before = Self::finished_shards(&out);
         for _ in 0..times {
             let mut merge = self.command("merge", &out).arg("--output").arg(&merged).spawn()?;
             std::thread::sleep(whole.mul_f64(fastrand::f64()));
@@ -60,7 +60,7 @@ impl SweepTrial {
             merge.wait()?;
             let there = fs::read(&merged).ok();
             doubled += u32::from(there.is_some_and(|it| it != self.expected));
-            lost += Self::lost(&out, &before);
+            lost += Self::count_lost(&out, &before);
         }
         doubled += self.differs(&out)?;
         let outcome = "the old file or none is there; merged again, it is whole";
@@ -71,13 +71,13 @@ impl SweepTrial {
         let (times, mut lost, mut doubled) = (10, 0, 0);
         for _ in 0..times {
             let out = self.begun("two")?;
-            let before = Self::finished(&out);
+            let before = Self::finished_shards(&out);
             let workers = [self.start(&out, Some(2))?, self.start(&out, Some(2))?];
             for worker in workers {
                 let output = worker.wait_with_output()?;
                 ensure!(output.status.success(), "{output:?}");
             }
-            lost += Self::lost(&out, &before);
+            lost += Self::count_lost(&out, &before);
             doubled += self.differs(&out)?;
         }
         let outcome = "both end well; the later one says that another computes it as well";
@@ -88,13 +88,13 @@ impl SweepTrial {
         let (times, mut lost, mut doubled) = (5, 0, 0);
         for _ in 0..times {
             let out = self.begun("runs")?;
-            let before = Self::finished(&out);
+            let before = Self::finished_shards(&out);
             let workers = [self.start(&out, None)?, self.start(&out, None)?];
             for worker in workers {
                 let output = worker.wait_with_output()?;
                 ensure!(output.status.success(), "{output:?}");
             }
-            lost += Self::lost(&out, &before);
+            lost += Self::count_lost(&out, &before);
             doubled += self.differs(&out)?;
         }
         let outcome = "each takes shards that the other has not";
@@ -105,7 +105,7 @@ impl SweepTrial {
         let (times, mut lost, mut doubled) = (50, 0, 0);
         let out = self.path("altered");
         self.done("run", &out, &[])?;
-        let before = Self::finished(&out);
+        let before = Self::finished_shards(&out);
         for time in 0..times {
             let path = Self::shard(&out, 2);
             let mut bytes = fs::read(&path)?;
@@ -120,7 +120,7 @@ impl SweepTrial {
             self.refused("merge", &out, &["--output", &merged], 1, "shard 2 is damaged")?;
             let others: Vec<_> = before.iter().filter(|it| it.0 != 2).cloned().collect();
             doubled += self.differs(&out)?;
-            lost += Self::lost(&out, &others);
+            lost += Self::count_lost(&out, &others);
         }
         let outcome = "status and merge name the shard, run computes it again";
         Ok(Tried { fault: "one bit altered, or the file cut", times, lost, doubled, outcome })
@@ -129,7 +129,7 @@ impl SweepTrial {
     pub(super) fn another_program(&self) -> Result<Tried> {
         let (mut times, mut lost) = (0, 0);
         let out = self.begun("program")?;
-        let before = Self::finished(&out);
+        let before = Self::finished_shards(&out);
         let path = out.join("sweep.json");
         let text = fs::read_to_string(&path)?;
         for (from, to) in [
@@ -140,7 +140,7 @@ impl SweepTrial {
             ensure!(text.contains(from), "sweep.json has no {from}");
             fs::write(&path, text.replace(from, to))?;
             self.refused("run", &out, &[], 2, "the same program everywhere")?;
-            lost += Self::lost(&out, &before);
+            lost += Self::count_lost(&out, &before);
             times += 1;
         }
         fs::write(&path, text)?;
@@ -153,13 +153,13 @@ impl SweepTrial {
     pub(super) fn edited_plan(&self) -> Result<Tried> {
         let (mut times, mut lost) = (0, 0);
         let out = self.begun("plan")?;
-        let before = Self::finished(&out);
+        let before = Self::finished_shards(&out);
         let path = self.path("plan.toml");
         for (from, to) in [("4000", "4001"), ("shards = 6", "shards = 7"), ("1.9", "1.8")] {
             fs::write(&path, PLAN.replace(from, to))?;
             self.refused("run", &out, &[], 2, "another plan")?;
             self.refused("status", &out, &[], 2, "another plan")?;
-            lost += Self::lost(&out, &before);
+            lost += Self::count_lost(&out, &before);
             times += 1;
         }
         fs::write(&path, PLAN)?;
@@ -172,13 +172,13 @@ impl SweepTrial {
         let (mut times, mut lost, mut doubled) = (0, 0, 0);
         for seconds in [0, 1_000_000_000, 4_000_000_000] {
             let out = self.begun("clock")?;
-            let before = Self::finished(&out);
+            let before = Self::finished_shards(&out);
             for entry in fs::read_dir(&out)? {
                 let file = fs::File::options().write(true).open(entry?.path())?;
                 file.set_modified(std::time::UNIX_EPOCH + Duration::from_secs(seconds))?;
             }
             doubled += self.differs(&out)?;
-            lost += Self::lost(&out, &before);
+            lost += Self::count_lost(&out, &before);
             times += 1;
         }
         let outcome = "nothing is told by a file's time";
@@ -193,13 +193,13 @@ impl SweepTrial {
             mount(&["-t", "tmpfs", "-o", "size=64k", "tmpfs"], &out)?;
             let done = (|| {
                 self.done("run", &out, &["--shard", "1/6"])?;
-                let before = Self::finished(&out);
+                let before = Self::finished_shards(&out);
                 // What is left is less than a shard.
-                let free = 64 * 1024 - used(&out)?;
+                let free = 64 * 1024 - used_bytes(&out)?;
                 let left = 4096 * usize::try_from(time % 2)?;
                 fs::write(out.join("other"), vec![0; free - left])?;
                 self.refused("run", &out, &["--shard", "2/6"], 2, "cannot be written")?;
-                lost += Self::lost(&out, &before);
+                lost += Self::count_lost(&out, &before);
                 fs::remove_file(out.join("other"))?;
                 doubled += self.differs(&out)?;
                 anyhow::Ok(())
@@ -218,11 +218,11 @@ impl SweepTrial {
         let mut lost = 0;
         let done = (|| {
             self.done("run", &out, &["--shard", "1/6"])?;
-            let before = Self::finished(&out);
+            let before = Self::finished_shards(&out);
             mount(&["-o", "remount,ro"], &out)?;
             self.refused("run", &out, &["--shard", "2/6"], 2, "accepted is a writable folder")?;
             self.refused("run", &out, &[], 2, "accepted is a writable folder")?;
-            lost += Self::lost(&out, &before);
+            lost += Self::count_lost(&out, &before);
             mount(&["-o", "remount,rw"], &out)?;
             self.differs(&out)
         })();
@@ -233,7 +233,7 @@ impl SweepTrial {
 }
 
 /// Bytes that the files of a folder take of a file system in pages of 4096.
-fn used(folder: &Path) -> Result<usize> {
+fn used_bytes(folder: &Path) -> Result<usize> {
     let mut used = 0;
     for entry in fs::read_dir(folder)? {
         used += usize::try_from(entry?.metadata()?.len())?.next_multiple_of(4096);

@@ -147,13 +147,13 @@ impl SweepTrial {
     }
 
     /// The files of finished shards.
-    fn finished(out: &Path) -> Vec<(u32, Vec<u8>)> {
+    fn finished_shards(out: &Path) -> Vec<(u32, Vec<u8>)> {
         let read = |shard| Some((shard, fs::read(Self::shard(out, shard)).ok()?));
         (0..SHARDS).filter_map(read).collect()
     }
 
     /// Counts the shards that were finished before and are gone or changed now.
-    fn lost(out: &Path, before: &[(u32, Vec<u8>)]) -> u32 {
+    fn count_lost(out: &Path, before: &[(u32, Vec<u8>)]) -> u32 {
         let is_there = |(shard, bytes): &&(u32, Vec<u8>)| {
             fs::read(Self::shard(out, *shard)).is_ok_and(|it| it == *bytes)
         };

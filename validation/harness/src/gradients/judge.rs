@@ -222,7 +222,7 @@ impl<'a> OneName<'a> {
             (left <= ALLOWED_UNITS && explains).then_some(left)
         };
         let of = |mechanism: Mechanism| {
-            let mut all = self.reference.wrong(self.name, mechanism);
+            let mut all = self.reference.wrong_derivatives(self.name, mechanism);
             let mut closest = None;
             if mechanism == Mechanism::Sign {
                 closest = agrees(&self.truth, -1.0);

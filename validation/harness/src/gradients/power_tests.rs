@@ -33,7 +33,7 @@ fn derivatives_walked_in_f64_are_right_in_every_case() {
     let references = references();
     assert_eq!(references.len(), 53);
     let told = references.par_iter().map(|reference| {
-        let found = verdicts(reference, |name| Some(reference.walked(name)));
+        let found = verdicts(reference, |name| Some(reference.derivatives(name)));
         let wrong = found
             .iter()
             .find(|it| it.verdict != Verdict::Right && it.verdict != Verdict::NoneAsked);
@@ -64,10 +64,10 @@ fn every_wrong_rule_is_caught_by_its_name() {
     let mut caught: BTreeMap<Mechanism, usize> = BTreeMap::new();
     for mechanism in Mechanism::ALL {
         for reference in &references {
-            let rules = reference.wrong(0, mechanism).len();
+            let rules = reference.wrong_derivatives(0, mechanism).len();
             for rule in 0..rules {
                 let is_finite = |name| {
-                    let rows = &reference.wrong(name, mechanism)[rule];
+                    let rows = &reference.wrong_derivatives(name, mechanism)[rule];
                     rows.iter().flatten().all(|it| it.is_finite())
                 };
                 // The guard's rate on the other side may be zero: no program has such an answer.
@@ -75,7 +75,7 @@ fn every_wrong_rule_is_caught_by_its_name() {
                     continue;
                 }
                 let found = verdicts(reference, |name| {
-                    Some(reference.wrong(name, mechanism)[rule].clone())
+                    Some(reference.wrong_derivatives(name, mechanism)[rule].clone())
                 });
                 for it in found.iter().filter(|it| it.verdict.is_wrong()) {
                     let is_named = it.verdict == Verdict::Zero
@@ -123,8 +123,9 @@ fn an_error_near_a_wrong_rule_is_no_missing_term() {
         let by = (0..reference.case.by.len()).map(|it| Some(NameAnswer::whole(&rows(it))));
         GradientAnswer { by: by.collect(), event_error: None }
     };
-    let wrong = answer(&|name| reference.wrong(name, Mechanism::NoSaltation)[0].clone());
-    let right = answer(&|name| reference.walked(name));
+    let wrong =
+        answer(&|name| reference.wrong_derivatives(name, Mechanism::NoSaltation)[0].clone());
+    let right = answer(&|name| reference.derivatives(name));
     let verdicts = |answers: [&GradientAnswer; 2]| {
         let both = [(1e-6, Some(answers[0])), (1e-9, Some(answers[1]))];
         judge(&reference, &both).into_iter().map(|it| it.verdict).collect::<Vec<_>>()
@@ -135,8 +136,10 @@ fn an_error_near_a_wrong_rule_is_no_missing_term() {
     assert!(!chance.contains(&Verdict::MissingTerm), "{chance:?}");
     // Beyond the rule by as much as it differs from the truth.
     let beyond = answer(&|name| {
-        let (truth, wrong) =
-            (reference.walked(name), reference.wrong(name, Mechanism::NoSaltation)[0].clone());
+        let (truth, wrong) = (
+            reference.derivatives(name),
+            reference.wrong_derivatives(name, Mechanism::NoSaltation)[0].clone(),
+        );
         let rows = truth.iter().zip(wrong);
         rows.map(|(a, b)| a.iter().zip(b).map(|(a, b)| b + 1.2 * (b - a)).collect()).collect()
     });
@@ -153,7 +156,7 @@ fn other_answers_have_their_verdicts() {
     let first = |found: Vec<Judged>| found[0].clone();
     let scaled = |factor: f64| {
         let rows = |name| {
-            let walked = reference.walked(name);
+            let walked = reference.derivatives(name);
             Some(walked.iter().map(|row| row.iter().map(|it| it * factor).collect()).collect())
         };
         first(verdicts(&reference, rows))
@@ -167,7 +170,7 @@ fn other_answers_have_their_verdicts() {
     assert_eq!(none[0].verdict, Verdict::NoneAsked);
     let answers = TOLERANCES.map(|tolerance| {
         let by = (0..reference.case.by.len()).map(|name| {
-            let rows = reference.walked(name);
+            let rows = reference.derivatives(name);
             let off = |it: &f64| it + 1e4 * tolerance;
             Some(NameAnswer(
                 rows.iter().map(|row| row.iter().map(|it| Some(off(it))).collect()).collect(),

@@ -74,13 +74,13 @@ impl Reference {
 
     /// The derivatives in f64 by the right rule.
     #[must_use]
-    pub fn walked(&self, name: usize) -> Vec<Vec<f64>> {
+    pub fn derivatives(&self, name: usize) -> Vec<Vec<f64>> {
         walk(&self.along(name), RIGHT_RULE)
     }
 
     /// What the derivatives would be by the rules at events that a mechanism may mean.
     #[must_use]
-    pub fn wrong(&self, name: usize, mechanism: Mechanism) -> Vec<Vec<Vec<f64>>> {
+    pub fn wrong_derivatives(&self, name: usize, mechanism: Mechanism) -> Vec<Vec<Vec<f64>>> {
         let along = self.along(name);
         mechanism.rules().into_iter().map(|rule| walk(&along, rule)).collect()
     }

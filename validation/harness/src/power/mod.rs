@@ -9,7 +9,7 @@ mod trials;
 mod variants;
 mod ways;
 
-pub use trials::{Tally, Trial, loosened, set_limits, tallies, trial, trials};
+pub use trials::{Tally, Trial, count_loosened, set_limits, tallies, trial, trials};
 pub use variants::Variant;
 pub use ways::is_run;
 
@@ -125,7 +125,7 @@ pub struct Finding {
 impl Finding {
     /// Whether any gate noticed.
     #[must_use]
-    pub fn caught(&self) -> bool {
+    pub fn is_caught(&self) -> bool {
         // Stiff cases give no result to a right integrator either.
         let none = self.way.is_none() && self.without_result > 0;
         none || self.gates.values().any(|trip| trip.failed > 0)

@@ -90,7 +90,7 @@ pub fn trials(
 /// Counts answers that were made with a tolerance looser by a factor than the one that they are
 /// labelled with: the condemned ones, and all.
 #[must_use]
-pub fn loosened(
+pub fn count_loosened(
     cases: &[PreparedCase],
     (tolerance, factor): (f64, f64),
     classes: &[ClassBounds],

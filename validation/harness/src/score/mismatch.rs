@@ -79,7 +79,7 @@ impl Mismatch {
     /// events of a touch together, or the spurious ones within `window` of a near miss that a
     /// crossing there would make. The scored horizon may lie between them.
     #[must_use]
-    pub fn excused(
+    pub fn excused_by(
         &self,
         grazes: &[Graze],
         found: &[Occurrence],
@@ -185,16 +185,16 @@ mod tests {
         let truth = [(1.0, Contact), (1.01, NoContact), (2.0, Contact), (3.0, NoContact)];
         let (found, rows, own) = mismatch(&truth, &truth[2..]);
         let grazes = [graze(1.005, 1e-6, 0..2)];
-        let excused = found.excused(&grazes, &own, WINDOW, 1e-6);
+        let excused = found.excused_by(&grazes, &own, WINDOW, 1e-6);
         assert_eq!(excused.missed, [0, 1]);
         assert!(found.same_phases(&rows, &own, &excused));
-        assert_eq!(found.excused(&grazes, &own, WINDOW, 0.9e-6), Excused::default());
+        assert_eq!(found.excused_by(&grazes, &own, WINDOW, 0.9e-6), Excused::default());
         // Half of a touch is no answer.
         let (half, _, own) = mismatch(&truth, &truth[1..]);
-        assert_eq!(half.excused(&grazes, &own, WINDOW, 1.0), Excused::default());
+        assert_eq!(half.excused_by(&grazes, &own, WINDOW, 1.0), Excused::default());
         // Another miss is not the graze's.
         let (other, _, own) = mismatch(&truth, &truth[3..]);
-        assert_eq!(other.excused(&grazes, &own, WINDOW, 1.0).missed, [0, 1]);
+        assert_eq!(other.excused_by(&grazes, &own, WINDOW, 1.0).missed, [0, 1]);
         assert_eq!(other.missed, [0, 1, 2]);
     }
 
@@ -206,21 +206,21 @@ mod tests {
         let spurious = Mismatch::of(&Matching::of(&[], &found, WINDOW), (0, 0), (2, 1));
         assert_eq!(spurious.spurious, [0]);
         let near_miss = [graze(1.0, -1e-6, 0..0)];
-        let excused = spurious.excused(&near_miss, &found, WINDOW, 1e-6);
+        let excused = spurious.excused_by(&near_miss, &found, WINDOW, 1e-6);
         assert_eq!(excused.spurious, [0]);
         assert!(spurious.same_phases(&[], &found, &excused));
         let rows: Vec<_> = pair.into_iter().map(event).collect();
         let missed = Mismatch::of(&Matching::of(&rows, &[], WINDOW), (2, 1), (0, 0));
-        let excused = missed.excused(&[graze(1.005, 1e-6, 0..2)], &[], WINDOW, 1e-6);
+        let excused = missed.excused_by(&[graze(1.005, 1e-6, 0..2)], &[], WINDOW, 1e-6);
         assert_eq!((excused.missed.as_slice(), excused.grazes.len()), (&[0][..], 1));
         // One that comes back otherwise is none, nor is half of a touch.
         let other: Vec<_> = [(1.0, Contact), (1.5, NoContact)].into_iter().map(event).collect();
         let late = Mismatch::of(&Matching::of(&[], &other, WINDOW), (0, 0), (2, 1));
-        assert_eq!(late.excused(&near_miss, &other, WINDOW, 1.0), Excused::default());
+        assert_eq!(late.excused_by(&near_miss, &other, WINDOW, 1.0), Excused::default());
         let half = Mismatch::of(&Matching::of(&rows, &found[1..], WINDOW), (2, 1), (1, 0));
         assert_eq!(half.missed, [0]);
         assert_eq!(
-            half.excused(&[graze(1.005, 1e-6, 0..2)], &found[1..], WINDOW, 1.0),
+            half.excused_by(&[graze(1.005, 1e-6, 0..2)], &found[1..], WINDOW, 1.0),
             Excused::default()
         );
     }
@@ -230,7 +230,10 @@ mod tests {
         let own = [(1.0, Contact), (1.01, NoContact), (1.02, Contact), (1.03, NoContact)];
         let (found, _, own) = mismatch(&[], &own);
         let grazes = [graze(1.0, -1e-6, 0..0)];
-        assert_eq!(found.excused(&grazes, &own, WINDOW, 1e-6).spurious, [0, 1]);
-        assert_eq!(found.excused(&[graze(2.0, -1e-6, 0..0)], &own, WINDOW, 1.0).spurious, [0; 0]);
+        assert_eq!(found.excused_by(&grazes, &own, WINDOW, 1e-6).spurious, [0, 1]);
+        assert_eq!(
+            found.excused_by(&[graze(2.0, -1e-6, 0..0)], &own, WINDOW, 1.0).spurious,
+            [0; 0]
+        );
     }
 }

@@ -10,7 +10,7 @@ use super::event_names::EventNames;
 use super::graze::Graze;
 use super::grazes::grazes;
 use super::restart_figures::{Restart, RestartError, RestartResult};
-use super::rule::{Beside, ErrorRule, off};
+use super::rule::{Beside, ErrorRule, deviation};
 use super::scored_horizon::{MAX_ERROR_UNITS, ScoredBy};
 use super::statistics::worst;
 use crate::case::Case;
@@ -161,7 +161,7 @@ impl Restarts<'_> {
         let until = if self.case.backward { begin - span } else { begin + span };
         let mut case = Case { until, samples: 1, ..self.case.clone() };
         case.system.start = Some(start.clone());
-        let truth = Truth::solved(&case, &self.solver).ok()?;
+        let truth = Truth::solve(&case, &self.solver).ok()?;
         if truth.ended != Ending::Horizon {
             return None;
         }
@@ -243,7 +243,7 @@ impl RestartTest {
             rule.time_units(truth, n, (time, own.elapsed)) / unit
         });
         let states = truth.end.state.iter().zip(outcome.end.iter()).zip(&rule.scales);
-        let absolute = states.map(|((truth, own), scale)| off(*truth, *own) / scale);
+        let absolute = states.map(|((truth, own), scale)| deviation(*truth, *own) / scale);
         let drift = |k: usize| rule.units(&truth.end, k, outcome.end[k]) / unit;
         RestartError {
             units: rule.state_units(&truth.end, &outcome.end) / unit,

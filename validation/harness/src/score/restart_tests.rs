@@ -1,7 +1,7 @@
 use super::*;
 use crate::case::{Given, Horizon};
 use crate::engine::{Accuracy, Event, Failure, Numbers, Outcome};
-use crate::score::rule::off;
+use crate::score::rule::deviation;
 use crate::system::Values;
 use percuss::Ending;
 use percuss::Phase::{self, Contact, NoContact, Progression};
@@ -86,7 +86,7 @@ fn an_error_counts_over_its_size_and_growth() {
     for k in 0..4 {
         let mut outcome = perfect(run);
         outcome.end[k] += 1e-5;
-        let off = off(run.truth.end.state[k], outcome.end[k]);
+        let off = deviation(run.truth.end.state[k], outcome.end[k]);
         let found = test.error(run, &outcome, UNIT);
         let size = 1.0 + run.truth.end.rounded()[k].abs();
         assert_near(found.units, off / (UNIT * size * run.truth.end.growth[k]));
@@ -104,7 +104,7 @@ fn a_time_counts_where_the_phases_are_right() {
     outcome.events[1].elapsed += 1e-5;
     let found = test.error(run, &outcome, UNIT);
     let row = &run.truth.events[1];
-    let off = off(row.elapsed, outcome.events[1].elapsed);
+    let off = deviation(row.elapsed, outcome.events[1].elapsed);
     assert_near(found.time_units, off / (UNIT * (1.0 + row.elapsed.value()) * row.growth_time));
     outcome.events.truncate(1);
     let found = test.error(run, &outcome, UNIT);

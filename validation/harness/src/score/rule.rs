@@ -43,13 +43,13 @@ impl ErrorRule {
     pub fn state_error(&self, row: &TruthRow, state: &[f64]) -> f64 {
         let states = row.state.iter().zip(state).zip(&self.scales).enumerate();
         let states = states.filter(|(k, _)| !self.drift.contains(k));
-        worst(states.map(|(_, ((truth, own), scale))| off(*truth, *own) / scale))
+        worst(states.map(|(_, ((truth, own), scale))| deviation(*truth, *own) / scale))
     }
 
     /// The largest error of a state that drifts, over its scale; NaN where there is none.
     #[must_use]
     pub fn drift_error(&self, row: &TruthRow, state: &[f64]) -> f64 {
-        self.of_drifts(|k| off(row.state[k], state[k]) / self.scales[k])
+        self.of_drifts(|k| deviation(row.state[k], state[k]) / self.scales[k])
     }
 
     /// The largest of a number for each state that drifts; NaN where there is none.
@@ -61,7 +61,7 @@ impl ErrorRule {
     #[must_use]
     pub fn time_error(&self, truth: TwoWord, own: f64) -> f64 {
         match self.beside {
-            Beside::Value => off(truth, own),
+            Beside::Value => deviation(truth, own),
             Beside::Largest => (truth.value() - own).abs(),
         }
     }
@@ -86,7 +86,7 @@ impl ErrorRule {
 
     /// The error of one state over its size and growth.
     pub(super) fn units(&self, row: &TruthRow, k: usize, own: f64) -> f64 {
-        let error = off(row.state[k], own) / self.scales[k];
+        let error = deviation(row.state[k], own) / self.scales[k];
         match self.beside {
             Beside::Value => error / (1.0 + row.state[k].value().abs()) / row.growth[k],
             Beside::Largest => error / row.growth[k].max(row.growth_time) / (1.0 + row.size),
@@ -127,6 +127,6 @@ pub(super) fn of_length(length: f64, system: &System) -> f64 {
 }
 
 /// The distance of a value from the truth.
-pub(crate) fn off(truth: TwoWord, value: f64) -> f64 {
+pub(crate) fn deviation(truth: TwoWord, value: f64) -> f64 {
     truth.minus(TwoWord::new(value)).value().abs()
 }

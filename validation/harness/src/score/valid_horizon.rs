@@ -69,8 +69,8 @@ impl HorizonTest {
     /// The number of periods for which the truth itself holds in each run, at most those that were
     /// followed.
     #[must_use]
-    pub fn trusted(&self) -> Vec<u32> {
-        self.runs.iter().map(HorizonRun::trusted).collect()
+    pub fn trusted_periods(&self) -> Vec<u32> {
+        self.runs.iter().map(HorizonRun::trusted_periods).collect()
     }
 
     /// Whether in every run an error of this unit grows to 1e-3 while the truth lasts.
@@ -149,11 +149,11 @@ impl HorizonRun {
 
     /// The period at which an engine's run ends.
     fn last_period(&self, unit: f64) -> u32 {
-        self.grows_to(ERROR_MARGIN_FACTOR * SCORED_ERROR / unit).min(self.trusted())
+        self.grows_to(ERROR_MARGIN_FACTOR * SCORED_ERROR / unit).min(self.trusted_periods())
     }
 
     /// The period up to which the truth can score.
-    fn trusted(&self) -> u32 {
+    fn trusted_periods(&self) -> u32 {
         self.grows_to(MAX_TRUTH_ERROR / DoubleDouble::UNIT)
     }
 
@@ -166,10 +166,10 @@ impl HorizonRun {
         let predicted = self.grows_to(SCORED_ERROR / unit);
         let usual = self.last_period(unit);
         let mut found = self.horizon_of_run(rule, usual, run);
-        if found.as_ref().is_ok_and(|valid| *valid == usual) && self.trusted() > usual {
-            found = self.horizon_of_run(rule, self.trusted(), run);
+        if found.as_ref().is_ok_and(|valid| *valid == usual) && self.trusted_periods() > usual {
+            found = self.horizon_of_run(rule, self.trusted_periods(), run);
         }
-        let outlasts = found.as_ref().is_ok_and(|valid| *valid == self.trusted());
+        let outlasts = found.as_ref().is_ok_and(|valid| *valid == self.trusted_periods());
         let valid = found.as_ref().map_or(0, |valid| *valid);
         (ValidHorizon { valid, predicted, outlasts }, found.is_err())
     }

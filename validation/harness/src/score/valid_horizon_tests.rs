@@ -65,7 +65,7 @@ fn a_run_that_is_still_right_is_made_again_for_as_long_as_the_truth_lasts() {
     run.growth = (0..=PERIODS).map(|k| 0.9 * 1e3_f64.powi(k as i32)).collect();
     // A unit of 1e-9 grows to 1e-3 in two periods, to a thousand times that in three; the truth's
     // own error, of 1e-32 or so, to 1e-5 in eight.
-    let (unit, trusted) = (1e-9, run.trusted());
+    let (unit, trusted) = (1e-9, run.trusted_periods());
     assert_eq!((run.grows_to(SCORED_ERROR / unit), run.last_period(unit)), (2, 3));
     assert_eq!(trusted, 8);
     let asked = std::sync::Mutex::new(Vec::new());
@@ -95,7 +95,7 @@ fn a_run_that_is_still_right_is_made_again_for_as_long_as_the_truth_lasts() {
 #[test]
 fn a_score_counts_what_failed_and_what_was_gained() {
     let test = test(3);
-    assert_eq!((test.runs.len(), test.undecided, test.trusted().len()), (3, 0, 3));
+    assert_eq!((test.runs.len(), test.undecided, test.trusted_periods().len()), (3, 0, 3));
     // In so few periods no unit of rounding grows to 1e-3, and a unit of 1e-3 is there at once.
     assert!(!test.decides(1e-15) && test.decides(1e-3));
     assert_eq!(test.length(1e-15), 3 * u64::from(PERIODS));

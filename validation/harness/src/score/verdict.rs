@@ -199,7 +199,7 @@ fn undecided_grazes(
     let Some(constant) = constant else { return Excused::default() };
     let allowed = constant.limit * subject.unit;
     let ScoredRun { measures, grazes, window, .. } = *run;
-    measures.mismatch.excused(grazes, &measures.found, window, allowed)
+    measures.mismatch.excused_by(grazes, &measures.found, window, allowed)
 }
 
 fn check(

@@ -90,13 +90,13 @@ impl Replay {
     #[must_use]
     pub fn new(parameters: &Parameters, entry: &Entry, horizon: Instant) -> Self {
         let state = [entry.state.p, entry.state.y, entry.state.q].map(DoubleDouble::exact);
-        Self::varied(parameters, entry, state, horizon)
+        Self::from_two_words(parameters, entry, state, horizon)
     }
 
     /// The run again from a start whose state is given in two words: for differences of
     /// neighbouring runs.
     #[must_use]
-    pub fn varied(
+    pub fn from_two_words(
         parameters: &Parameters,
         entry: &Entry,
         state: [DoubleDouble; 3],

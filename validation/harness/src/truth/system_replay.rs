@@ -35,14 +35,14 @@ impl Truth {
     pub(super) fn of_system(case: &Case) -> Result<Self, FileError> {
         let refused = |what: String| FileError::of(&case.file, what);
         let solver = solver(case).map_err(refused)?;
-        Self::solved(case, &solver).map_err(refused)
+        Self::solve(case, &solver).map_err(refused)
     }
 
     /// The truth of a case's run, by the closed forms of its system in the direction of the run.
     ///
     /// # Errors
     /// What 106 bits leave undecided, and horizons and samples beside an event.
-    pub fn solved(case: &Case, solver: &Solver<DoubleDouble>) -> Result<Self, String> {
+    pub fn solve(case: &Case, solver: &Solver<DoubleDouble>) -> Result<Self, String> {
         let start = case.system.start.as_ref().ok_or("the system has no start")?;
         let replay = SystemReplay { case, solver, begin: Time::of(&start.time) };
         let events = replay.events(start)?;

@@ -30,9 +30,9 @@ impl Plot {
         let (wide, tall) = (to.0 - panel.from.0, to.1 - panel.from.1);
         let at = (panel.from.0, corner.1 + MARGIN + 0.4 * TEXT_SIZE);
         canvas.text(&self.title, at, TEXT_SIZE, TextSide::Left, palette::INK);
-        let below = font::shortened(&self.axes[0], TEXT_SIZE + 2.0, wide);
+        let below = font::shorten(&self.axes[0], TEXT_SIZE + 2.0, wide);
         // The name is centred on the panel, and ends below what is above it.
-        let beside = font::shortened(&self.axes[1], TEXT_SIZE + 2.0, tall + 2.0 * MARGIN);
+        let beside = font::shorten(&self.axes[1], TEXT_SIZE + 2.0, tall + 2.0 * MARGIN);
         let bare = Self { layers: self.without_keys(), ..self.clone() };
         bare.fill(canvas, &panel, |canvas| {
             panel.draw_named(

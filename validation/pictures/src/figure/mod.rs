@@ -37,7 +37,7 @@ pub struct Figure {
 impl Figure {
     /// The caption in lines that are no longer than the figure is wide.
     fn lines(&self) -> Vec<String> {
-        font::wrapped(&self.caption, TEXT_SIZE, f64::from(self.size_of_panels().0) - 2.0 * MARGIN)
+        font::wrap(&self.caption, TEXT_SIZE, f64::from(self.size_of_panels().0) - 2.0 * MARGIN)
     }
 
     fn size_of_panels(&self) -> (u32, u32) {

@@ -9,7 +9,7 @@ use super::axis_unit::AxisUnit;
 use super::canvas::{At, Canvas};
 use super::frame::{Panel, Ruler};
 use super::key::{KeyItem, KeyLayout, key};
-use super::simplify::simplified;
+use super::simplify::simplify_line;
 use super::{Drawing, font, palette};
 use layout::Layout;
 use percuss::affine::{Event, Solver, System};
@@ -66,7 +66,7 @@ impl SystemMotion {
         let events = event_names(system, run);
         let motion = Self {
             title: system.name.clone(),
-            caption: font::wrapped(&values(system), SMALL_TEXT_SIZE, WIDTH - 2.0 * MARGIN),
+            caption: font::wrap(&values(system), SMALL_TEXT_SIZE, WIDTH - 2.0 * MARGIN),
             states: shown.iter().map(|n| system.states[*n].clone()).collect(),
             modes: system.modes.iter().map(|mode| mode.name.clone()).collect(),
             pieces: pieces(solver, run, shown),
@@ -196,7 +196,7 @@ impl SystemMotion {
         let Some((from, to)) = layout.events() else { return };
         let count = self.events.len() as f64;
         let mut y = Ruler::between(0.0, count);
-        let label = |name: &String| font::shortened(name, TEXT_SIZE, from.0 - MARGIN);
+        let label = |name: &String| font::shorten(name, TEXT_SIZE, from.0 - MARGIN);
         let named = self.events.iter().enumerate();
         y.ticks = named.map(|(n, name)| (count - 0.5 - n as f64, label(name))).collect();
         let panel = Panel { from, to, x: self.times(), y };
@@ -226,7 +226,7 @@ impl SystemMotion {
         let mut lines: BTreeMap<usize, Vec<Vec<At>>> = BTreeMap::new();
         for piece in &self.pieces {
             let places: Vec<At> = piece.points.iter().map(place).collect();
-            lines.entry(piece.mode).or_default().push(simplified(&places));
+            lines.entry(piece.mode).or_default().push(simplify_line(&places));
         }
         for (mode, lines) in lines {
             canvas.strokes(lines, CURVE_WIDTH, palette::mode(mode).0);

@@ -8,7 +8,7 @@ use crate::bench::compare::verdict::{WorkloadVerdict, is_doubtful};
 use crate::bench::history::{self, History, HistoryRecord};
 use crate::cli::note;
 use crate::cli::shared::long_work;
-use crate::cli::shared::names::{Selection, nearest};
+use crate::cli::shared::names::{Selection, nearest_names};
 use crate::cli::shared::output::{Destination, reader_left};
 use crate::cli::shared::parse;
 use crate::number::shortest;
@@ -136,7 +136,7 @@ fn version<'a>(file: &Path, history: &'a History, side: &str) -> Result<Vec<&'a 
     let found = history.version(side);
     if found.is_empty() {
         let names = history.versions();
-        let known = match nearest(side, names.iter().map(String::as_str)) {
+        let known = match nearest_names(side, names.iter().map(String::as_str)) {
             _ if names.is_empty() => "none is recorded".to_owned(),
             near if near.is_empty() => names.join(", "),
             near => format!("the nearest are {}", near.join(", ")),

@@ -23,7 +23,7 @@ pub(super) fn shown(system: &System, states: Option<&str>) -> Result<Vec<usize>>
     for name in states.split(',').map(str::trim) {
         let index = system.states.iter().position(|it| it == name);
         let Some(index) = index.filter(|it| !shown.contains(it)) else {
-            let near = names::nearest(name, system.states.iter().map(String::as_str));
+            let near = names::nearest_names(name, system.states.iter().map(String::as_str));
             let near = if near.is_empty() {
                 String::new()
             } else {

@@ -5,7 +5,7 @@ mod store;
 
 use super::help;
 use super::shared::long_work;
-use super::shared::names::nearest;
+use super::shared::names::nearest_names;
 use super::shared::output::{Destination, make_folder, reader_left, write_whole};
 use super::{DONE, OUT_OF_BOUNDS, say};
 use crate::engine::{Failure, hush_contained_panics};
@@ -112,7 +112,7 @@ fn chosen_items(only: &[String]) -> Result<Vec<&'static Item>> {
         if !items().iter().any(|item| item.answers_to(id)) {
             let names = items().iter().flat_map(|it| std::iter::once(&it.id).chain(it.claims));
             let names: Vec<_> = names.copied().collect();
-            let near = match nearest(id, names.iter().copied()) {
+            let near = match nearest_names(id, names.iter().copied()) {
                 near if near.is_empty() => String::new(),
                 near => format!("the nearest names are {}; ", near.join(", ")),
             };

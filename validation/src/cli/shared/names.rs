@@ -52,7 +52,7 @@ impl Selection<'_> {
         let names: Vec<&str> = names.into_iter().collect();
         let idle = |pattern: &&Regex| !names.iter().any(|name| pattern.is_match(name));
         let idle: Vec<&Regex> = patterns.iter().filter(idle).collect();
-        let lines: Vec<_> = idle.iter().map(|it| self.nothing(it.as_str(), &names)).collect();
+        let lines: Vec<_> = idle.iter().map(|it| self.no_match(it.as_str(), &names)).collect();
         match lines.first() {
             Some(_) if idle.len() == patterns.len() => bail!("{}", lines.join("; ")),
             _ => lines.iter().for_each(|line| note(line)),
@@ -61,9 +61,9 @@ impl Selection<'_> {
     }
 
     /// The error for a pattern that matches nothing.
-    pub(in crate::cli) fn nothing(&self, pattern: &str, names: &[&str]) -> String {
+    pub(in crate::cli) fn no_match(&self, pattern: &str, names: &[&str]) -> String {
         let Self { flag, what, listed } = self;
-        let near = match nearest(pattern, names.iter().copied()) {
+        let near = match nearest_names(pattern, names.iter().copied()) {
             near if near.is_empty() => String::new(),
             near => format!("the nearest names are {}; ", near.join(", ")),
         };
@@ -73,7 +73,7 @@ impl Selection<'_> {
 
 /// The names most like what was typed, best first; a part of a name between hyphens or underscores
 /// counts as much as the whole.
-pub(in crate::cli) fn nearest<'n>(
+pub(in crate::cli) fn nearest_names<'n>(
     typed: &str,
     names: impl IntoIterator<Item = &'n str>,
 ) -> Vec<&'n str> {
@@ -116,16 +116,16 @@ mod tests {
 
     #[test]
     fn the_nearest_come_first() {
-        assert_eq!(nearest("grase-miss", NAMES).first(), Some(&"graze-miss-1e-6"));
-        assert_eq!(nearest("^tabel1", NAMES), ["table1-from-rest"]);
-        assert_eq!(nearest("difsol-bdf", NAMES).first(), Some(&"diffsol-bdf"));
-        assert_eq!(nearest("dopri4", NAMES).first(), Some(&"ode_solvers-dopri5"));
-        assert_eq!(nearest("Diffsol-BFD", NAMES).first(), Some(&"diffsol-bdf"));
+        assert_eq!(nearest_names("grase-miss", NAMES).first(), Some(&"graze-miss-1e-6"));
+        assert_eq!(nearest_names("^tabel1", NAMES), ["table1-from-rest"]);
+        assert_eq!(nearest_names("difsol-bdf", NAMES).first(), Some(&"diffsol-bdf"));
+        assert_eq!(nearest_names("dopri4", NAMES).first(), Some(&"ode_solvers-dopri5"));
+        assert_eq!(nearest_names("Diffsol-BFD", NAMES).first(), Some(&"diffsol-bdf"));
     }
 
     #[test]
     fn what_is_like_nothing_has_no_neighbour() {
-        assert!(nearest("qqqqqqqq", NAMES).is_empty());
-        assert!(nearest("", NAMES).is_empty());
+        assert!(nearest_names("qqqqqqqq", NAMES).is_empty());
+        assert!(nearest_names("", NAMES).is_empty());
     }
 }

@@ -206,7 +206,7 @@ fn read(system: &Path) -> Result<(SystemFile, String)> {
         if system.is_file() {
             return anyhow!(error);
         }
-        let near = names::nearest(&name, SYSTEMS.iter().map(|(name, _)| *name));
+        let near = names::nearest_names(&name, SYSTEMS.iter().map(|(name, _)| *name));
         let near = match near.is_empty() {
             true => String::new(),
             false => format!("; the nearest names are {}", near.join(", ")),

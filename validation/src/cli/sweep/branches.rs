@@ -1,6 +1,6 @@
 //! `continue` at the points of a sweep.
 
-use crate::cli::orbits::follow::{Arguments, Reporting, family, followed};
+use crate::cli::orbits::follow::{Arguments, Reporting, family, follow_branch};
 use crate::cli::orbits::json::{BranchJson, Followed, JsonPlace, Special};
 use crate::sweep::{Array, SweepPoint, SweepVerb, records};
 use anyhow::Result;
@@ -25,7 +25,7 @@ impl SweepVerb for BranchWork {
 
     fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
         let model = self.arguments.model.at(point);
-        let (followed, _) = followed(&self.arguments, &model, Reporting::Alone)?;
+        let (followed, _) = follow_branch(&self.arguments, &model, Reporting::Alone)?;
         records::bytes(&arrays(&followed)?)
     }
 }

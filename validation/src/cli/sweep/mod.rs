@@ -195,14 +195,14 @@ struct SweepProgress {
 }
 
 impl SweepObserver for SweepProgress {
-    fn redone(&self, shard: u32, why: &Damage) {
+    fn on_damage(&self, shard: u32, why: &Damage) {
         if self.bar.is_some() {
             let name = Folder::name(shard);
             note(&format!("shard {shard} ({name}) is {why}; it is computed again"));
         }
     }
 
-    fn doubled(&self, shard: u32) {
+    fn on_duplicate(&self, shard: u32) {
         if self.bar.is_some() {
             note(&format!(
                 "shard {shard} is being computed by another process as well: both give the same, \

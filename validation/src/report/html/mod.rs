@@ -75,7 +75,7 @@ impl Exporter for Html {
             engines: view::engines(report, &summaries, &looks),
             failures,
             more_failures,
-            ranking: ranking::ranked(report, &looks),
+            ranking: ranking::ranked_lines(report, &looks),
             scope: &scope,
             recall_columns: summaries.iter().map(|it| it.settings.len()).max().unwrap_or(0),
             grazing: view::grazing(report, evidence),

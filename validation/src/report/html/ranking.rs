@@ -39,7 +39,7 @@ pub(super) struct RightBar {
 }
 
 /// The ranking in its order; `looks` are those of the report's engines.
-pub(super) fn ranked(report: &Report, looks: &[Look]) -> Vec<RankedLine> {
+pub(super) fn ranked_lines(report: &Report, looks: &[Look]) -> Vec<RankedLine> {
     report.ranking.iter().map(|it| ranked_line(report, looks, it)).collect()
 }
 

@@ -1,6 +1,6 @@
 //! The table of derivatives: how many of each engine's have which verdict.
 
-use super::names::fitted;
+use super::names::fit;
 use crate::gradients::Verdict;
 use crate::report::gradients::{GradientCounts, GradientEntry};
 use crate::report::table::{one_line, text};
@@ -35,7 +35,7 @@ pub(super) fn gradient_lines(rows: &[GradientEntry]) -> Vec<String> {
     }
     for it in all.iter().take(MAX_ENGINES) {
         let counts = it.counts.iter().map(ToString::to_string);
-        let name = fitted(it.engine, MAX_NAME_COLUMNS);
+        let name = fit(it.engine, MAX_NAME_COLUMNS);
         table.add_row([name].into_iter().chain(counts).chain([it.missing.clone()]));
     }
     let more = all.len().saturating_sub(MAX_ENGINES);

@@ -1,10 +1,10 @@
 //! What `--details` prints above the first screen.
 
-use super::names::fitted;
+use super::names::fit;
 use crate::number::brief;
 use crate::report::failing::failing_cases;
 use crate::report::notes::notes;
-use crate::report::table::{text, wrapped};
+use crate::report::table::{text, wrap};
 use crate::report::trouble::{Trouble, TroubleCell};
 use crate::report::{Ranked, Report, ReportEvidence};
 use comfy_table::{CellAlignment, Table, presets};
@@ -55,7 +55,7 @@ fn events_table(report: &Report) -> String {
     for it in &report.ranking {
         table.add_row(cells(it));
     }
-    text(&table) + &wrapped(LEGEND) + "\n"
+    text(&table) + &wrap(LEGEND) + "\n"
 }
 
 const LEGEND: &str = "rank (#): one more than the engines that are better by their cases that are \
@@ -70,7 +70,7 @@ fn cells(it: &Ranked) -> [String; 12] {
     let shown = |value: Option<f64>| value.map_or("-".to_owned(), figure);
     [
         it.shown_rank().map_or("-".to_owned(), |rank| rank.to_string()),
-        fitted(it.engine, MAX_NAME_COLUMNS),
+        fit(it.engine, MAX_NAME_COLUMNS),
         it.events_judged.to_string(),
         it.events_missed.to_string(),
         it.events_spurious.to_string(),
@@ -99,7 +99,7 @@ fn trouble_table(report: &Report, evidence: &ReportEvidence) -> String {
          events of the cases of each kind, rounded down; the columns are the engines: {}.",
         engines.join(", ")
     );
-    tables + &wrapped(&legend) + "\n"
+    tables + &wrap(&legend) + "\n"
 }
 
 /// The matrix for as many engines as fit, from one on.

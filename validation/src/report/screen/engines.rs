@@ -1,7 +1,7 @@
 //! The engines of the first screen, a line each.
 
 use super::details::{figure, plain};
-use super::names::{fitted, short_names};
+use super::names::{fit, short_names};
 use super::remark::remark;
 use crate::number::brief;
 use crate::report::ranking::{Common, EngineRows, by_engine, case_names, settings};
@@ -91,7 +91,7 @@ impl EngineTable {
         let engine_width = self.engine_width();
         for line in self.lines.iter().take(shown) {
             let mut line = line.clone();
-            line[1] = fitted(&line[1], engine_width);
+            line[1] = fit(&line[1], engine_width);
             table.add_row(line);
         }
         table

@@ -12,7 +12,7 @@ mod names;
 mod remark;
 
 use super::notes::power;
-use super::table::{one_line, reasons, row_table, setting, wrapped};
+use super::table::{one_line, reasons, row_table, setting, wrap};
 use super::{Report, ReportEvidence, ReportRow};
 use crate::score::Verdict;
 use advice::advice;
@@ -102,13 +102,13 @@ fn failures(bad: &[&ReportRow], room: usize) -> Vec<String> {
 
 fn worse(evidence: &ReportEvidence) -> String {
     let lines = evidence.worse.iter();
-    lines.map(|it| wrapped(&format!("worse than the baseline: {it}"))).collect()
+    lines.map(|it| wrap(&format!("worse than the baseline: {it}"))).collect()
 }
 
 fn cost_note(evidence: &ReportEvidence) -> String {
     match evidence.dearer.as_slice() {
         [] => String::new(),
-        rows => wrapped(&format!("right-hand sides beside the baseline: {}", rows.join("; "))),
+        rows => wrap(&format!("right-hand sides beside the baseline: {}", rows.join("; "))),
     }
 }
 

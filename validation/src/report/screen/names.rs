@@ -17,7 +17,7 @@ pub(super) fn short_names(report: &Report) -> BTreeMap<&'static str, &'static st
 }
 
 /// A name in at most so many columns.
-pub(super) fn fitted(name: &str, room: usize) -> String {
+pub(super) fn fit(name: &str, room: usize) -> String {
     if name.chars().count() <= room {
         return name.to_owned();
     }

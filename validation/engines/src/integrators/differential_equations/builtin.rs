@@ -171,7 +171,7 @@ impl<E: Equations<State: State<f64>>> Solout<f64, E::State> for BuiltinEvents<'_
             return ControlFlag::Continue;
         }
         self.field.meter.steps(1);
-        self.field.meter.stepped(end);
+        self.field.meter.record_step(end);
         let until = first.map_or(end, |first| first.t);
         self.count(counted, until);
         let state_at = |t: f64| interpolator.interpolate(t).map_err(|error| reason(&error));

@@ -52,7 +52,7 @@ impl<E: Equations> DiffsolRun<'_, E> {
         loop {
             let reason = solver.step().map_err(Failure::new)?;
             self.meter.steps(1);
-            self.meter.stepped(solver.state().t);
+            self.meter.record_step(solver.state().t);
             let state_at = |t: f64| solver.interpolate(t).map(|u| plain(&u)).map_err(Failure::new);
             match reason {
                 OdeSolverStopReason::InternalTimestep => {

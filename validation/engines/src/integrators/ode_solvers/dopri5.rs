@@ -205,10 +205,10 @@ where
         let search = GuardSearch::new(self.integration.equations, from, self.meter);
         let counted = &mut sampler.counted;
         let mut state_at = |t: f64| stretch.at(t);
-        let mut left = search.look(from.t, &from.state);
+        let mut left = search.guards_at(from.t, &from.state);
         let ends = stretch.ends.iter().zip(&stretch.states);
         for (end, state) in ends.filter(|(end, _)| **end > stretch.begin) {
-            let right = search.look(*end, &plain(&stretch.equations, state));
+            let right = search.guards_at(*end, &plain(&stretch.equations, state));
             let found = search.between(&left, &right, &mut state_at, counted)?;
             if found.is_some() {
                 return Ok(found);

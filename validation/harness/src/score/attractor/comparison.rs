@@ -71,7 +71,7 @@ impl AttractorTest {
     }
 
     /// The distances that are not within their limits.
-    pub(super) fn beyond(&self, found: &Distances) -> Vec<&'static str> {
+    pub(super) fn exceeding_limits(&self, found: &Distances) -> Vec<&'static str> {
         let within = |(name, value): &(&&'static str, &f64)| **value <= self.limit(name);
         found.iter().filter(|it| !within(it)).map(|(name, _)| *name).collect()
     }

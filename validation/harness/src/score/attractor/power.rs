@@ -114,7 +114,7 @@ impl AttractorTest {
         let plan = &self.calibrated.plan;
         let one = |number| {
             let section = exact_section(case, parameters, plan, kind, number)?;
-            Ok(self.beyond(&distances(&section, &self.reference)))
+            Ok(self.exceeding_limits(&distances(&section, &self.reference)))
         };
         let all: Result<Vec<_>, Failure> = (0..runs).into_par_iter().map(one).collect();
         Ok(all?.iter().fold(Alarms::default(), |alarms, names| alarms.with(names)))

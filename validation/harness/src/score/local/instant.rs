@@ -30,7 +30,7 @@ impl Walk<'_> {
 
     /// Judges the record of an awaited event. It may have the state of its own crossing, from which
     /// the records since have gone on: then the run stays where they left it.
-    pub(super) fn came(&mut self, event: &Event, named: Named, pending: &Pending) -> Said {
+    pub(super) fn judge_awaited(&mut self, event: &Event, named: Named, pending: &Pending) -> Said {
         let off = event.state.iter().zip(&pending.exact.state).zip(&pending.allowed);
         let defect = worst(off.map(|((own, exact), allowed)| (own - exact).abs() / allowed));
         let is_of_the_crossing = defect <= 1.0 && named.next == self.place.mode;
@@ -49,7 +49,7 @@ impl Walk<'_> {
             .partition(|it: &Pending| it.deadline < now);
         self.pending = open;
         for pending in over {
-            self.missed(n, Some(event), pending.exact);
+            self.count_missed(n, Some(event), pending.exact);
         }
     }
 }

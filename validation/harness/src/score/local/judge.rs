@@ -71,7 +71,12 @@ impl LocalJudge {
     /// The states at instants since the start, by the exact flow from the last record of an answer
     /// before each, in f64. The instant of a record has the state before it, as samples have.
     #[must_use]
-    pub fn continued(&self, task: &Task, outcome: &Outcome, instants: &[f64]) -> Vec<Vec<f64>> {
+    pub fn continued_states(
+        &self,
+        task: &Task,
+        outcome: &Outcome,
+        instants: &[f64],
+    ) -> Vec<Vec<f64>> {
         let state = |t: &f64| {
             let records = outcome.events.partition_point(|event| event.elapsed < *t);
             let last = records.checked_sub(1).map(|n| &outcome.events[n]);

@@ -23,12 +23,12 @@ impl Walk<'_> {
                 self.judge_off_time(event, named, exact)
             }
             Found::Late(exact) => {
-                self.missed(n, Some(event), exact);
+                self.count_missed(n, Some(event), exact);
                 self.judge_unexpected(event, named, None, decided)
             }
             Found::Nothing(next) => self.judge_unexpected(event, named, next, decided),
             Found::Ended(Ending::Undecided) => match self.take_pending(named) {
-                Some(pending) => self.came(event, named, &pending),
+                Some(pending) => self.judge_awaited(event, named, &pending),
                 None => self.contradiction(event, named).unwrap_or(Said::Undecidable),
             },
             Found::Ended(_) => self.judge_unexpected(event, named, None, decided),
@@ -43,7 +43,7 @@ impl Walk<'_> {
         self.found.defects.time.push(time);
         if exact.named.next != named.next {
             if self.successor_is_open(event, named, &stretch) {
-                return self.open(event, named).beside(exact);
+                return self.open(event, named).with_exact_event(exact);
             }
             return Said::Wrong(WrongKind::WrongMode, Some(exact), f64::NAN);
         }
@@ -72,7 +72,7 @@ impl Walk<'_> {
         // The time of a crossing that nearly is none says nothing.
         if state.is_finite() && self.is_graze(exact.elapsed, named.event) {
             self.found.defects.time.pop();
-            return self.open(event, named).beside(exact);
+            return self.open(event, named).with_exact_event(exact);
         }
         self.found.defects.state.push(state);
         if is_close {
@@ -98,7 +98,7 @@ impl Walk<'_> {
     /// A record of an event in whose instant the exact continuation has another.
     fn another(&mut self, event: &Event, named: Named, exact: Exact) -> Said {
         if let Some(pending) = self.take_pending(named) {
-            return self.came(event, named, &pending);
+            return self.judge_awaited(event, named, &pending);
         }
         if !exact.ends_mode {
             // An event that is only counted does not change what follows: it has to come too.
@@ -107,7 +107,7 @@ impl Walk<'_> {
         if !self.is_admissible(event, named) {
             return self.judge_unexpected(event, named, Some(exact), true);
         }
-        self.by_its_own_event(event, named).beside(exact)
+        self.by_its_own_event(event, named).with_exact_event(exact)
     }
 
     /// A record that the exact continuation does not have.
@@ -119,7 +119,7 @@ impl Walk<'_> {
         decided: bool,
     ) -> Said {
         if let Some(pending) = self.take_pending(named) {
-            return self.came(event, named, &pending);
+            return self.judge_awaited(event, named, &pending);
         }
         let undecided = !decided && self.is_admissible(event, named);
         if undecided || self.is_graze(event.elapsed, named.event) {
@@ -145,7 +145,7 @@ impl Walk<'_> {
         }
         let on_flow = self.off_the_flow(event).is_none_or(|it| it <= self.units.allowance.sample);
         if on_flow && self.is_graze(exact.elapsed, named.event) {
-            return self.open(event, named).beside(exact);
+            return self.open(event, named).with_exact_event(exact);
         }
         let stretch = self.place.stretch(exact.elapsed);
         let defect = self.units.of_time(event.elapsed - exact.elapsed, &stretch, named.event);

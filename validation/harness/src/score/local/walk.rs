@@ -57,7 +57,7 @@ pub(super) enum Said {
 
 impl Said {
     /// Adds the exact continuation's event to what is wrong, where none is named yet.
-    pub(super) fn beside(self, exact: Exact) -> Self {
+    pub(super) fn with_exact_event(self, exact: Exact) -> Self {
         match self {
             Self::Wrong(kind, None, defect) => Self::Wrong(kind, Some(exact), defect),
             said => said,
@@ -83,7 +83,7 @@ impl<'a> Walk<'a> {
         let at_entry = matches!(&found, Found::Same(exact) if exact.at_once);
         self.expire(n, event, event.elapsed);
         for exact in passed {
-            self.missed(n, Some(event), exact);
+            self.count_missed(n, Some(event), exact);
         }
         let rests = event.elapsed - self.place.elapsed <= Units::rounding_of_time(event.elapsed);
         self.at_once = if rests { self.at_once + 1 } else { 1 };
@@ -123,7 +123,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Counts an exact event that no record tells, and says whether it had to be told.
-    pub(super) fn missed(&mut self, n: usize, next: Option<&Event>, exact: Exact) -> bool {
+    pub(super) fn count_missed(&mut self, n: usize, next: Option<&Event>, exact: Exact) -> bool {
         // An event of a mode that the records have left since is none of the present flow.
         let is_present = exact.mode == self.place.mode;
         if is_present && self.is_graze(exact.elapsed, exact.named.event) {
@@ -185,7 +185,7 @@ impl<'a> Walk<'a> {
         let n = outcome.events.len();
         self.told_until = outcome.ended_at;
         for pending in std::mem::take(&mut self.pending) {
-            self.missed(n, None, pending.exact);
+            self.count_missed(n, None, pending.exact);
         }
         let early = self.is_early(outcome);
         if early && outcome.ended == Ending::Horizon {
@@ -211,7 +211,7 @@ impl<'a> Walk<'a> {
                 return;
             }
             let (elapsed, guard, ends_mode) = (own.elapsed, own.named.event, own.ends_mode);
-            let missed = self.missed(n, None, own);
+            let missed = self.count_missed(n, None, own);
             // What may be passed over is, and what is missed tells what else is.
             self.coarse.go_on(self.place.elapsed, &self.place.state, end, gone_past);
             if missed && ends_mode {

@@ -67,7 +67,7 @@ impl<'a> FirstWrongEvent<'a> {
             Some(engine) => watched_again((prepared, row), engine, scales.window(), &instants)?,
             None => EngineMotion {
                 outcome: outcome.as_ref().clone(),
-                states: prepared.local.continued(task, outcome, &instants),
+                states: prepared.local.continued_states(task, outcome, &instants),
                 steps: Vec::new(),
                 looks: Vec::new(),
             },

@@ -107,8 +107,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     family(arguments, &arguments.model)?;
     arguments.check_varied()?;
     let bar = long_work::share_bar();
-    let (followed, why) =
-        followed(arguments, &arguments.model, Reporting::Told(&|share| bar.show_share(share)))?;
+    let (followed, why) = follow_branch(
+        arguments,
+        &arguments.model,
+        Reporting::Told(&|share| bar.show_share(share)),
+    )?;
     bar.finish_and_clear();
     let figure = || drawing(arguments, &followed);
     outputs.data_and_figure(&arguments.picture, |_, out| json(out, &followed), figure)?;
@@ -204,7 +207,7 @@ pub(crate) enum Reporting<'a> {
 }
 
 /// The branch that the flags ask for, with this model and start, and why it is not complete.
-pub(crate) fn followed(
+pub(crate) fn follow_branch(
     arguments: &Arguments,
     model: &ModelFlags,
     seen: Reporting<'_>,

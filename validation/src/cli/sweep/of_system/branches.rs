@@ -32,7 +32,7 @@ impl SystemBranchWork {
         first.map_err(|error| anyhow!("--from {from}: {error}"))
     }
 
-    fn followed(
+    fn follow_branch(
         &self,
         chosen: &ChosenSystem,
         first: &System,
@@ -91,7 +91,7 @@ impl SweepVerb for SystemBranchWork {
     fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
         let chosen = self.swept.at(point)?;
         let first = self.first(&chosen)?;
-        let branch = self.followed(&chosen, &first)?.ok();
+        let branch = self.follow_branch(&chosen, &first)?.ok();
         records::bytes(&self.arrays(&first, branch.as_ref())?)
     }
 
