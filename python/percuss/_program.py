@@ -16,9 +16,9 @@ import numpy as np
 ROUNDING = 1024 * np.finfo(float).eps
 # How much of a guard that was zero where its mode begins the first steps may hide, in tolerances:
 # of a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly.
-SIMPLE, MULTIPLE = 0.1, 10
+SIMPLE_ZERO_TOLERANCES, MULTIPLE_ZERO_TOLERANCES = 0.1, 10
 # So many stretches in so little of a run are one event that is found again and again.
-MOST_STRETCHES, NO_PROGRESS = 200, 1e-9
+MAX_STRETCHES, PROGRESS_TOLERANCE = 200, 1e-9
 # So many events in one instant end a run.
 MAX_SIMULTANEOUS_EVENTS = 64
 INSTANT_TOLERANCE = 8 * np.finfo(float).eps
@@ -183,7 +183,7 @@ class Course:
         tolerance = self.run["tolerance"]
         errors = tolerance["absolute"] + tolerance["relative"] * abs(z)
         errors = abs(event.row[: len(z)]) @ errors
-        return (SIMPLE if order == 1 else MULTIPLE) * errors
+        return (SIMPLE_ZERO_TOLERANCES if order == 1 else MULTIPLE_ZERO_TOLERANCES) * errors
 
     def guard(self, place, zeros):
         """The guard of an event as a function. One that is zero where the mode begins has the sign
@@ -290,9 +290,9 @@ class Course:
     def goes_on(self):
         """Whether the run has not come to its end; asked once a stretch."""
         self.stretches += 1
-        if self.t - self.progress > NO_PROGRESS * self.span:
+        if self.t - self.progress > PROGRESS_TOLERANCE * self.span:
             self.stretches, self.progress = 0, self.t
-        if self.stretches > MOST_STRETCHES:
+        if self.stretches > MAX_STRETCHES:
             raise Failure(f"events at {self.t} are found again and again")
         return self.ended is None and self.span - self.t > 2 * INSTANT_TOLERANCE * self.span
 

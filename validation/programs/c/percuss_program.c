@@ -15,7 +15,7 @@
 static const double ROUNDING = 1024 * DBL_EPSILON;
 /* How much of a guard that was zero where its mode begins the first steps may hide, in tolerances:
  * of a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly. */
-static const double SIMPLE = 0.1, MULTIPLE = 10;
+static const double SIMPLE_ZERO_TOLERANCES = 0.1, MULTIPLE_ZERO_TOLERANCES = 10;
 /* So many events in one instant end a run. */
 static const int MAX_SIMULTANEOUS_EVENTS = 64;
 static const double INSTANT_TOLERANCE = 8 * DBL_EPSILON;
@@ -72,7 +72,7 @@ static double hidden(const percuss_course *course, int event, int order, const d
     double errors = 0.0;
     for (int i = 0; i < course->size; i++)
         errors += fabs(guard[i]) * (course->absolute + course->relative * fabs(z[i]));
-    return (order > 1 ? MULTIPLE : SIMPLE) * errors;
+    return (order > 1 ? MULTIPLE_ZERO_TOLERANCES : SIMPLE_ZERO_TOLERANCES) * errors;
 }
 
 double percuss_guard_after(const percuss_course *course, const percuss_entry *entry, int event,

@@ -31,10 +31,10 @@ import org.apache.commons.math3.ode.sampling.StepInterpolator;
  * </ul>
  */
 final class CommonsMath {
-    private static final double LEAST_STEP = 1e-8, LONGEST_STEP = 100;
+    private static final double MIN_STEP = 1e-8, MAX_STEP = 100;
     /** How often guards are looked at: by default once a step; in steps of the longest length. */
-    private static final double EVERY_STEP = Double.POSITIVE_INFINITY, LOOK = 0.125;
-    private static final int MOST_ITERATIONS = 100;
+    private static final double DEFAULT_CHECK_TIME = Double.POSITIVE_INFINITY, CHECK_STEPS = 0.125;
+    private static final int MAX_ITERATIONS = 100;
     /** Of a time, what is rounding. */
     private static final double ROUNDING = 8 * Math.ulp(1.0);
 
@@ -42,8 +42,8 @@ final class CommonsMath {
 
     private static AbstractIntegrator integrator(
             PercussCourse course, String name, boolean expert) {
-        double least = expert ? 0 : LEAST_STEP;
-        double longest = expert ? course.longestStep() : LONGEST_STEP;
+        double least = expert ? 0 : MIN_STEP;
+        double longest = expert ? course.longestStep() : MAX_STEP;
         double absolute = course.run.tolerance.absolute, relative = course.run.tolerance.relative;
         return switch (name) {
             case "dp54" -> new DormandPrince54Integrator(least, longest, absolute, relative);
@@ -122,11 +122,11 @@ final class CommonsMath {
             Map<Integer, PercussSystem.Leading> zeros) {
         Found found = new Found();
         AbstractIntegrator integrator = integrator(course, name, expert);
-        double every = expert ? LOOK * course.longestStep() : EVERY_STEP;
+        double every = expert ? CHECK_STEPS * course.longestStep() : DEFAULT_CHECK_TIME;
         double close = expert ? ROUNDING * course.run.span : course.run.tolerance.absolute;
         for (int place = 0; place < course.now().events.size(); place++) {
             Handler handler = new Handler(course, place, course.guard(place, zeros), found);
-            integrator.addEventHandler(handler, every, close, MOST_ITERATIONS);
+            integrator.addEventHandler(handler, every, close, MAX_ITERATIONS);
         }
         integrator.addStepHandler(new Samples(course, found));
         double[] z = new double[course.z.length];

@@ -10,11 +10,11 @@ final class PercussCourse {
     /** How much of a guard that was zero where its mode begins the first steps may hide, in
      *  tolerances: of a simple zero, which it leaves at once, and of a multiple one, which it
      *  leaves slowly. */
-    private static final double SIMPLE = 0.1, MULTIPLE = 10;
+    private static final double SIMPLE_ZERO_TOLERANCES = 0.1, MULTIPLE_ZERO_TOLERANCES = 10;
     /** So many events in one instant end a run, and so many stretches in so little of a run are one
      *  event that is found again and again. */
-    private static final int MAX_SIMULTANEOUS_EVENTS = 64, MOST_STRETCHES = 200;
-    private static final double INSTANT_TOLERANCE = 8 * Math.ulp(1.0), NO_PROGRESS = 1e-9;
+    private static final int MAX_SIMULTANEOUS_EVENTS = 64, MAX_STRETCHES = 200;
+    private static final double INSTANT_TOLERANCE = 8 * Math.ulp(1.0), PROGRESS_TOLERANCE = 1e-9;
 
     /** What is asked for, by its names in a request. */
     static final class Run {
@@ -123,7 +123,7 @@ final class PercussCourse {
         for (int i = 0; i < z.length; i++)
             errors += Math.abs(event.guard[i])
                     * (run.tolerance.absolute + run.tolerance.relative * Math.abs(z[i]));
-        return (order == 1 ? SIMPLE : MULTIPLE) * errors;
+        return (order == 1 ? SIMPLE_ZERO_TOLERANCES : MULTIPLE_ZERO_TOLERANCES) * errors;
     }
 
     /** Runs a mode to the first event that ends it, whose place it returns, or to the horizon,
@@ -197,10 +197,10 @@ final class PercussCourse {
     /** Whether the run has not come to its end; asked once a stretch. */
     private boolean goesOn() {
         stretches++;
-        if (t - progress > NO_PROGRESS * run.span) {
+        if (t - progress > PROGRESS_TOLERANCE * run.span) {
             stretches = 0;
             progress = t;
-        } else if (stretches > MOST_STRETCHES) {
+        } else if (stretches > MAX_STRETCHES) {
             throw new IllegalStateException("events at " + t + " are found again and again");
         }
         boolean goes = ended == null && run.span - t > 2 * INSTANT_TOLERANCE * run.span;

@@ -19,10 +19,10 @@ using OrdinaryDiffEq
 import Pkg
 
 const SciMLBase = OrdinaryDiffEq.SciMLBase
-const LONGEST_STEP = 0.125
+const MAX_STEP_PERIODS = 0.125
 const MAX_SIMULTANEOUS_EVENTS = 64
 const INSTANT_TOLERANCE = 8 * eps()
-const HIDDEN = 0.1
+const HIDDEN_TOLERANCES = 0.1
 const METHODS = Dict(
     "tsit5" => (Tsit5, "Tsitouras 5(4)", "explicit", 5),
     "vern9" => (Vern9, "Verner 9(8)", "explicit", 9),
@@ -130,13 +130,14 @@ function stretch(course, method, is_default)
     mode = course.modes[course.mode]
     span, found = course.run["span"], Ref(0)
     tolerance = course.run["tolerance"]["relative"]
-    moved = [abs(sum(event.guard .* wide(course, course.t, course.z))) > HIDDEN * tolerance
+    at_entry = wide(course, course.t, course.z)
+    moved = [abs(sum(event.guard .* at_entry)) > HIDDEN_TOLERANCES * tolerance
              for event in mode.events]
     function condition(out, z, t, _)
         w = wide(course, t, z)
         for (n, event) in enumerate(mode.events)
             value = sum(event.guard .* w)
-            moved[n] |= abs(value) > HIDDEN * tolerance
+            moved[n] |= abs(value) > HIDDEN_TOLERANCES * tolerance
             out[n] = is_default || moved[n] ? value : -1e-300
         end
     end
@@ -161,7 +162,7 @@ function stretch(course, method, is_default)
     isempty(mode.events) || (options[:callback] = callback)
     if !is_default
         turn = something(course.run["times"]["turn"], Inf)
-        options[:dtmax] = LONGEST_STEP * min(course.run["times"]["period"], turn)
+        options[:dtmax] = MAX_STEP_PERIODS * min(course.run["times"]["period"], turn)
         options[:maxiters] = 10^7
     end
     solver = init(problem, method(); options...)

@@ -33,7 +33,7 @@ except ImportError as why:
     unavailable(str(why))
 
 METHODS = {"cvodes": "CVODES, BDF of orders 1 to 5", "idas": "IDAS, BDF of orders 1 to 5"}
-MOST_STEPS = 1_000_000
+MAX_STEPS = 1_000_000
 
 
 @cache
@@ -46,7 +46,7 @@ def one_step(solver, size, tolerance):
     rates = a @ z + c + b @ ca.vertcat(ca.cos(theta), ca.sin(theta))
     given = ca.vertcat(ca.vec(a), ca.vec(b), c, begin, length, omega, phi)
     system = {"x": z, "t": s, "p": given, "ode": length * rates}
-    options = {"reltol": tolerance, "abstol": tolerance, "max_num_steps": MOST_STEPS}
+    options = {"reltol": tolerance, "abstol": tolerance, "max_num_steps": MAX_STEPS}
     return ca.integrator("step", solver, system, 0.0, 1.0, options)
 
 

@@ -56,10 +56,10 @@ ADJOINTS = {
     "backsolve": diffrax.BacksolveAdjoint,
 }
 # The adjoint of set-ups that are not named after one.
-BY_DEFAULT, BY_EXPERTS = "checkpoint", "forward"
-REVERSE = ("checkpoint", "backsolve")
-FURTHER = ("tsit5-checkpoint", "tsit5-direct-default", "tsit5-backsolve-default")
-MOST_STEPS = 200_000
+DEFAULT_ADJOINT, EXPERT_ADJOINT = "checkpoint", "forward"
+REVERSE_ADJOINTS = ("checkpoint", "backsolve")
+FURTHER_SETUPS = ("tsit5-checkpoint", "tsit5-direct-default", "tsit5-backsolve-default")
+MAX_STEPS = 200_000
 FIRST_STEP = 0.1
 # Samples come in so many at a time, so that little is compiled.
 BUCKETS = (16, 128, 1024, 8192)
@@ -114,7 +114,7 @@ def solve(method, is_default, directions, adjoint, given, t0, z, t1, times, tole
         args=given,
         saveat=saved,
         stepsize_controller=controller,
-        max_steps=MOST_STEPS,
+        max_steps=MAX_STEPS,
         throw=False,
         event=event_of(is_default, directions),
         adjoint=ADJOINTS[adjoint](),
@@ -150,7 +150,7 @@ def along(*chosen):
         found = sum(jax.tree.leaves(jax.tree.map(product, all_, changes)))
         return found[:, 0], found[:, 1:]
 
-    return jax.jit(reverse if chosen[-1] in REVERSE else forward)
+    return jax.jit(reverse if chosen[-1] in REVERSE_ADJOINTS else forward)
 
 
 def padded(times, end):
@@ -196,7 +196,7 @@ def stretch(course, name, is_default, adjoint, zeros):
     rest = course.span, course.run["tolerance"]["relative"], course.longest_step()
     chosen = name, is_default, directions
     times = padded(due, course.span)
-    found = solver(*chosen, BY_DEFAULT)(given, course.t, course.z, rest[0], times, *rest[1:])
+    found = solver(*chosen, DEFAULT_ADJOINT)(given, course.t, course.z, rest[0], times, *rest[1:])
     course.trail.append(pushed(course, (*chosen, adjoint), given, rest))
     steps = int(found.stats["num_steps"])
     course.meter.steps += steps
@@ -240,7 +240,7 @@ def make(setup, course):
     name, *words = setup.split("-")
     is_default = "default" in words
     named = [word for word in words if word in ADJOINTS]
-    adjoint = (named or [BY_DEFAULT if is_default else BY_EXPERTS])[0]
+    adjoint = (named or [DEFAULT_ADJOINT if is_default else EXPERT_ADJOINT])[0]
     if is_default:
         while course.goes_on():
             stretch(course, name, True, adjoint, {})
@@ -256,7 +256,7 @@ def setups():
     methods = {name: said[1:4] for name, said in METHODS.items()}
     pairs = in_pairs(methods, gradients=True)
     usual = next(it for it in pairs if it["name"] == "tsit5")
-    return [*pairs, *(usual | {"name": name} for name in FURTHER)]
+    return [*pairs, *(usual | {"name": name} for name in FURTHER_SETUPS)]
 
 
 if __name__ == "__main__":

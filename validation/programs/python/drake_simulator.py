@@ -40,7 +40,7 @@ DIRECTIONS = {
     -1: WitnessFunctionDirection.kPositiveThenNonPositive,
     0: WitnessFunctionDirection.kCrossesZero,
 }
-FIRST_LONGEST_STEP = 0.1
+DEFAULT_MAX_STEP = 0.1
 
 
 class ModeSystem(LeafSystem):
@@ -84,7 +84,7 @@ def stretch(course, name, zeros, is_default):
     """Runs to the first event, or to the horizon."""
     system = ModeSystem(course, zeros)
     simulator = Simulator(system)
-    longest = FIRST_LONGEST_STEP if is_default else course.longest_step()
+    longest = DEFAULT_MAX_STEP if is_default else course.longest_step()
     integrator = ResetIntegratorFromFlags(simulator, name, longest)
     accuracy = course.run["tolerance"]["relative"]
     integrator.set_target_accuracy(accuracy)

@@ -29,9 +29,9 @@ except ImportError as why:
     unavailable(str(why))
 
 # After a crossing that was passed over, in the shortest time in which the system changes.
-COOLDOWN = 1e-6
+COOLDOWN_TIME = 1e-6
 # Steps between two looks at the clock.
-STEPS = 1000
+STEPS_PER_CLOCK_READING = 1000
 
 
 def affine(row, names, system, theta=None):
@@ -99,7 +99,7 @@ class Mode:
         names = [hy.expression(f"x{n}") for n in range(size)]
         rows = course.system.modes[place].wide[:size]
         terminal, counted = [], []
-        cooldown = COOLDOWN * course.run["times"]["shortest"]
+        cooldown = COOLDOWN_TIME * course.run["times"]["shortest"]
         self.ending = [n for n, event in enumerate(self.events) if event.ends]
         for n, event in enumerate(self.events):
             guard = affine(event.row, names, course.system)
@@ -157,7 +157,9 @@ class Mode:
         course, integrator, meter = self.course, self.integrator, self.course.meter
         while True:
             due = course.pending()
-            done = integrator.propagate_until(course.span, max_steps=STEPS, c_output=len(due) > 0)
+            done = integrator.propagate_until(
+                course.span, max_steps=STEPS_PER_CLOCK_READING, c_output=len(due) > 0
+            )
             outcome, steps, output = done[0], done[3], done[4]
             meter.steps += steps
             meter.rhs += steps * integrator.order

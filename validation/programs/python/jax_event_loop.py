@@ -50,8 +50,8 @@ STEP = (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84)
 ERROR = (
     71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40,
 )
-SAFETY, LEAST, MOST = 0.9, 0.2, 5.0
-MOST_STEPS = 200_000
+SAFETY_FACTOR, MIN_STEP_FACTOR, MAX_STEP_FACTOR = 0.9, 0.2, 5.0
+MAX_STEPS = 200_000
 HALVINGS = 60
 # Samples and names come in so many at a time, so that little is compiled.
 BUCKETS = (0, 16, 128, 1024, 8192)
@@ -116,7 +116,7 @@ def solve(way, given, t0, z0, t1, times, tolerance, longest):
     due = jnp.append(times, jnp.inf)
 
     def goes_on(it):
-        return (it["t"] < t1) & ~it["happened"] & (it["tries"] < MOST_STEPS)
+        return (it["t"] < t1) & ~it["happened"] & (it["tries"] < MAX_STEPS)
 
     def go(it):
         t, z = it["t"], it["z"]
@@ -136,7 +136,8 @@ def solve(way, given, t0, z0, t1, times, tolerance, longest):
         if count:
             k = jnp.minimum(it["k"], count - 1)
             samples = samples.at[k].set(jnp.where(is_due, after, samples[k]))
-        factor = jnp.clip(SAFETY * jnp.maximum(size, 1e-10) ** -0.2, LEAST, MOST)
+        factor = SAFETY_FACTOR * jnp.maximum(size, 1e-10) ** -0.2
+        factor = jnp.clip(factor, MIN_STEP_FACTOR, MAX_STEP_FACTOR)
         return {
             "t": jnp.where(accepted, later, t),
             "z": jnp.where(accepted, after, z),
@@ -218,8 +219,8 @@ def stretch(course, way, zeros):
     course.meter.steps += int(steps)
     course.meter.rhs += len(ERROR) * int(tries) + len(ERROR) * HALVINGS * (place >= 0)
     course.meter.call()
-    if int(tries) >= MOST_STEPS:
-        raise Failure(f"{MOST_STEPS} steps were too few")
+    if int(tries) >= MAX_STEPS:
+        raise Failure(f"{MAX_STEPS} steps were too few")
 
     def push(by, times, states):
         rates = stacked(by, given, place_of_mode)

@@ -28,7 +28,7 @@ METHODS = {
     "cvode-adams": "CVODE, Adams-Moulton of orders 1 to 12",
     "ida": "IDA, BDF of orders 1 to 5 for z' - f(z) = 0",
 }
-MOST_STEPS = 1_000_000
+MAX_STEPS = 1_000_000
 
 
 def watched(course, zeros):
@@ -128,7 +128,7 @@ def make(setup, course):
         return
     options = {
         "max_step": course.longest_step(),
-        "max_num_steps": MOST_STEPS,
+        "max_num_steps": MAX_STEPS,
         "has_jacobian": True,
     }
     course.by_experts(lambda zeros: (stretch(course, name, zeros, options), {}))

@@ -34,7 +34,7 @@ torch.set_num_threads(1)
 torch.set_default_dtype(torch.float64)
 
 # By how much the example moves a ball that lies on the ground.
-MOVED = 1e-7
+LIFT = 1e-7
 
 
 class Field(torch.nn.Module):
@@ -110,8 +110,8 @@ def off_zero(course):
     z = np.array(course.z)
     for event in course.system.modes[course.mode].events:
         value, row = event.row @ course.system.wide(course.t, z), event.row[: len(z)]
-        if abs(value) < MOVED and row @ row > 0:
-            z -= row * (value + MOVED) / (row @ row)
+        if abs(value) < LIFT and row @ row > 0:
+            z -= row * (value + LIFT) / (row @ row)
     return z
 
 

@@ -14,7 +14,7 @@
 here <- dirname(sub("^--file=", "", grep("^--file=", commandArgs(), value = TRUE)))
 source(file.path(here, "percuss_program.R"))
 
-LONGEST_STEP <- 0.125
+MAX_STEP_PERIODS <- 0.125
 
 # Runs to the next root, or to the horizon.
 stretch <- function(course, method, known) {
@@ -45,7 +45,7 @@ expert_options <- function(course, method) {
   inside <- seq_len(mode$size)
   turn <- if (is.null(course$run$times$turn)) Inf else course$run$times$turn
   list(
-    hmax = LONGEST_STEP * min(course$run$times$period, turn),
+    hmax = MAX_STEP_PERIODS * min(course$run$times$period, turn),
     maxsteps = 1e6,
     jacfunc = function(t, z, parms) {
       course$jacobians <- course$jacobians + 1

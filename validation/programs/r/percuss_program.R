@@ -7,12 +7,12 @@ ROUNDING <- 1024 * .Machine$double.eps
 INSTANT_TOLERANCE <- 8 * .Machine$double.eps
 MAX_SIMULTANEOUS_EVENTS <- 64
 # So many stretches in so little of a run are one event that is found again and again.
-MOST_STRETCHES <- 200
-NO_PROGRESS <- 1e-9
+MAX_STRETCHES <- 200
+PROGRESS_TOLERANCE <- 1e-9
 # How much of a guard that was zero where its mode begins the first steps may hide, in tolerances:
 # of a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly.
-SIMPLE <- 0.1
-MULTIPLE <- 10
+SIMPLE_ZERO_TOLERANCES <- 0.1
+MULTIPLE_ZERO_TOLERANCES <- 10
 
 numbers <- function(list) as.numeric(unlist(list))
 rows <- function(list) do.call(rbind, lapply(list, numbers))
@@ -126,7 +126,8 @@ guard <- function(course, place, t, z, known = NULL) {
   if (known$sign == 0) return(-1)
   tolerance <- course$run$tolerance
   errors <- tolerance$absolute + tolerance$relative * abs(z)
-  hidden <- (if (known$order == 1) SIMPLE else MULTIPLE) * sum(abs(event$row[seq_along(z)]) * errors)
+  tolerances <- if (known$order == 1) SIMPLE_ZERO_TOLERANCES else MULTIPLE_ZERO_TOLERANCES
+  hidden <- tolerances * sum(abs(event$row[seq_along(z)]) * errors)
   if (abs(value) <= hidden) return(known$sign * 1e-300)
   if (sign(value) == known$sign) course$left[place] <- t
   value
@@ -179,11 +180,11 @@ pass <- function(course, t, place, z, plainly = FALSE) {
 # Whether the run has not come to its end; asked once a stretch.
 goes_on <- function(course) {
   course$stretches <- course$stretches + 1
-  if (course$t - course$progress > NO_PROGRESS * course$run$span) {
+  if (course$t - course$progress > PROGRESS_TOLERANCE * course$run$span) {
     course$stretches <- 0
     course$progress <- course$t
   }
-  if (course$stretches > MOST_STRETCHES) {
+  if (course$stretches > MAX_STRETCHES) {
     stop(sprintf("events at %.17g are found again and again", course$t))
   }
   is.null(course$ended) && course$run$span - course$t > 2 * INSTANT_TOLERANCE * course$run$span
