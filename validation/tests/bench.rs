@@ -3,7 +3,7 @@
 
 use crate::exact;
 use crate::support::{refused, run, stdout, text};
-use percuss_validation::bench::cases::{SYSTEMS, USUAL};
+use percuss_validation::bench::cases::{DEFAULT_CASES, SYSTEMS};
 use percuss_validation::bench::contest::{contest, contest_at, most_accurate};
 use percuss_validation::bench::contestant::{Contestant, EnteredEngine, settings};
 use percuss_validation::bench::library_part::library_part;
@@ -53,7 +53,7 @@ fn a_wrong_answer_has_no_time() {
 
 #[test]
 fn the_usual_cases_are_there_and_the_exact_solver_is_right_on_them() {
-    for name in USUAL {
+    for name in DEFAULT_CASES {
         let case = case(name);
         let found =
             contest_at(&case, &[(&EnteredEngine(exact_solver()), Accuracy::Exact)], 1, &|| ());

@@ -82,7 +82,7 @@ fn the_speed_table_is_of_todays_cases() {
     // Below a blank line are those whose lead is too little.
     let table = lines[3..].iter().take_while(|line| !line.is_empty());
     let cases: Vec<_> = table.filter_map(|line| line.split_whitespace().next()).collect();
-    assert_eq!(cases, percuss_validation::bench::cases::USUAL);
+    assert_eq!(cases, percuss_validation::bench::cases::DEFAULT_CASES);
 }
 
 /// The summary is written by the command that docs/LONG_TESTS.md names. It must be of a run that

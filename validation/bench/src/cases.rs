@@ -3,7 +3,7 @@
 
 /// Every regime whose dearest engine takes a second at most: what is left out (`resonance`,
 /// `slow-forcing`) keeps explicit integrators busy for minutes, and `-c` asks for it.
-pub const USUAL: [&str; 12] = [
+pub const DEFAULT_CASES: [&str; 12] = [
     // chaos with progression, lightly damped chaos, and motion of period two and five
     "chaos-from-rest",
     "fig7a-chaos",

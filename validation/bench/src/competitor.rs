@@ -1,7 +1,7 @@
 //! The closest competitor of the exact solver on a case, at its most accurate and at equal
 //! accuracy, by times that are net of the harness's own share.
 
-use super::equal_accuracy::{Basis, COMPARABLE, LOOSE, TIGHT};
+use super::equal_accuracy::{Basis, LOOSE_ERROR, MAX_COMPARABLE_RATIO, TIGHT_ERROR};
 use super::report::{Bench, BenchRow};
 use crate::engine::REFERENCE;
 use crate::number::{brief, shortest};
@@ -36,9 +36,9 @@ impl ClosestCompetitor<'_> {
             Basis::MostAccurate => {
                 format!("least: {}", self.row.state_error_max.map(brief).unwrap_or_default())
             }
-            Basis::Comparable => format!("<= {} * exact", shortest(COMPARABLE)),
-            Basis::Tight => format!("<= {}", shortest(TIGHT)),
-            Basis::Loose => format!("<= {}", shortest(LOOSE)),
+            Basis::Comparable => format!("<= {} * exact", shortest(MAX_COMPARABLE_RATIO)),
+            Basis::Tight => format!("<= {}", shortest(TIGHT_ERROR)),
+            Basis::Loose => format!("<= {}", shortest(LOOSE_ERROR)),
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::engine::{
 use crate::number::brief;
 
 /// Calls (right-hand sides, Jacobians, guards) beyond which a run is given up: a second or less.
-const BUDGET: u64 = 5_000_000;
+const MAX_CALLS: u64 = 5_000_000;
 
 /// Something that can be timed on a case.
 pub trait Contestant: Sync {
@@ -64,7 +64,7 @@ impl Contestant for EnteredEngine {
 }
 
 fn limits() -> Limits {
-    Limits { calls: BUDGET, ..Limits::default() }
+    Limits { calls: MAX_CALLS, ..Limits::default() }
 }
 
 /// An engine made ready for a case.
@@ -83,8 +83,8 @@ pub fn enter<'a>(
 
 /// Refuses a run that takes more right-hand sides than it may.
 fn within_budget(least: f64) -> Result<(), Failure> {
-    if least > BUDGET as f64 {
-        let budget = brief(BUDGET as f64);
+    if least > MAX_CALLS as f64 {
+        let budget = brief(MAX_CALLS as f64);
         let reason =
             format!("not run: {} right-hand sides at the least, of {budget}", brief(least));
         return Err(Failure::new(reason));

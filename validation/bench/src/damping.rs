@@ -8,7 +8,7 @@ use super::timed_case::TimedCase;
 use crate::engine::{Accuracy, Failure, Role, Stepping};
 use percuss::Parameters;
 
-const XI: [f64; 9] = [1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4];
+const DAMPING_RATIOS: [f64; 9] = [1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4];
 /// The forcing frequency of the cases with falling damping ratios.
 const OMEGA: f64 = 1.2;
 const PERIODS: u32 = 20;
@@ -39,13 +39,13 @@ pub fn over_xi(
         let case = TimedCase::from_rest(parameters, PERIODS)?;
         Ok(DampingPoint { xi, results: contest_at(&case, &asked, rounds, done) })
     };
-    XI.into_iter().map(point).collect()
+    DAMPING_RATIOS.into_iter().map(point).collect()
 }
 
 /// The number of progress steps of [`over_xi`].
 #[must_use]
 pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
-    (XI.len() * asked(contestants).len() * (rounds + 1)) as u64
+    (DAMPING_RATIOS.len() * asked(contestants).len() * (rounds + 1)) as u64
 }
 
 fn asked<'a>(contestants: &[&'a dyn Contestant]) -> Vec<(&'a dyn Contestant, Accuracy)> {

@@ -11,22 +11,22 @@
 pub enum Basis {
     /// Each engine at its most accurate setting.
     MostAccurate,
-    /// Each engine where its work-precision curve has errors of at most [`COMPARABLE`] times the
-    /// exact solver's on the same case.
+    /// Each engine where its work-precision curve has errors of at most
+    /// [`MAX_COMPARABLE_RATIO`] times the exact solver's on the same case.
     Comparable,
-    /// Each engine where its work-precision curve has errors of at most [`TIGHT`].
+    /// Each engine where its work-precision curve has errors of at most [`TIGHT_ERROR`].
     Tight,
-    /// Each engine where its work-precision curve has errors of at most [`LOOSE`].
+    /// Each engine where its work-precision curve has errors of at most [`LOOSE_ERROR`].
     Loose,
 }
 
-/// How many times as large as the exact solver's an error of comparable accuracy is at most: one
-/// digit less.
-pub const COMPARABLE: f64 = 10.0;
+/// The largest ratio of an error to the exact solver's at which the two are of comparable accuracy:
+/// one digit less.
+pub const MAX_COMPARABLE_RATIO: f64 = 10.0;
 /// The smaller error at which engines are compared.
-pub const TIGHT: f64 = 1e-9;
+pub const TIGHT_ERROR: f64 = 1e-9;
 /// The larger error at which engines are compared.
-pub const LOOSE: f64 = 1e-6;
+pub const LOOSE_ERROR: f64 = 1e-6;
 
 /// Every basis, in the order of tables.
 pub const BASES: [Basis; 4] = [Basis::MostAccurate, Basis::Comparable, Basis::Tight, Basis::Loose];
@@ -68,10 +68,10 @@ mod tests {
     }
 
     /// Rounding of two logarithms, their quotient and a power.
-    const ROUNDING: f64 = 1e-14;
+    const ROUNDING_TOLERANCE: f64 = 1e-14;
 
     fn agrees(found: Option<f64>, wanted: f64) -> bool {
-        found.is_some_and(|it| (it / wanted - 1.0).abs() < ROUNDING)
+        found.is_some_and(|it| (it / wanted - 1.0).abs() < ROUNDING_TOLERANCE)
     }
 
     #[test]

@@ -8,19 +8,21 @@ use crate::engine::Failure;
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-const LITTLE: u64 = 2_000;
-const MUCH: u64 = 22_000;
+/// The units of work in the shorter of the two runs that are counted.
+const FEW_UNITS: u64 = 2_000;
+/// The units of work in the longer run; what both do besides cancels in the difference.
+const MANY_UNITS: u64 = 22_000;
 
 /// Instructions per unit of a workload.
 ///
 /// # Errors
 /// Valgrind is not installed, or gives no count.
 pub fn per_unit(bench: &str) -> Result<f64, Failure> {
-    let (little, much) = (count(bench, LITTLE)?, count(bench, MUCH)?);
+    let (little, much) = (count(bench, FEW_UNITS)?, count(bench, MANY_UNITS)?);
     if much <= little {
         return Err(Failure::new(format!("valgrind counts {little} and, for more work, {much}")));
     }
-    Ok((much - little) as f64 / (MUCH - LITTLE) as f64)
+    Ok((much - little) as f64 / (MANY_UNITS - FEW_UNITS) as f64)
 }
 
 fn count(bench: &str, units: u64) -> Result<u64, Failure> {

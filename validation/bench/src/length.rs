@@ -15,11 +15,11 @@ use percuss::{Entry, Model, Parameters, Start, Step};
 /// Lengths in forcing periods, multiples of the orbit's five.
 const LENGTHS: [u64; 6] = [10, 100, 1_000, 10_000, 100_000, 1_000_000];
 /// Lengths that are timed only when long runs are asked for.
-const LONG: [u64; 2] = [10_000_000, 100_000_000];
+const LONG_LENGTHS: [u64; 2] = [10_000_000, 100_000_000];
 /// Each length is run until it has taken this long, ns, and once at least.
-const LEAST: f64 = 2e7;
+const MIN_TIME_NS: f64 = 2e7;
 /// Rounding a period, damped by the orbit's multipliers, adds up to no more than this.
-const CLOSED: f64 = 1e-12;
+const CLOSURE_TOLERANCE: f64 = 1e-12;
 
 /// The time and the error of a run of one length.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
@@ -44,13 +44,13 @@ pub fn lengths(long: bool, done: &dyn Fn()) -> Result<Vec<Length>, Failure> {
         done();
         found
     };
-    LENGTHS.into_iter().chain(LONG.into_iter().filter(|_| long)).map(length).collect()
+    LENGTHS.into_iter().chain(LONG_LENGTHS.into_iter().filter(|_| long)).map(length).collect()
 }
 
 /// The number of progress steps of the measurement.
 #[must_use]
 pub fn size(long: bool) -> u64 {
-    (LENGTHS.len() + if long { LONG.len() } else { 0 }) as u64
+    (LENGTHS.len() + if long { LONG_LENGTHS.len() } else { 0 }) as u64
 }
 
 /// The orbit of period five at omega = 1.6, xi = 0.1 (Fig. 7e), by Newton's method.
@@ -69,7 +69,7 @@ fn orbit() -> Result<(Model, Entry), Failure> {
 fn length(model: &Model, start: &Entry, periods: u64) -> Result<Length, Failure> {
     let [mut least, mut whole] = [f64::INFINITY, 0.0];
     let mut error = f64::NAN;
-    while whole < LEAST {
+    while whole < MIN_TIME_NS {
         let watch = Stopwatch::start();
         let end = end(model, start, periods);
         let time = watch.nanoseconds();
@@ -77,12 +77,14 @@ fn length(model: &Model, start: &Entry, periods: u64) -> Result<Length, Failure>
         least = least.min(time);
         error = distance(&end?.point(), &start.point());
     }
-    if error <= CLOSED {
+    if error <= CLOSURE_TOLERANCE {
         let ns_per_period = least / periods as f64;
         Ok(Length { periods, ns_per_period, state_error_max: error, peak_bytes: peak_bytes() })
     } else {
         let error = brief(error);
-        Err(Failure::new(format!("off by {error} after {periods} periods, accepted is {CLOSED}")))
+        Err(Failure::new(format!(
+            "off by {error} after {periods} periods, accepted is {CLOSURE_TOLERANCE}"
+        )))
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::contest::{SettingResult, exact, most_accurate};
 use super::damping::DampingPoint;
-use super::equal_accuracy::{AccuracyPoint, Basis, COMPARABLE, LOOSE, TIGHT, time_at};
+use super::equal_accuracy::{
+    AccuracyPoint, Basis, LOOSE_ERROR, MAX_COMPARABLE_RATIO, TIGHT_ERROR, time_at,
+};
 use super::floor::Floors;
 use super::length::Length;
 pub use super::timed_case::CaseEntry;
@@ -45,7 +47,8 @@ pub struct BenchRow {
     pub state_error_max: Option<f64>,
     pub event_time_error_max: Option<f64>,
     pub ratio_to_exact: Option<f64>,
-    /// Ratio of times at errors of at most [`COMPARABLE`] times the exact solver's on this case.
+    /// Ratio of times at errors of at most [`MAX_COMPARABLE_RATIO`] times the exact solver's on this
+    /// case.
     pub ratio_at_comparable_error: Option<f64>,
     /// Ratio of times at errors of at most 1e-6, read off this engine's work-precision curve on
     /// this case.
@@ -68,7 +71,7 @@ pub struct BenchRow {
     pub rhs_per_period: Option<f64>,
     /// Whether this is the setting at which this engine errs least here.
     pub most_accurate: bool,
-    /// Whether it errs at most [`COMPARABLE`] times as much as the exact solver here.
+    /// Whether it errs at most [`MAX_COMPARABLE_RATIO`] times as much as the exact solver here.
     pub comparable: bool,
     /// Whether a tolerance chooses the engine's steps.
     pub adaptive: bool,
@@ -123,8 +126,8 @@ impl BenchRow {
         match basis {
             Basis::MostAccurate => self.most_accurate,
             Basis::Comparable => self.comparable,
-            Basis::Tight => errs_at_most(TIGHT),
-            Basis::Loose => errs_at_most(LOOSE),
+            Basis::Tight => errs_at_most(TIGHT_ERROR),
+            Basis::Loose => errs_at_most(LOOSE_ERROR),
         }
     }
 }
@@ -229,7 +232,7 @@ impl Bench {
 
 fn rows(case: &CaseEntry, results: &[SettingResult]) -> Vec<BenchRow> {
     let unit = exact(results).map(|it| it.series.clone()).unwrap_or_default();
-    let comparable = exact(results).map_or(0.0, |it| COMPARABLE * it.score.state_error);
+    let comparable = exact(results).map_or(0.0, |it| MAX_COMPARABLE_RATIO * it.score.state_error);
     let row = |it: &SettingResult| {
         let timed = it.result.as_ref().ok();
         let best = most_accurate(results, it.name).is_some_and(|best| std::ptr::eq(best, it));
@@ -269,9 +272,9 @@ fn rows(case: &CaseEntry, results: &[SettingResult]) -> Vec<BenchRow> {
     at_equal_accuracy(results.iter().map(row).collect(), comparable)
 }
 
-/// Reads each engine's work-precision curve at [`LOOSE`], at [`TIGHT`] and at errors comparable to
-/// the exact solver's. Its times are ratios to the exact solver's, so that what the machine did
-/// otherwise in a round is out of them already.
+/// Reads each engine's work-precision curve at [`LOOSE_ERROR`], at [`TIGHT_ERROR`] and at errors
+/// comparable to the exact solver's. Its times are ratios to the exact solver's, so that what the
+/// machine did otherwise in a round is out of them already.
 fn at_equal_accuracy(mut rows: Vec<BenchRow>, comparable: f64) -> Vec<BenchRow> {
     for own in rows.chunk_by_mut(|a, b| a.engine == b.engine) {
         let curve = |time: fn(&BenchRow) -> Option<f64>| {
@@ -284,11 +287,11 @@ fn at_equal_accuracy(mut rows: Vec<BenchRow>, comparable: f64) -> Vec<BenchRow> 
         let net = curve(|row| row.net_ratio_to_exact);
         for row in own {
             row.ratio_at_comparable_error = time_at(&gross, comparable);
-            row.ratio_at_1e_6 = time_at(&gross, LOOSE);
-            row.ratio_at_1e_9 = time_at(&gross, TIGHT);
+            row.ratio_at_1e_6 = time_at(&gross, LOOSE_ERROR);
+            row.ratio_at_1e_9 = time_at(&gross, TIGHT_ERROR);
             row.net_ratio_at_comparable_error = time_at(&net, comparable);
-            row.net_ratio_at_1e_6 = time_at(&net, LOOSE);
-            row.net_ratio_at_1e_9 = time_at(&net, TIGHT);
+            row.net_ratio_at_1e_6 = time_at(&net, LOOSE_ERROR);
+            row.net_ratio_at_1e_9 = time_at(&net, TIGHT_ERROR);
         }
     }
     rows

@@ -128,9 +128,9 @@ pub fn time_interleaved(
 /// Whether a benchmark is left out of a round: a call that is so long meets the quiet and the busy
 /// moments of a machine alike, and three rounds tell as much as ten.
 fn has_enough_rounds(series: &RoundTimes, round: usize) -> bool {
-    const LONG: f64 = 5e7;
-    const ENOUGH: usize = 3;
-    round >= ENOUGH && series.best() > LONG
+    const LONG_BATCH_NS: f64 = 5e7;
+    const LONG_BATCH_ROUNDS: usize = 3;
+    round >= LONG_BATCH_ROUNDS && series.best() > LONG_BATCH_NS
 }
 
 /// The best batch of a round, ns per call. `calls` is the number of calls that fill a batch, found
@@ -157,9 +157,9 @@ fn best_of(
 
 /// The number of calls that fill a batch.
 fn filling(benchmark: &mut dyn Benchmark, least: f64) -> Result<u32, Failure> {
-    const MOST: u32 = 1 << 20;
+    const MAX_CALLS: u32 = 1 << 20;
     let mut calls = 1;
-    while calls < MOST && batch(benchmark, calls)? < least {
+    while calls < MAX_CALLS && batch(benchmark, calls)? < least {
         calls *= 2;
     }
     Ok(calls)

@@ -10,9 +10,9 @@ use percuss::{Instant, Start};
 /// A window that holds every attractor of Figs. 7 to 10; the paper prints none.
 pub(super) const WINDOW: Window = Window { p: [-3.0, 1.2], y: [-1.5, 1.5] };
 /// Forcing periods that a start is first followed for.
-pub(super) const TRANSIENT: u64 = 200;
+pub(super) const TRANSIENT_PERIODS: u64 = 200;
 /// Starts along a side where attractors are only looked for.
-const SEARCH: u32 = 64;
+const SEARCH_STARTS: u32 = 64;
 
 /// The strobe map at omega tau = 0.
 pub(super) fn map(omega: f64) -> Result<StrobeMap, Failure> {
@@ -31,7 +31,7 @@ pub(super) const fn grid(cells: u32) -> Grid {
 
 /// The attractors that a coarse grid of starts reaches.
 pub(super) fn found(omega: f64) -> Result<Vec<Attractor>, Failure> {
-    Ok(Basins::of(&map(omega)?, &grid(SEARCH), TRANSIENT, &|_| {}).attractors)
+    Ok(Basins::of(&map(omega)?, &grid(SEARCH_STARTS), TRANSIENT_PERIODS, &|_| {}).attractors)
 }
 
 /// The one of a period.

@@ -25,11 +25,11 @@ pub(super) const CLAIMS: &[&str] = &[
 
 /// Forcing periods after which motions next to a bifurcation are taken to be at rest: at 1e-5 from
 /// a flip the multiplier is some 2e-4 from -1.
-const REST: u64 = 300_000;
+const REST_PERIODS: u64 = 300_000;
 /// Strobes that repeat to this are at rest; a doubling at 1e-5 from its flip is some 3e-3 wide.
-const REPEATS: f64 = 1e-4;
+const STROBE_TOLERANCE: f64 = 1e-4;
 /// Width of the intervals found by brute force.
-const WIDTH: f64 = 2e-5;
+const INTERVAL_WIDTH: f64 = 2e-5;
 /// The tolerance of the integrator.
 const TOLERANCE: f64 = 1e-10;
 
@@ -57,13 +57,13 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
 
 /// The least error that is printed, which is below the digits of the value: smaller ones are
 /// rounding, and differ from machine to machine.
-pub(super) const PRINTED: f64 = 1e-12;
+pub(super) const MIN_PRINTED_ERROR: f64 = 1e-12;
 
 /// A bifurcation in words.
 fn said(met: &Bifurcation) -> String {
     let Bifurcation { kind, value, error, orbit, .. } = met;
     let (kind, period) = (kind.as_str(), orbit.period());
-    let error = error.max(PRINTED);
+    let error = error.max(MIN_PRINTED_ERROR);
     format!("{kind} of period {period} at omega = {value:.10} +- {error:.0e}")
 }
 
@@ -81,8 +81,9 @@ fn flips(work: &ItemWork<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Fai
     let printed = work.paper.claim(id)?;
     let period = flip.orbit.period() as usize;
     let start = flip.orbit.points[0];
-    let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(period));
-    let (holds, fails) = bracket(flip.value + 0.003, flip.value - 0.003, WIDTH, keeps)?;
+    let keeps =
+        |omega: f64| Ok(settled(omega, start, REST_PERIODS, STROBE_TOLERANCE)?.0 == Some(period));
+    let (holds, fails) = bracket(flip.value + 0.003, flip.value - 0.003, INTERVAL_WIDTH, keeps)?;
     let mut claim = Claim::settle(
         &work.paper,
         id,
@@ -96,11 +97,11 @@ fn flips(work: &ItemWork<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Fai
     )?
     .evidence("continuation with multipliers", said(flip))
     .evidence(
-        format!("brute force: strobes after {REST} forcing periods"),
+        format!("brute force: strobes after {REST_PERIODS} forcing periods"),
         format!("period {period} at omega = {holds:.6}, no longer at {fails:.6}"),
     );
     if let Some(omega) = between(printed, flip.value) {
-        let (seen, _) = settled(omega, start, REST, REPEATS)?;
+        let (seen, _) = settled(omega, start, REST_PERIODS, STROBE_TOLERANCE)?;
         let seen = seen.map_or("none up to 64".to_owned(), |period| period.to_string());
         let (integrator, repeats) = integrated(omega, start, &[period, 2 * period])?;
         claim = claim
@@ -117,15 +118,15 @@ fn integrated(
     point: StrobePoint,
     periods: &[usize],
 ) -> Result<(String, String), Failure> {
-    const RUN: u32 = 4000;
-    let (integrator, strobes) = strobes(omega, point, RUN, TOLERANCE)?;
+    const RUN_PERIODS: u32 = 4000;
+    let (integrator, strobes) = strobes(omega, point, RUN_PERIODS, TOLERANCE)?;
     let last = strobes.len() - 1;
     let apart = |period: &usize| {
         let (now, then) = (strobes[last], strobes[last - period]);
         format!("to {:.0e} after {period}", (now[0] - then[0]).abs().max((now[1] - then[1]).abs()))
     };
     let apart: Vec<_> = periods.iter().map(apart).collect();
-    let repeats = format!("after {RUN} periods its strobes repeat {}", apart.join(", "));
+    let repeats = format!("after {RUN_PERIODS} periods its strobes repeat {}", apart.join(", "));
     Ok((integrator, repeats))
 }
 
@@ -136,7 +137,7 @@ fn criticality(work: &ItemWork<'_>, id: &str, flip: &Bifurcation) -> Result<Clai
     let doubled = 2 * period as usize;
     let width = |distance: f64| -> Result<Option<f64>, Failure> {
         let omega = flip.value - distance;
-        let (repeats, point) = settled(omega, flip.orbit.points[0], REST, 1e-7)?;
+        let (repeats, point) = settled(omega, flip.orbit.points[0], REST_PERIODS, 1e-7)?;
         if repeats != Some(doubled) {
             return Ok(None);
         }
@@ -181,7 +182,9 @@ fn criticality(work: &ItemWork<'_>, id: &str, flip: &Bifurcation) -> Result<Clai
         .note("followed upwards in omega the cascade runs backwards, periods are halved; that may be what the paper calls subcritical")
         .evidence("continuation of the doubled orbit from the flip", side)
         .evidence(
-            format!("strobes after {REST} forcing periods at 1e-4 and 4e-4 beyond the flip"),
+            format!(
+                "strobes after {REST_PERIODS} forcing periods at 1e-4 and 4e-4 beyond the flip"
+            ),
             format!("stable period {doubled}, {} and {} wide: a ratio of 2 is the square root's", said(near), said(far)),
         ))
 }
@@ -192,8 +195,10 @@ fn disappears(work: &ItemWork<'_>, four: &Attractor) -> Result<Claim, Failure> {
     let printed = work.paper.claim(ID)?;
     let fold = first(BifurcationKind::Fold, four, 1.56, 1.62)?;
     let start = fold.orbit.points[0];
-    let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(4));
-    let (holds, fails) = bracket(fold.value - 0.001, fold.value + 0.001, WIDTH / 10.0, keeps)?;
+    let keeps =
+        |omega: f64| Ok(settled(omega, start, REST_PERIODS, STROBE_TOLERANCE)?.0 == Some(4));
+    let (holds, fails) =
+        bracket(fold.value - 0.001, fold.value + 0.001, INTERVAL_WIDTH / 10.0, keeps)?;
     let mut claim = Claim::settle(
         &work.paper,
         ID,
@@ -202,7 +207,7 @@ fn disappears(work: &ItemWork<'_>, four: &Attractor) -> Result<Claim, Failure> {
     )?
     .evidence("continuation with multipliers", said(&fold))
     .evidence(
-        format!("brute force: strobes after {REST} forcing periods"),
+        format!("brute force: strobes after {REST_PERIODS} forcing periods"),
         format!("period 4 at omega = {holds:.6}, no longer at {fails:.6}"),
     );
     if let Some(omega) = between(printed, fold.value) {
@@ -263,8 +268,9 @@ fn five(work: &ItemWork<'_>) -> Result<Claim, Failure> {
     let flip = first(BifurcationKind::Flip, five, 1.6, 1.58)?;
     let fold = first(BifurcationKind::Fold, five, 1.6, 1.62)?;
     let start = five.points[0];
-    let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(5));
-    let (holds_at, fails_at) = bracket(1.6, 1.59, WIDTH, keeps)?;
+    let keeps =
+        |omega: f64| Ok(settled(omega, start, REST_PERIODS, STROBE_TOLERANCE)?.0 == Some(5));
+    let (holds_at, fails_at) = bracket(1.6, 1.59, INTERVAL_WIDTH, keeps)?;
     let holds = flip.value > 1.58 && flip.value < 1.6;
     let computed =
         format!("period five is stable from omega = {:.7} to {:.7}", flip.value, fold.value);
@@ -272,7 +278,7 @@ fn five(work: &ItemWork<'_>) -> Result<Claim, Failure> {
         .note("below it doubles; above it ends in a fold")
         .evidence("continuation with multipliers", format!("{}; {}", said(&flip), said(&fold)))
         .evidence(
-            format!("brute force: strobes after {REST} forcing periods"),
+            format!("brute force: strobes after {REST_PERIODS} forcing periods"),
             format!("period 5 at omega = {holds_at:.5}, no longer at {fails_at:.5}"),
         ))
 }

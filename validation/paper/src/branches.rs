@@ -11,7 +11,7 @@ use crate::picture::{Figure, INK, KeyEntry, Layer, Plot, Stroke};
 use percuss::dynamics::continuation::{Bifurcation, BifurcationKind, Branch, BranchPoint};
 use percuss::dynamics::orbit::Orbit;
 
-const RANGE: (f64, f64) = (1.35, 1.72);
+const OMEGA_RANGE: (f64, f64) = (1.35, 1.72);
 
 /// A family of orbits: its period, where it is taken up, and its colour.
 const FAMILIES: [(u32, f64, Colour); 6] = [
@@ -28,11 +28,11 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     for (period, omega, colour) in FAMILIES {
         let attractors = found(omega)?;
         let first = of_period(&attractors, period)?.points[0];
-        let down = branch(first, period, omega, RANGE.0)?;
+        let down = branch(first, period, omega, OMEGA_RANGE.0)?;
         // From the low end up, so that a branch that turns is seen all the way back.
         let low = down.points.last().filter(|_| down.is_complete());
         let (from, guess) = low.map_or((omega, first), |it| (it.value, it.orbit.points[0]));
-        branches.push((period, colour, branch(guess, period, from, RANGE.1)?));
+        branches.push((period, colour, branch(guess, period, from, OMEGA_RANGE.1)?));
         if !down.is_complete() {
             branches.push((period, colour, down));
         }
@@ -134,7 +134,7 @@ fn drawing(branches: &[(u32, Colour, Branch)]) -> Figure {
     };
     layers.push(Layer::Key(FAMILIES.map(key).to_vec()));
     layers.push(Layer::Text {
-        at: [RANGE.0, -3.25],
+        at: [OMEGA_RANGE.0, -3.25],
         text: "black squares: fold; red: flip; grey: graze".to_owned(),
         colour: INK,
     });
@@ -149,7 +149,7 @@ fn drawing(branches: &[(u32, Colour, Branch)]) -> Figure {
         plots: vec![Plot {
             title: String::new(),
             axes: ["\u{3c9}".to_owned(), "p".to_owned()],
-            window: Some([RANGE, (-3.4, 1.2)]),
+            window: Some([OMEGA_RANGE, (-3.4, 1.2)]),
             layers,
         }],
     }

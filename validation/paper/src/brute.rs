@@ -5,7 +5,7 @@ use crate::engine::Failure;
 use percuss::dynamics::strobe::StrobePoint;
 
 /// The longest period that is looked for.
-const LONGEST: usize = 64;
+const MAX_PERIOD: usize = 64;
 
 /// The period on which the motion from a point has settled after so many forcing periods: the least
 /// number after which its strobes repeat to `near`; none up to 64.
@@ -19,10 +19,10 @@ pub(super) fn settled(
     let entry = map.entry(point).map_err(Failure::new)?;
     let late = map.strobes(entry, periods).last().ok_or_else(|| Failure::new("no strobes"))?;
     let last: Vec<StrobePoint> =
-        map.strobes(late, 2 * LONGEST as u64).map(|strobe| strobe.point()).collect();
+        map.strobes(late, 2 * MAX_PERIOD as u64).map(|strobe| strobe.point()).collect();
     let apart = |a: &StrobePoint, b: &StrobePoint| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
     let repeats = |k: &usize| last.iter().zip(&last[*k..]).all(|(a, b)| apart(a, b) < near);
-    Ok(((1..=LONGEST).find(repeats), late.point()))
+    Ok(((1..=MAX_PERIOD).find(repeats), late.point()))
 }
 
 /// An interval no wider than `width` at whose ends `keeps` differs: it holds at the first.

@@ -10,8 +10,8 @@ use percuss::{Instant, Parameter};
 /// The strobe maps at omega tau = 0, one for each frequency.
 pub(super) fn family() -> Family {
     // The frequency is what varies: of any that is put here nothing is left.
-    const ANY: f64 = 1.0;
-    Family::new(attractors_model(ANY), Parameter::Omega, Instant::at(ANY, 0.0, 0))
+    const ANY_OMEGA: f64 = 1.0;
+    Family::new(attractors_model(ANY_OMEGA), Parameter::Omega, Instant::at(ANY_OMEGA, 0.0, 0))
 }
 
 /// The branch of the orbit of a period that is found near a point, from one frequency to another.

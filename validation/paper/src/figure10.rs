@@ -1,7 +1,7 @@
 //! Fig. 10: the period-four attractor followed in omega, with and without correction of the start.
 
 use super::attractors::{described, found, of_period, start};
-use super::bifurcations::PRINTED;
+use super::bifurcations::MIN_PRINTED_ERROR;
 use super::claim::{Claim, ClaimVerdict};
 use super::continued::first;
 use super::item_work::{Findings, ItemWork};
@@ -15,25 +15,25 @@ use percuss::dynamics::continuation::{Bifurcation, BifurcationKind};
 use percuss::dynamics::diagram::{Diagram, DiagramStep, Follow};
 use percuss::dynamics::strobe::StrobePoint;
 
-/// The frequency at which the period-four attractor is taken up, and how far it is followed to both
-/// sides.
-const BEGIN: f64 = 1.4;
-const RANGE: (f64, f64) = (1.35, 1.62);
+/// The frequency at which the period-four attractor is taken up.
+const FIRST_OMEGA: f64 = 1.4;
+/// The frequencies between which the period-four attractor is followed.
+const OMEGA_RANGE: (f64, f64) = (1.35, 1.62);
 /// Values over the range, forcing periods left out and shown at each.
 const VALUES: u32 = 541;
 const TRANSIENT: u64 = 600;
 const PERIODS: u32 = 96;
 /// Strobes nearer than this are one point of the diagram.
-const SAME: f64 = 1e-4;
+const POINT_TOLERANCE: f64 = 1e-4;
 
 pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
-    let attractors = found(BEGIN)?;
+    let attractors = found(FIRST_OMEGA)?;
     let four = of_period(&attractors, 4)?;
     let corrected = corrected(four.points[0])?;
     (work.step)();
-    let uncorrected = diagram(four.points[0], RANGE.0, RANGE.1, VALUES, Follow::Reset)?;
+    let uncorrected = diagram(four.points[0], OMEGA_RANGE.0, OMEGA_RANGE.1, VALUES, Follow::Reset)?;
     (work.step)();
-    let stable = Stable::of(four, BEGIN)?;
+    let stable = Stable::of(four, FIRST_OMEGA)?;
     let mut findings = Findings::default();
     findings.claims.push(settle_a(work, &corrected, &stable)?);
     findings.claims.push(settle_b(work, &uncorrected, &stable)?);
@@ -76,12 +76,12 @@ fn diagram(
 
 /// Carried from where the attractor is known, to both sides.
 fn corrected(four: StrobePoint) -> Result<Vec<DiagramStep>, Failure> {
-    let share = (BEGIN - RANGE.0) / (RANGE.1 - RANGE.0);
+    let share = (FIRST_OMEGA - OMEGA_RANGE.0) / (OMEGA_RANGE.1 - OMEGA_RANGE.0);
     let below = (f64::from(VALUES) * share) as u32;
-    let mut steps = diagram(four, BEGIN, RANGE.0, below, Follow::Carry)?;
+    let mut steps = diagram(four, FIRST_OMEGA, OMEGA_RANGE.0, below, Follow::Carry)?;
     steps.reverse();
     steps.pop();
-    steps.extend(diagram(four, BEGIN, RANGE.1, VALUES - below, Follow::Carry)?);
+    steps.extend(diagram(four, FIRST_OMEGA, OMEGA_RANGE.1, VALUES - below, Follow::Carry)?);
     Ok(steps)
 }
 
@@ -96,8 +96,8 @@ struct Stable {
 impl Stable {
     /// The window of an orbit at some frequency, as far as the range goes.
     fn of(orbit: &Attractor, omega: f64) -> Result<Self, Failure> {
-        let flip = first(BifurcationKind::Flip, orbit, omega, RANGE.0)?;
-        let fold = first(BifurcationKind::Fold, orbit, omega, RANGE.1)?;
+        let flip = first(BifurcationKind::Flip, orbit, omega, OMEGA_RANGE.0)?;
+        let fold = first(BifurcationKind::Fold, orbit, omega, OMEGA_RANGE.1)?;
         Ok(Self { flip, fold })
     }
 }
@@ -107,7 +107,7 @@ fn count(step: &DiagramStep) -> usize {
     let mut kept: Vec<&StrobePoint> = Vec::new();
     for point in &step.points {
         let apart = |it: &&StrobePoint| (it[0] - point[0]).abs().max((it[1] - point[1]).abs());
-        if kept.iter().all(|it| apart(it) > SAME) {
+        if kept.iter().all(|it| apart(it) > POINT_TOLERANCE) {
             kept.push(point);
         }
     }
@@ -120,9 +120,10 @@ fn inside<'a>(
     steps: &'a [DiagramStep],
     stable: &'a Stable,
 ) -> impl Iterator<Item = &'a DiagramStep> {
-    const ROOM: f64 = 0.002;
+    const OMEGA_MARGIN: f64 = 0.002;
     let within = move |step: &&DiagramStep| {
-        step.value > stable.flip.value + ROOM && step.value < stable.fold.value - ROOM
+        step.value > stable.flip.value + OMEGA_MARGIN
+            && step.value < stable.fold.value - OMEGA_MARGIN
     };
     steps.iter().filter(within)
 }
@@ -137,7 +138,7 @@ fn settle_a(work: &ItemWork<'_>, steps: &[DiagramStep], stable: &Stable) -> Resu
     Ok(Claim::settle(&work.paper, "fig10a", ClaimVerdict::of(four == all && all > 0), computed)?
         .note(format!(
             "range of omega assumed: {} to {}; each value starts from where the last ended",
-            RANGE.0, RANGE.1
+            OMEGA_RANGE.0, OMEGA_RANGE.1
         ))
         .evidence(
             "strobes after a transient, value by value",
@@ -148,9 +149,9 @@ fn settle_a(work: &ItemWork<'_>, steps: &[DiagramStep], stable: &Stable) -> Resu
             format!(
                 "stable from a flip at {:.10} +- {:.0e} to a fold at {:.10} +- {:.0e}",
                 stable.flip.value,
-                stable.flip.error.max(PRINTED),
+                stable.flip.error.max(MIN_PRINTED_ERROR),
                 stable.fold.value,
-                stable.fold.error.max(PRINTED)
+                stable.fold.error.max(MIN_PRINTED_ERROR)
             ),
         ))
 }
@@ -208,7 +209,7 @@ fn drawing(corrected: &[DiagramStep], uncorrected: &[DiagramStep]) -> Figure {
     let plot = |title: &str, steps: &[DiagramStep]| Plot {
         title: title.to_owned(),
         axes: ["\u{3c9}".to_owned(), "p".to_owned()],
-        window: Some([RANGE, (-3.4, 1.2)]),
+        window: Some([OMEGA_RANGE, (-3.4, 1.2)]),
         layers: vec![Layer::Dots {
             points: steps
                 .iter()
@@ -222,8 +223,8 @@ fn drawing(corrected: &[DiagramStep], uncorrected: &[DiagramStep]) -> Figure {
         title: "Fig. 10: bifurcation diagrams of the period-four attractor".to_owned(),
         caption: format!(
             "a = 0.3, b = 0.1, \u{3be} = 0.1, g = 0.02, \u{3c6} = \u{3c0}/2; strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}), {TRANSIENT} periods \
-             left out, {PERIODS} shown, {VALUES} values. (a) each value starts from where the last ended, from \u{3c9} = {BEGIN} to both sides; \
-             (b) every value starts from the orbit's strobe at \u{3c9} = {BEGIN}."
+             left out, {PERIODS} shown, {VALUES} values. (a) each value starts from where the last ended, from \u{3c9} = {FIRST_OMEGA} to both sides; \
+             (b) every value starts from the orbit's strobe at \u{3c9} = {FIRST_OMEGA}."
         ),
         columns: 2,
         panel: (760, 560),

@@ -10,9 +10,9 @@ use percuss::Phase;
 
 const PERIODS: u64 = 12;
 /// Points per forcing period.
-const POINTS: f64 = 600.0;
+const POINTS_PER_PERIOD: f64 = 600.0;
 /// Rounding of the sampled drift, in units of eps: it is one sum of two words.
-const ROUNDINGS: f64 = 4.0;
+const DRIFT_ROUNDINGS: f64 = 4.0;
 
 pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     // The paper prints no parameters: those of Fig. 3.
@@ -20,7 +20,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let (model, rest) = from_rest(parameters)?;
     let end = rest.instant.after_periods(PERIODS, 1);
     let segments: Vec<_> = model.trajectory(rest).until(end).collect();
-    let pieces = curve::pieces(&segments, &end, parameters.omega, POINTS);
+    let pieces = curve::pieces(&segments, &end, parameters.omega, POINTS_PER_PERIOD);
     let mut findings = Findings::default();
     findings.claims.push(settle(work, &pieces)?);
     findings.picture("figure-2", &drawing(&pieces, &caption(&parameters)))?;
@@ -39,12 +39,12 @@ fn settle(work: &ItemWork<'_>, pieces: &[MotionPiece]) -> Result<Claim, Failure>
     let rest = |piece: &&MotionPiece| piece.phase != Phase::Progression;
     let still = |piece: &MotionPiece| {
         let (first, last) = (piece.points[0][4], piece.points[piece.points.len() - 1][4]);
-        (first - last).abs() <= ROUNDINGS * f64::EPSILON * first.abs()
+        (first - last).abs() <= DRIFT_ROUNDINGS * f64::EPSILON * first.abs()
     };
     let treads_are_level = pieces.iter().filter(rest).all(still);
     let never_falls = points()
         .zip(points().skip(1))
-        .all(|(now, next)| next[4] - now[4] >= -ROUNDINGS * f64::EPSILON * now[4].abs());
+        .all(|(now, next)| next[4] - now[4] >= -DRIFT_ROUNDINGS * f64::EPSILON * now[4].abs());
     let risers = pieces.iter().filter(|piece| piece.phase == Phase::Progression).count();
     let gained = points().last().map_or(0.0, |at| at[4]);
     // x grows with v while p stays: its range does not grow from the first half to the second.

@@ -10,9 +10,9 @@ use percuss::{Parameters, Phase};
 
 const TRANSIENT: u64 = 100;
 const PERIODS: u64 = 40;
-const POINTS: f64 = 200.0;
+const POINTS_PER_PERIOD: f64 = 200.0;
 /// Rounding of p on the surface, and what the slider still has to close after an impact.
-const SURFACE: f64 = 1e-12;
+const SURFACE_TOLERANCE: f64 = 1e-12;
 
 pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let parameters = chaotic_model();
@@ -21,7 +21,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let end = begin.after_periods(PERIODS, 1);
     let segments: Vec<_> =
         model.trajectory(rest).until(end).filter(|segment| !segment.ends_by(&begin)).collect();
-    let pieces = curve::pieces(&segments, &end, parameters.omega, POINTS);
+    let pieces = curve::pieces(&segments, &end, parameters.omega, POINTS_PER_PERIOD);
     let mut findings = Findings::default();
     findings.claims.push(settle(work, &pieces, &parameters)?);
     findings.picture("figure-5", &drawing(&pieces, &parameters))?;
@@ -39,10 +39,11 @@ fn settle(
         pieces.iter().filter(move |piece| piece.phase == phase).flat_map(|piece| &piece.points)
     };
     let count = of(Phase::NoContact).count();
-    let right = of(Phase::NoContact).filter(|at| at[1] > g + SURFACE).count();
+    let right = of(Phase::NoContact).filter(|at| at[1] > g + SURFACE_TOLERANCE).count();
     let farthest = of(Phase::NoContact).map(|at| at[1] - g).fold(0.0, f64::max);
-    let between =
-        of(Phase::Contact).filter(|at| !(g - SURFACE..=g + 1.0 + SURFACE).contains(&at[1])).count();
+    let between = of(Phase::Contact)
+        .filter(|at| !(g - SURFACE_TOLERANCE..=g + 1.0 + SURFACE_TOLERANCE).contains(&at[1]))
+        .count();
     let settled = of(Phase::Progression).map(|at| at[1]).fold(0.0, f64::max);
     let share = right as f64 / count.max(1) as f64;
     let reached = (g + 1.0 - settled).abs() < 1e-3;

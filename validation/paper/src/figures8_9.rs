@@ -16,7 +16,7 @@ use percuss::dynamics::strobe::StrobeMap;
 const POINTS: u64 = 20_000;
 const TRANSIENT: u64 = 200;
 /// Points per forcing period of the phase planes.
-const PER_PERIOD: f64 = 200.0;
+const POINTS_PER_PERIOD: f64 = 200.0;
 
 /// One of the two figures.
 struct FigurePanel {
@@ -82,7 +82,7 @@ fn phase_plane(map: &StrobeMap, attractor: &Attractor) -> Result<Plot, Failure> 
     let end = entry.instant.after_periods(u64::from(period), 1);
     let segments: Vec<_> = map.model().trajectory(entry).until(end).collect();
     let omega = map.model().parameters().omega;
-    let pieces = curve::pieces(&segments, &end, omega, PER_PERIOD);
+    let pieces = curve::pieces(&segments, &end, omega, POINTS_PER_PERIOD);
     let mut layers = curve::lines(&pieces, |at| [at[1], at[2]]);
     let points = attractor.points.iter().map(|[p, y, _]| [*p, *y]).collect();
     layers.push(Layer::Dots { points, colour: INK, size: 3.5 });

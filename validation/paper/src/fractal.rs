@@ -1,6 +1,6 @@
 //! Whether the basins' boundaries are fractal, and whether erosion grows with the frequency.
 
-use super::attractors::{TRANSIENT, WINDOW, grid, map};
+use super::attractors::{TRANSIENT_PERIODS, WINDOW, grid, map};
 use super::claim::{Claim, ClaimVerdict};
 use super::item_work::{Findings, ItemWork};
 use crate::engine::Failure;
@@ -12,13 +12,13 @@ use percuss::dynamics::attractor::{
 /// The frequencies of Fig. 7.
 const OMEGAS: [f64; 6] = [1.4, 1.45, 1.56, 1.58, 1.60, 1.70];
 /// Distances 2^-4 to 2^-16 of the window's width, so many starts at each.
-const SCALES: std::ops::RangeInclusive<u32> = 4..=16;
+const SCALE_EXPONENTS: std::ops::RangeInclusive<u32> = 4..=16;
 const STARTS: u32 = 1200;
 /// Cells a side for the entropy, and of its boxes.
 const CELLS: u32 = 150;
-const BOX: u32 = 5;
+const BOX_CELLS: u32 = 5;
 /// Standard errors by which an exponent must be below one.
-const ERRORS: f64 = 4.0;
+const STANDARD_ERRORS: f64 = 4.0;
 
 /// The measurements at one frequency.
 struct FrequencyMeasured {
@@ -49,11 +49,12 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
 
 fn measure(omega: f64) -> Result<FrequencyMeasured, Failure> {
     let map = map(omega)?;
-    let mut catalog = AttractorCatalog::new(map, TRANSIENT);
+    let mut catalog = AttractorCatalog::new(map, TRANSIENT_PERIODS);
     catalog.label_all(&grid(32).starts(), &|_| {});
-    let uncertainty = uncertainty_of(|start| catalog.label(start), &WINDOW, 0.0, SCALES, STARTS);
-    let basins = Basins::of(&map, &grid(CELLS), TRANSIENT, &|_| {});
-    Ok(FrequencyMeasured { omega, uncertainty, entropy: entropy(&basins, BOX) })
+    let uncertainty =
+        uncertainty_of(|start| catalog.label(start), &WINDOW, 0.0, SCALE_EXPONENTS, STARTS);
+    let basins = Basins::of(&map, &grid(CELLS), TRANSIENT_PERIODS, &|_| {});
+    Ok(FrequencyMeasured { omega, uncertainty, entropy: entropy(&basins, BOX_CELLS) })
 }
 
 impl FrequencyMeasured {
@@ -71,7 +72,7 @@ impl FrequencyMeasured {
 }
 
 fn settle(work: &ItemWork<'_>, measured: &[FrequencyMeasured]) -> Result<Claim, Failure> {
-    let fractal = measured.iter().all(|it| it.uncertainty.is_fractal(ERRORS));
+    let fractal = measured.iter().all(|it| it.uncertainty.is_fractal(STANDARD_ERRORS));
     let grows = |of: fn(&FrequencyMeasured) -> f64| {
         measured.windows(2).filter(|pair| of(&pair[1]) > of(&pair[0])).count()
     };
@@ -114,7 +115,7 @@ fn settle(work: &ItemWork<'_>, measured: &[FrequencyMeasured]) -> Result<Claim, 
             format!("dimension at omega = {}", said.join(", ")),
         )
         .evidence(
-            format!("basin entropy, boxes of {BOX} x {BOX} cells of {CELLS} x {CELLS}"),
+            format!("basin entropy, boxes of {BOX_CELLS} x {BOX_CELLS} cells of {CELLS} x {CELLS}"),
             format!("at omega = {}", entropies.join(", ")),
         ))
 }

@@ -55,7 +55,7 @@ impl ItemWork<'_> {
 }
 
 /// A picture of more marks is no SVG.
-const MOST_SVG_POINTS: usize = 20_000;
+const MAX_SVG_POINTS: usize = 20_000;
 
 /// The results of an item.
 #[derive(Clone, Debug, Default)]
@@ -73,7 +73,7 @@ impl Findings {
     /// The drawing library's reason.
     pub fn picture(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
         self.files.push((format!("{name}.png"), png(figure).map_err(Failure::new)?));
-        if figure.points() <= MOST_SVG_POINTS {
+        if figure.points() <= MAX_SVG_POINTS {
             self.files.push((format!("{name}.svg"), svg(figure).into_bytes()));
         }
         Ok(())

@@ -55,7 +55,7 @@ pub struct Paper {
 }
 
 /// Rounding of the printed value's own binary form, relative to it.
-const BINARY: f64 = 4.0 * f64::EPSILON;
+const BINARY_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Printed {
     /// Whether a value is the printed one to its last digit.
@@ -71,7 +71,7 @@ impl Printed {
     #[must_use]
     pub fn agrees(&self, value: f64) -> bool {
         let near = |paper: f64, half: f64| {
-            let (unit, rounding) = (2.0 * half, BINARY * paper.abs());
+            let (unit, rounding) = (2.0 * half, BINARY_ROUNDING * paper.abs());
             let units = (value - paper) / unit;
             let room = rounding / unit;
             // A value of at least one unit less keeps, when it is cut, the digits of one unit less;

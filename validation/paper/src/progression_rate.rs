@@ -14,9 +14,9 @@ const VALUES: u32 = 600;
 const TRANSIENT: u64 = 600;
 const PERIODS: u32 = 128;
 /// Strobes that repeat so well belong to an orbit.
-const REPEATS: f64 = 1e-6;
+const STROBE_TOLERANCE: f64 = 1e-6;
 /// The longest period that is told from chaos.
-const LONGEST: usize = 32;
+const MAX_PERIOD: usize = 32;
 
 /// The kind of a motion, judged by its strobes.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -74,10 +74,10 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
 /// The least number of forcing periods after which the strobes repeat.
 fn period(step: &DiagramStep) -> Option<usize> {
     let near = |a: &[f64; 3], b: &[f64; 3]| {
-        (0..2).all(|i| (a[i] - b[i]).abs() <= REPEATS * (1.0 + a[i].abs()))
+        (0..2).all(|i| (a[i] - b[i]).abs() <= STROBE_TOLERANCE * (1.0 + a[i].abs()))
     };
     let repeats = |k: &usize| step.points.iter().zip(&step.points[*k..]).all(|(a, b)| near(a, b));
-    (1..=LONGEST.min(step.points.len().saturating_sub(1))).find(repeats)
+    (1..=MAX_PERIOD.min(step.points.len().saturating_sub(1))).find(repeats)
 }
 
 fn regime(step: &DiagramStep) -> ProgressionRegime {

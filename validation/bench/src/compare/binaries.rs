@@ -22,14 +22,15 @@ pub struct Pair<'a> {
     pub burden: f64,
 }
 
-/// Times both are started anew.
-pub const LIVES: u32 = 20;
-/// Rounds in one life.
-const ROUNDS: u32 = 8;
-/// Batches a turn, and how long they are, ns: short enough to lie between two interruptions, long
-/// enough that a clock that ticks in tens of nanoseconds tells a thousandth.
-const BATCHES: u32 = 4;
-const BATCH: f64 = 3e5;
+/// The number of times that both workers are started anew.
+pub const RESTARTS: u32 = 20;
+/// The rounds between two restarts.
+const ROUNDS_PER_RESTART: u32 = 8;
+/// The batches of one turn.
+const BATCHES_PER_TURN: u32 = 4;
+/// The length of a batch, in ns: short enough to lie between two interruptions, long enough that a
+/// clock that ticks in tens of nanoseconds tells a thousandth.
+const BATCH_NS: f64 = 3e5;
 
 /// The quotient of a workload.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +76,7 @@ pub fn quotients(
 ) -> Result<Vec<TimeQuotient>, Failure> {
     let mut rounds: Vec<Vec<f64>> = vec![Vec::new(); benches.len()];
     let mut lives: Vec<Vec<f64>> = rounds.clone();
-    for life in 0..LIVES {
+    for life in 0..RESTARTS {
         let mut sides = both(pair, life)?;
         for (i, bench) in benches.iter().enumerate() {
             let own = sides.rounds(bench, pair.burden)?;
@@ -119,11 +120,11 @@ impl Processes {
         let units = self.filling(bench)?;
         let burdened = (units as f64 * (1.0 + burden)).round() as u64;
         let mut quotients = Vec::new();
-        for _ in 0..ROUNDS {
-            let first = self.old.best(bench, units, BATCHES)?;
-            let second = self.new.best(bench, burdened, BATCHES)?;
-            let third = self.new.best(bench, burdened, BATCHES)?;
-            let fourth = self.old.best(bench, units, BATCHES)?;
+        for _ in 0..ROUNDS_PER_RESTART {
+            let first = self.old.best(bench, units, BATCHES_PER_TURN)?;
+            let second = self.new.best(bench, burdened, BATCHES_PER_TURN)?;
+            let third = self.new.best(bench, burdened, BATCHES_PER_TURN)?;
+            let fourth = self.old.best(bench, units, BATCHES_PER_TURN)?;
             quotients.push(second.min(third) / first.min(fourth));
         }
         Ok(quotients)
@@ -131,9 +132,9 @@ impl Processes {
 
     /// Units that fill a batch of the old side.
     fn filling(&mut self, bench: &str) -> Result<u64, Failure> {
-        const SOME: u64 = 500;
-        const MOST: f64 = 1e7;
-        let time = self.old.best(bench, SOME, BATCHES)?;
-        Ok((SOME as f64 * BATCH / time).clamp(100.0, MOST) as u64)
+        const TRIAL_UNITS: u64 = 500;
+        const MAX_UNITS: f64 = 1e7;
+        let time = self.old.best(bench, TRIAL_UNITS, BATCHES_PER_TURN)?;
+        Ok((TRIAL_UNITS as f64 * BATCH_NS / time).clamp(100.0, MAX_UNITS) as u64)
     }
 }

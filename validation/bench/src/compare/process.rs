@@ -9,9 +9,9 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Duration;
 
 /// A worker's answer takes milliseconds; a machine that swaps may take longer.
-const PATIENCE: Duration = Duration::from_secs(60);
-/// The longest line that is read; names of all workloads are shorter.
-const LONGEST: u64 = 1 << 16;
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(60);
+/// The most bytes of a line that is read; names of all workloads are shorter.
+const MAX_LINE_BYTES: u64 = 1 << 16;
 
 /// A running worker. It ends when it is dropped.
 pub struct Worker {
@@ -49,7 +49,7 @@ impl Worker {
             let mut output = BufReader::new(output);
             loop {
                 let mut line = String::new();
-                let read = output.by_ref().take(LONGEST).read_line(&mut line);
+                let read = output.by_ref().take(MAX_LINE_BYTES).read_line(&mut line);
                 if !matches!(read, Ok(1..)) || sender.send(line).is_err() {
                     return;
                 }
@@ -94,7 +94,7 @@ impl Worker {
     }
 
     fn line(&mut self) -> Result<String, Failure> {
-        let line = self.lines.recv_timeout(PATIENCE);
+        let line = self.lines.recv_timeout(ANSWER_TIMEOUT);
         line.map_err(|_| self.failure("does not answer"))
     }
 

@@ -5,7 +5,7 @@
 //! floor beside it. It is recorded twice, so that here too slower means slower twice in a row.
 //! Where instructions are counted they decide, and times only warn.
 
-use super::verdict::{FAIL, WARN, WorkloadVerdict};
+use super::verdict::{FAILURE_QUOTIENT, WARNING_QUOTIENT, WorkloadVerdict};
 use crate::history::HistoryRecord;
 
 /// A workload of both versions.
@@ -57,10 +57,10 @@ pub fn changes(old: &HistoryRecord, new: &HistoryRecord) -> Vec<RecordedChange> 
 }
 
 /// Below this an error is rounding of the last digits: as `validate --baseline` has it.
-const NO_ERROR: f64 = 1e-14;
+const ROUNDING_ERROR: f64 = 1e-14;
 
 fn errors(old: &HistoryRecord, new: &HistoryRecord) -> [f64; 2] {
-    let seen = |error: f64| if error < NO_ERROR { NO_ERROR } else { error };
+    let seen = |error: f64| if error < ROUNDING_ERROR { ROUNDING_ERROR } else { error };
     [seen(old.state_error_max), seen(new.state_error_max)]
 }
 
@@ -72,9 +72,9 @@ fn accuracy([old, new]: [f64; 2]) -> WorkloadVerdict {
 /// A figure that repeats needs no second measurement: it would say the same.
 fn repeatable(quotient: f64) -> WorkloadVerdict {
     // Written so that a NaN is slower.
-    if quotient < WARN {
+    if quotient < WARNING_QUOTIENT {
         WorkloadVerdict::Pass
-    } else if quotient < FAIL {
+    } else if quotient < FAILURE_QUOTIENT {
         WorkloadVerdict::Warn
     } else {
         WorkloadVerdict::Fail

@@ -5,9 +5,9 @@
 //! then. A whole second measurement, of processes started anew, has to say the same.
 
 /// The quotient from which on a slowdown is said.
-pub const WARN: f64 = 1.01;
+pub const WARNING_QUOTIENT: f64 = 1.01;
 /// The quotient from which on a slowdown, seen twice in a row, fails.
-pub const FAIL: f64 = 1.02;
+pub const FAILURE_QUOTIENT: f64 = 1.02;
 
 /// The verdict on one workload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ impl WorkloadVerdict {
     pub fn of(quotients: &[f64]) -> Self {
         if quotients.windows(2).any(|pair| pair.iter().all(|it| is_doubtful(*it))) {
             Self::Fail
-        } else if quotients.iter().all(|it| *it < WARN) {
+        } else if quotients.iter().all(|it| *it < WARNING_QUOTIENT) {
             Self::Pass
         } else {
             Self::Warn
@@ -47,7 +47,7 @@ impl WorkloadVerdict {
 /// Whether a first quotient has to be measured again.
 #[must_use]
 pub fn is_doubtful(quotient: f64) -> bool {
-    quotient >= FAIL || quotient.is_nan()
+    quotient >= FAILURE_QUOTIENT || quotient.is_nan()
 }
 
 #[cfg(test)]

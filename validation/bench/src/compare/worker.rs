@@ -21,9 +21,10 @@ use std::io::{self, BufRead, Write};
 /// The protocol's name and number, first words of the greeting.
 pub const GREETING: &str = "percuss-bench 1";
 
-/// The most that is done for one request.
-const MOST_UNITS: u64 = 1_000_000_000;
-const MOST_BATCHES: u64 = 1_000_000;
+/// The most units of work that one request may ask for.
+const MAX_UNITS: u64 = 1_000_000_000;
+/// The most batches that one request may ask for.
+const MAX_BATCHES: u64 = 1_000_000;
 
 /// Answers until the input ends, as the program that was built so.
 ///
@@ -68,7 +69,7 @@ fn best(
     batches: &str,
 ) -> Result<String, String> {
     let workload = named(workloads, name)?;
-    let (units, batches) = (count(units, MOST_UNITS)?, count(batches, MOST_BATCHES)?);
+    let (units, batches) = (count(units, MAX_UNITS)?, count(batches, MAX_BATCHES)?);
     let mut best = f64::INFINITY;
     for _ in 0..batches {
         let watch = Stopwatch::start();
@@ -79,7 +80,7 @@ fn best(
 }
 
 fn ran(workloads: Workloads<'_, '_>, name: &str, units: &str) -> Result<String, String> {
-    let evaluations = named(workloads, name)?.run(count(units, MOST_UNITS)?);
+    let evaluations = named(workloads, name)?.run(count(units, MAX_UNITS)?);
     evaluations.map(|it| format!("ran {it}")).map_err(|failure| failure.reason)
 }
 

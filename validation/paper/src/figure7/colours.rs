@@ -13,13 +13,13 @@ use percuss::Parameter;
 use percuss::dynamics::diagram::{Diagram, Follow};
 
 /// The paper's orange on yellow, for the strange attractor; the others follow.
-const STRANGE: ColourPlace = 0;
+const STRANGE_PLACE: ColourPlace = 0;
 
 /// Steps of the frequency from frame to frame, and forcing periods in each.
 const STEPS: u32 = 200;
 const PERIODS: u64 = 400;
 /// A motion is on an attractor when its strobes come so near to it on average.
-const NEAR: f64 = 0.02;
+const MAX_STROBE_DISTANCE: f64 = 0.02;
 
 /// Colours of every frame's attractors, in their order.
 pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<ColourPlace>>, Failure> {
@@ -32,10 +32,10 @@ pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<ColourPlace>>, Failure
         };
         let colours = inherited.into_iter().zip(&frame.attractors).map(|(pair, attractor)| {
             pair.unwrap_or_else(|| match attractor.period {
-                None if k == 0 => STRANGE,
+                None if k == 0 => STRANGE_PLACE,
                 _ => {
                     used += 1;
-                    STRANGE + used
+                    STRANGE_PLACE + used
                 }
             })
         });
@@ -87,5 +87,8 @@ fn carried(from: f64, point: [f64; 3], frame: &Frame) -> Result<Option<usize>, F
         last.points.iter().map(nearest).sum::<f64>() / last.points.len() as f64
     };
     let near = frame.attractors.iter().enumerate().map(|(id, it)| (id, distance(&it.points)));
-    Ok(near.filter(|it| it.1 < NEAR).min_by(|a, b| a.1.total_cmp(&b.1)).map(|it| it.0))
+    Ok(near
+        .filter(|it| it.1 < MAX_STROBE_DISTANCE)
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|it| it.0))
 }

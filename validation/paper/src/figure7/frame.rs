@@ -1,7 +1,7 @@
 //! One frame: its attractors and the label of every start.
 
 use crate::arrays::Npz;
-use crate::attractors::{TRANSIENT, WINDOW, described, grid, map};
+use crate::attractors::{TRANSIENT_PERIODS, WINDOW, described, grid, map};
 use crate::engine::Failure;
 use crate::integrated::strobes;
 use crate::item_work::ItemWork;
@@ -68,7 +68,7 @@ impl Frame {
             let steps = |count: u64| count * STEPS / all;
             (steps(before)..steps(before + more)).for_each(|_| (work.step)());
         };
-        let basins = Basins::of(&map(omega)?, &grid(cells), TRANSIENT, &seen);
+        let basins = Basins::of(&map(omega)?, &grid(cells), TRANSIENT_PERIODS, &seen);
         let share = |label| 100.0 * basins.fraction(label);
         let error = |label| 100.0 * basins.fraction_error(label);
         let kept = |(place, it): (usize, &Attractor)| {

@@ -16,7 +16,7 @@ use percuss::dynamics::attractor::AttractorKind;
 
 /// Cells along a side.
 const CELLS: u32 = 300;
-const CELLS_FULL: u32 = 1000;
+const FULL_CELLS: u32 = 1000;
 
 /// A frame's letter, its frequency, and the claim about what coexists there.
 const FRAMES: [(&str, f64, &str); 6] = [
@@ -54,7 +54,7 @@ pub(super) const ITEM: Item = Item {
 fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let cells = match work.size {
         Size::Default => CELLS,
-        Size::Full => CELLS_FULL,
+        Size::Full => FULL_CELLS,
     };
     let frames = FRAMES.map(|(letter, omega, _)| Frame::kept(work, letter, omega, cells));
     let frames: Vec<Frame> = frames.into_iter().collect::<Result<_, _>>()?;

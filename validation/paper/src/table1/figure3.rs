@@ -10,11 +10,11 @@ use crate::picture::{Figure, INK, Layer, MotionPiece, Plot, PlotWindow, caption}
 use percuss::Phase;
 
 /// The zoom: where the slider is met, compressed and left.
-const ZOOM: PlotWindow = [(-0.1, 1.15), (-2.0, 6.2)];
+const ZOOM_WINDOW: PlotWindow = [(-0.1, 1.15), (-2.0, 6.2)];
 
 /// Rounding of y in progression, in units of eps and of the largest y: it is a sum of four terms,
 /// none larger than twice that, and zero where the phase ends.
-const ROUNDINGS: f64 = 8.0;
+const VELOCITY_ROUNDINGS: f64 = 8.0;
 
 pub(super) fn settle(
     work: &ItemWork<'_>,
@@ -29,7 +29,7 @@ pub(super) fn settle(
     let share = right as f64 / points(Phase::NoContact).count().max(1) as f64;
     let lowest = points(Phase::Progression).map(|at| at[2]).fold(f64::INFINITY, f64::min);
     let highest = points(Phase::Progression).map(|at| at[2]).fold(0.0, f64::max);
-    let room = ROUNDINGS * f64::EPSILON * highest;
+    let room = VELOCITY_ROUNDINGS * f64::EPSILON * highest;
     let forward = points(Phase::Progression).all(|at| at[2] >= -room);
     let settled = of(Phase::Progression).flat_map(|piece| piece.points.last());
     let apart = settled.map(|at| (at[1] - (g + 1.0)).abs()).fold(0.0, f64::max);
@@ -97,6 +97,6 @@ pub(super) fn drawing(told: &Table1Run, pieces: &[MotionPiece]) -> Figure {
         ),
         columns: 2,
         panel: (760, 600),
-        plots: vec![plot("", None, whole), plot("zoom", Some(ZOOM), zoom)],
+        plots: vec![plot("", None, whole), plot("zoom", Some(ZOOM_WINDOW), zoom)],
     }
 }

@@ -21,7 +21,7 @@ fn equation_20(parameters: &Parameters, row: [f64; 3], d: f64, sign: f64) -> f64
 
 /// What is left of the digits of rows printed to five decimals, after a progression some 7 long: an
 /// error of half a unit in tau0 and y0 times it.
-const FROM_PRINTED_ROWS: f64 = 1e-4;
+const PRINTED_ROW_TOLERANCE: f64 = 1e-4;
 
 pub(super) fn settle(
     work: &ItemWork<'_>,
@@ -45,7 +45,7 @@ pub(super) fn settle(
     }
     let total: f64 = gains.iter().sum();
     let risers = pieces.iter().filter(|piece| piece.phase == Phase::Progression).count();
-    let holds = worst <= FROM_PRINTED_ROWS && gains.len() == risers;
+    let holds = worst <= PRINTED_ROW_TOLERANCE && gains.len() == risers;
     let gains: Vec<_> = gains.iter().map(|gain| format!("{gain:.4}")).collect();
     let computed = format!(
         "v rises by {} in the progressions of Table 1, {total:.4} together, and is level between",

@@ -15,11 +15,11 @@ use percuss::dynamics::strobe::StrobeMap;
 use percuss::{Entry, Instant, Model, Parameters, Segment};
 
 /// Time up to which the paper follows the motion.
-const UNTIL: f64 = 1300.0;
+const END_TIME: f64 = 1300.0;
 /// Points per forcing period.
-const POINTS: f64 = 4000.0;
+const POINTS_PER_PERIOD: f64 = 4000.0;
 /// Forcing periods until the motion has settled, and a multiple of the period claimed.
-const SETTLED: u64 = 2000;
+const SETTLING_PERIODS: u64 = 2000;
 
 /// The run that starts from rest, and the phases of it that are listed in Table 1.
 struct Table1Run {
@@ -35,7 +35,7 @@ impl Table1Run {
     fn new(rows: &[PrintedRow]) -> Result<Self, Failure> {
         let parameters = table_1_model();
         let (model, rest) = from_rest(parameters)?;
-        let horizon = Instant::at(parameters.omega, UNTIL, 0);
+        let horizon = Instant::at(parameters.omega, END_TIME, 0);
         let all: Vec<_> = model.trajectory(rest).until(horizon).collect();
         let near =
             |segment: &Segment| (segment.entry().instant.tau(parameters.omega) - rows[0].tau).abs();
@@ -58,7 +58,7 @@ impl Table1Run {
     /// The phases between the first row and the last.
     fn pieces(&self) -> Vec<MotionPiece> {
         let segments = &self.segments[..self.segments.len() - 1];
-        curve::pieces(segments, &self.end, self.parameters().omega, POINTS)
+        curve::pieces(segments, &self.end, self.parameters().omega, POINTS_PER_PERIOD)
     }
 }
 
@@ -122,7 +122,7 @@ fn rows(work: &ItemWork<'_>, told: &Table1Run) -> Result<Claim, Failure> {
 /// The orbit that the motion settles on.
 fn settled_orbit(told: &Table1Run) -> Result<Orbit, Failure> {
     let map = StrobeMap::new(told.model, told.rest.instant);
-    let settled = map.strobes(told.rest, SETTLED).last();
+    let settled = map.strobes(told.rest, SETTLING_PERIODS).last();
     let settled = settled.ok_or_else(|| Failure::new("the run has no strobes"))?;
     // Looked for at a multiple of what is claimed: the least period is what comes out.
     Orbit::find(&map, settled.point(), 12).map_err(Failure::new)
@@ -150,7 +150,9 @@ fn period(work: &ItemWork<'_>, told: &Table1Run, orbit: &Orbit) -> Result<Claim,
     Ok(Claim::settle(&work.paper, "table1-period", ClaimVerdict::of(holds), computed)?
         .note("looked for as an orbit of twelve forcing periods: its least period is what is told")
         .evidence(
-            format!("{SETTLED} forcing periods from rest, then Newton on the exact strobe map"),
+            format!(
+                "{SETTLING_PERIODS} forcing periods from rest, then Newton on the exact strobe map"
+            ),
             format!("(p, y, q) = {point:?} at the strobe, residual {:.1e}", orbit.residual),
         )
         .evidence("multipliers of the whole orbit", multipliers.join(", "))

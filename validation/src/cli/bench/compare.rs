@@ -2,7 +2,7 @@
 
 use super::super::help;
 use super::{DONE, OUT_OF_BOUNDS};
-use crate::bench::compare::binaries::{Common, LIVES, Pair, TimeQuotient, common, quotients};
+use crate::bench::compare::binaries::{Common, Pair, RESTARTS, TimeQuotient, common, quotients};
 use crate::bench::compare::recorded::changes;
 use crate::bench::compare::verdict::{WorkloadVerdict, is_doubtful};
 use crate::bench::history::{self, History, HistoryRecord};
@@ -84,11 +84,11 @@ fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
     let Common { shared, lost, versions } = common(&pair)?;
     lost.iter().for_each(|bench| note(&format!("{bench}: only in {}", arguments.old)));
     let benches = chosen_benches(arguments, shared.into_iter())?;
-    let bar = long_work::bar(u64::from(LIVES) * benches.len() as u64, "turns");
+    let bar = long_work::bar(u64::from(RESTARTS) * benches.len() as u64, "turns");
     let first = quotients(&pair, &benches, &|| bar.inc(1))?;
     let doubtful: Vec<String> =
         first.iter().filter(|it| is_doubtful(it.value)).map(|it| it.bench.clone()).collect();
-    bar.inc_length(u64::from(LIVES) * doubtful.len() as u64);
+    bar.inc_length(u64::from(RESTARTS) * doubtful.len() as u64);
     let second = quotients(&pair, &doubtful, &|| bar.inc(1))?;
     bar.finish_and_clear();
     let mut lines = vec![format!("old {}", versions[0]), format!("new {}", versions[1])];

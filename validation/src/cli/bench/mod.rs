@@ -171,10 +171,10 @@ fn timed(patterns: &[Regex]) -> Result<Vec<TimedCase>> {
     let mut all = embedded()?;
     CASES.check(patterns, all.iter().map(|it| it.name.as_str()))?;
     all.retain(|it| match patterns {
-        [] => cases::USUAL.contains(&it.name.as_str()),
+        [] => cases::DEFAULT_CASES.contains(&it.name.as_str()),
         _ => patterns.iter().any(|pattern| pattern.is_match(&it.name)),
     });
-    let listed = || cases::USUAL.iter().chain(&cases::SYSTEMS);
+    let listed = || cases::DEFAULT_CASES.iter().chain(&cases::SYSTEMS);
     let place = |case: &Case| listed().position(|it| *it == case.name);
     all.sort_by_key(|it| (it.oscillator.is_none(), place(it).unwrap_or(usize::MAX)));
     let library = Library::embedded()?;
