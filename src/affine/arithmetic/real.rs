@@ -9,17 +9,17 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The fewest bits of a number. A projector loses what the gaps between eigenvalues take, at most
 /// some hundred bits for twelve eigenvalues that are not merged.
-const FEWEST_BITS: usize = 640;
+const MIN_BITS: usize = 640;
 
 /// The bits in which a mode is taken apart for an arithmetic: twice its own, and room for what gaps
 /// between eigenvalues take.
 pub fn bits_for<T: Number>() -> usize {
-    if T::WORDS <= 2 { FEWEST_BITS } else { 106 * T::WORDS + 240 }
+    if T::WORDS <= 2 { MIN_BITS } else { 106 * T::WORDS + 240 }
 }
 
 type BigFloat = FBig<HalfEven, 2>;
 
-/// A real number of at least [`FEWEST_BITS`] bits. A result has the bits of the longer operand.
+/// A real number of at least [`MIN_BITS`] bits. A result has the bits of the longer operand.
 #[derive(Clone, Debug)]
 pub struct BigReal(BigFloat);
 
@@ -38,7 +38,7 @@ impl BigReal {
         // What is not a number does not come from a system that has been read.
         let finite = value.clamp(f64::MIN, f64::MAX);
         let value = BigFloat::try_from(finite).unwrap_or(BigFloat::ZERO);
-        Self(value.with_precision(FEWEST_BITS).value())
+        Self(value.with_precision(MIN_BITS).value())
     }
 
     /// A rational number, rounded to so many bits.

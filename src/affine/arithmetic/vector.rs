@@ -38,11 +38,11 @@ pub fn twice_summed_rounding<T: Number>(dimension: usize) -> T::Bound {
 /// Sine and cosine of an angle plus a small `low`, from those of the angle.
 #[inline]
 pub fn turned<T: Number>((sin, cos): (T, T), low: T) -> (T, T) {
-    /// Up to here the square of what is added is below rounding.
-    const LITTLE: f64 = 1e-17;
+    /// The largest square of a small angle, radians squared, that is below the rounding of f64.
+    const NEGLIGIBLE_SQUARE: f64 = 1e-17;
     let size = low.to_f64().abs();
     // In an arithmetic of two words `low` is a rounding, whose square is below every digit.
-    if size * size <= LITTLE || !is_f64::<T>() {
+    if size * size <= NEGLIGIBLE_SQUARE || !is_f64::<T>() {
         return (sin + low * cos, cos - low * sin);
     }
     let (sin_low, cos_low) = low.sin_cos();
@@ -80,13 +80,13 @@ pub fn all_finite<T: Number>(entries: &[T]) -> bool {
 }
 
 /// Squares whose sum is below this may have lost digits to underflow.
-const SMALLEST_SQUARE: f64 = 1e-280;
+const MIN_EXACT_SQUARE: f64 = 1e-280;
 
 /// The Euclidean norm of some entries, which overflows or vanishes only where it has to.
 #[inline]
 pub fn euclidean<B: Bound>(entries: impl Iterator<Item = B> + Clone) -> B {
     let square: B = entries.clone().map(|it| it * it).sum();
-    if square > SMALLEST_SQUARE && square < f64::INFINITY {
+    if square > MIN_EXACT_SQUARE && square < f64::INFINITY {
         return square.sqrt();
     }
     let largest = entries.clone().fold(B::ZERO, |most, it| most.max(it.abs()));
@@ -108,7 +108,7 @@ pub fn norm<T: Number>(entries: &[T]) -> T::Bound {
         let entry = entry.bound();
         square += entry * entry;
     }
-    if square > SMALLEST_SQUARE && square < f64::INFINITY {
+    if square > MIN_EXACT_SQUARE && square < f64::INFINITY {
         return square.sqrt();
     }
     scaled_norm(entries)
@@ -132,14 +132,14 @@ pub fn rounded<T: Number>(value: &BigReal) -> T {
     let mut sum = T::zero();
     for k in 0..T::WORDS as i64 {
         let word = rest.to_f64();
-        sum = sum + T::exact(word).scaled(-BITS_OF_A_WORD * k);
-        rest = (&rest - &BigReal::exact(word)).scaled(BITS_OF_A_WORD as isize);
+        sum = sum + T::exact(word).scaled(-WORD_BITS * k);
+        rest = (&rest - &BigReal::exact(word)).scaled(WORD_BITS as isize);
     }
     sum.scaled(exponent as i64)
 }
 
 /// The bits of each of the words to which a wide number is taken apart.
-const BITS_OF_A_WORD: i64 = 50;
+const WORD_BITS: i64 = 50;
 
 /// A row in the arithmetic, with zeros beyond its end.
 pub fn vector<T: Number>(row: &[BigReal]) -> Vector<T> {

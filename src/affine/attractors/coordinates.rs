@@ -2,7 +2,7 @@
 
 use super::ReturnAttractor;
 use crate::affine::returns::map::SectionMap;
-use crate::affine::returns::shooting::{Change, Derivative, MOST};
+use crate::affine::returns::shooting::{Change, Derivative, MAX_COORDINATES};
 use crate::affine::returns::walk::Return;
 use crate::affine::run::place::Place;
 use crate::dynamics::attractor::coordinates::Coordinates;
@@ -30,7 +30,7 @@ impl SectionCoordinates {
     pub fn of(map: &SectionMap<'_, f64>) -> Self {
         let system = map.system();
         let states = system.states.len();
-        let mut sizes = [0.0; MOST];
+        let mut sizes = [0.0; MAX_COORDINATES];
         for (n, (size, scale)) in sizes.iter_mut().zip(&system.scales).enumerate() {
             *size = if map.is_drift(n) { 0.0 } else { *scale };
         }
@@ -46,7 +46,7 @@ impl SectionCoordinates {
     }
 
     fn spot_at(&self, mode: usize, time: f64, state: &[f64]) -> Spot {
-        let mut at = [0.0; MOST];
+        let mut at = [0.0; MAX_COORDINATES];
         at.iter_mut().zip(state).for_each(|(it, state)| *it = *state);
         if let Some(turn) = self.turn {
             at[state.len()] = time - turn * libm::floor(time / turn);
@@ -82,7 +82,7 @@ impl Coordinates for SectionCoordinates {
     type Piece = usize;
     type Step = Change;
     /// The mode, and the place along each co-ordinate.
-    type Cell = [i64; MOST + 1];
+    type Cell = [i64; MAX_COORDINATES + 1];
     type Attractor = ReturnAttractor;
 
     fn spot(&self, point: &Return<f64>) -> Spot {
@@ -117,7 +117,7 @@ impl Coordinates for SectionCoordinates {
     }
 
     fn cell(&self, spot: &Spot, width: f64) -> Self::Cell {
-        let mut cell = [0; MOST + 1];
+        let mut cell = [0; MAX_COORDINATES + 1];
         cell[0] = spot.mode as i64;
         for (place, at) in cell[1..].iter_mut().zip(self.at(spot)) {
             *place = libm::floor(at / width) as i64;

@@ -17,13 +17,14 @@ use crate::dynamics::attractor::{AttractorKind, Label};
 use crate::dynamics::linear::product;
 
 /// Returns in which small changes find their directions before exponents are taken.
-const SETTLING: u64 = 64;
-/// Returns for which the end of a motion is put off while they are amid events of one instant.
-const AMID: u64 = 64;
+const SETTLING_RETURNS: u64 = 64;
+/// The largest number of returns by which the end of a motion is put off while they are amid events
+/// of one instant.
+const MAX_POSTPONED_RETURNS: u64 = 64;
 /// Points of a trap's net on each of its shells for each dimension beyond three.
-const MORE_DIRECTIONS: usize = 16;
-/// Changes that are smaller, beside the largest, are roundings of it.
-const SMALLEST: f64 = 1e-12;
+const DIRECTIONS_PER_DIMENSION: usize = 16;
+/// The smallest change beside the largest one that is not a rounding of it.
+const MIN_RELATIVE_CHANGE: f64 = 1e-12;
 
 /// The motions from return to return.
 #[derive(Clone, Copy)]
@@ -59,7 +60,7 @@ impl<'m> SectionMotions<'m> {
         let columns: Vec<_> = (0..dimension).map(column).collect();
         let length = |it: &Vec<f64>| it.iter().map(|it| it * it).sum::<f64>().sqrt();
         let largest = columns.iter().map(length).fold(0.0, f64::max);
-        let axes = orthonormal(columns, SMALLEST * largest);
+        let axes = orthonormal(columns, MIN_RELATIVE_CHANGE * largest);
         if !axes.is_empty() {
             return axes;
         }
@@ -108,7 +109,7 @@ impl Motions for SectionMotions<'_> {
         see: &mut Observer<'_, Self>,
     ) -> Result<Place<f64>, StopOf<Self>> {
         let mut returns = self.map.returns_after(from);
-        for n in 0..count + AMID {
+        for n in 0..count + MAX_POSTPONED_RETURNS {
             if n >= count
                 && let Ok(place) = returns.place()
             {
@@ -164,7 +165,7 @@ impl Motions for SectionMotions<'_> {
             let size = numbers.iter().map(|it| it * it).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
             numbers.into_iter().map(|it| it / size).collect()
         };
-        (0..DIRECTIONS as usize + MORE_DIRECTIONS * dimension.saturating_sub(3))
+        (0..DIRECTIONS as usize + DIRECTIONS_PER_DIMENSION * dimension.saturating_sub(3))
             .map(direction)
             .collect()
     }
@@ -172,7 +173,7 @@ impl Motions for SectionMotions<'_> {
     /// The means without the exponents that are zero for any motion: those along the flow of a
     /// system that is not forced, and along drifts.
     fn means(&self, from: &Place<f64>, returns: u64) -> Option<RunMeans> {
-        let found = self.map.exponents(from, SETTLING, returns, &mut |_| ()).ok()?;
+        let found = self.map.exponents(from, SETTLING_RETURNS, returns, &mut |_| ()).ok()?;
         let is_autonomous = self.map.system().forcing.is_none();
         let neutral = found.drift_per_return.len() + usize::from(is_autonomous);
         Some(RunMeans {

@@ -15,8 +15,8 @@ use crate::numeric::number::Bound;
 /// The number of derivatives of a row that are kept, its value included.
 pub const ORDERS: usize = 17;
 
-/// Room for the rounding of a norm.
-const OUTWARD: f64 = 1.0 + 1e-12;
+/// The factor by which a norm is raised against its rounding.
+const OUTWARD_FACTOR: f64 = 1.0 + 1e-12;
 
 /// How a block's part in a row's derivatives may grow at later times.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,9 +65,14 @@ impl BlockGrowth {
 /// An upper bound of exp(x): up to x = 1, where it is most often asked for, a parabola.
 #[inline]
 fn growth_by<B: Bound>(x: f64) -> B {
-    /// (exp(x) - 1 - x)/x^2 increases, and is e - 2 at 1.
-    const MOST: f64 = 0.718_281_828_459_046;
-    if x <= 1.0 { B::of((1.0 + x * (1.0 + x * MOST)) * OUTWARD) } else { B::exp(x) * OUTWARD }
+    /// The largest value of (exp(x) - 1 - x)/x^2 for x up to 1: the quotient increases, and at 1
+    /// it is e - 2.
+    const MAX_QUOTIENT: f64 = 0.718_281_828_459_046;
+    if x <= 1.0 {
+        B::of((1.0 + x * (1.0 + x * MAX_QUOTIENT)) * OUTWARD_FACTOR)
+    } else {
+        B::exp(x) * OUTWARD_FACTOR
+    }
 }
 
 /// The sum of `norms[j] length^j/j!`, where norms that are zero end it.
@@ -89,7 +94,7 @@ fn positive_logarithmic_norm(block: &modal::Block) -> f64 {
     if let Kind::Real(rate) | Kind::Pair(rate, _) = &block.kind {
         return rate.to_f64().max(0.0);
     }
-    modal::logarithmic_norm(&block.matrix).max(0.0) * OUTWARD
+    modal::logarithmic_norm(&block.matrix).max(0.0) * OUTWARD_FACTOR
 }
 
 /// A row's derivatives in a block, those that are zero exactly so.
@@ -122,13 +127,14 @@ pub fn norms<B: Bound>(block: &modal::Block, parts: &[Vec<BigReal>]) -> [B; ORDE
     };
     std::array::from_fn(|k| {
         let is_zero = parts[k].iter().all(BigReal::is_zero);
-        if is_zero { B::ZERO } else { (bound(&parts[k]) * OUTWARD).max(B::UNDERFLOW) }
+        if is_zero { B::ZERO } else { (bound(&parts[k]) * OUTWARD_FACTOR).max(B::UNDERFLOW) }
     })
 }
 
 /// The maximum of s^j exp(-rate s)/j!.
 fn largest_term(j: usize, rate: f64) -> f64 {
-    (1..=j).map(|n| j as f64 / (std::f64::consts::E * rate * n as f64)).product::<f64>() * OUTWARD
+    (1..=j).map(|n| j as f64 / (std::f64::consts::E * rate * n as f64)).product::<f64>()
+        * OUTWARD_FACTOR
 }
 
 fn norm<B: Bound>(part: &[BigReal]) -> B {

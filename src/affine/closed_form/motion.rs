@@ -95,11 +95,14 @@ impl<T: Number> BlockMotion<T> {
     /// An upper bound of the factor by which a row's bound of co-ordinates that decay shrinks in a
     /// time; 1 for other blocks.
     pub fn decay(&self, time: f64) -> T::Bound {
-        /// Room for the rounding of the exponential and of its exponent.
-        const OUTWARD: f64 = 1.0 + 1e-9;
+        /// The factor by which an exponential is raised against its rounding and that of its
+        /// exponent.
+        const OUTWARD_FACTOR: f64 = 1.0 + 1e-9;
         let one = T::Bound::of(1.0);
         let by = |rate: f64, factor: f64| match rate < 0.0 {
-            true => (T::Bound::exp(rate * time * (1.0 - 1e-12)) * (OUTWARD * factor)).min(one),
+            true => {
+                (T::Bound::exp(rate * time * (1.0 - 1e-12)) * (OUTWARD_FACTOR * factor)).min(one)
+            }
             false => one,
         };
         match self {
@@ -155,7 +158,7 @@ impl<T: Number> BlockMotion<T> {
                 match triangular {
                     Some(triangular) => {
                         triangular.advance(*powers, y, sizes, time);
-                        sizes[own.clone()].iter_mut().for_each(|size| *size *= TWICE);
+                        sizes[own.clone()].iter_mut().for_each(|size| *size *= SIZE_FACTOR);
                     }
                     None => {
                         let (y, sizes) = (&mut y[own.clone()], &mut sizes[own.clone()]);
@@ -173,7 +176,7 @@ impl<T: Number> BlockMotion<T> {
 
 /// The factor by which the sizes of Horner's sums are raised, because five roundings a power are
 /// more than those of a sum.
-const TWICE: f64 = 2.0;
+const SIZE_FACTOR: f64 = 2.0;
 
 /// `y = exp(B time) y` by so many terms of the Taylor series, in Horner's scheme, and the sizes of
 /// what that sums, raised.
@@ -224,7 +227,7 @@ fn taylor_in<T: Number, const LENGTH: usize>(
         }
     }
     y.copy_from_slice(&now[..count]);
-    sizes.iter_mut().zip(sizes_now).for_each(|(size, now)| *size = now * TWICE);
+    sizes.iter_mut().zip(sizes_now).for_each(|(size, now)| *size = now * SIZE_FACTOR);
 }
 
 #[inline]
@@ -294,17 +297,18 @@ impl<T: Number> PowerTables<T> {
     /// Tables that are made at once: up to 256 steps, each at least a quarter of the time in which
     /// the fastest co-ordinate moves by its size.
     const FIRST_LEVELS: usize = 2;
-    const MOST_STEPS: f64 = (1_u64 << (4 * Self::LEVELS)) as f64;
+    /// The number of steps that the tables do not hold any more.
+    const MAX_STEPS: f64 = (1_u64 << (4 * Self::LEVELS)) as f64;
 
     fn of(matrix: &[Vec<BigReal>]) -> Self {
         /// The rounding of a logarithmic norm, relative to the norm.
-        const ROOM: f64 = 1e-12;
+        const ROUNDING_TOLERANCE: f64 = 1e-12;
         let size = modal::norm(matrix);
         let exponent = if size > 0.0 { -libm::ceil(libm::log2(size)) - 1.0 } else { 0.0 };
         let step = libm::exp2(exponent);
         let mut beyond = modal::exponential(matrix, exponent as isize);
         let tables = (0..Self::FIRST_LEVELS).map(|_| table(&mut beyond)).collect();
-        let growth = modal::logarithmic_norm(matrix) + ROOM * size;
+        let growth = modal::logarithmic_norm(matrix) + ROUNDING_TOLERANCE * size;
         let matrix = matrix.iter().map(|row| vector(row)).collect();
         Self { step, tables, later: OnceLock::new(), beyond, matrix, growth }
     }
@@ -347,7 +351,7 @@ impl<T: Number> PowerTables<T> {
     #[inline(never)]
     fn advance(&self, y: &mut [T], sizes: &mut [T::Bound], time: T) {
         let steps = self.steps(time.to_f64());
-        if steps >= Self::MOST_STEPS {
+        if steps >= Self::MAX_STEPS {
             // So long a time is beyond the tables.
             return y.fill(T::exact(f64::NAN));
         }
@@ -374,12 +378,13 @@ impl<T: Number> PowerTables<T> {
     /// there are others, and what follows is relative to that.
     #[inline]
     fn terms(&self, rest: f64) -> usize {
-        /// Couplings of different sizes.
-        const BELOW: f64 = 1.0 / 4096.0;
+        /// The size down to which terms are summed, in units of the last digit: couplings differ in
+        /// size.
+        const TERM_TOLERANCE_UNITS: f64 = 1.0 / 4096.0;
         // |B rest| is at most 1/2 where the rest is a step.
         let size = 0.5 * (rest / self.step).abs();
         let (mut terms, mut next) = (0, size);
-        while T::unit() * BELOW < next && terms < 2 * T::TERMS {
+        while T::unit() * TERM_TOLERANCE_UNITS < next && terms < 2 * T::TERMS {
             terms += 1;
             next *= size / (terms + 1) as f64;
         }

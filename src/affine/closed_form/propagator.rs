@@ -9,13 +9,13 @@ use crate::numeric::number::Number;
 use smallvec::SmallVec;
 
 /// The number of blocks up to which no heap memory is needed.
-const INLINE: usize = 4;
+const INLINE_BLOCKS: usize = 4;
 
 /// exp(M t) of a mode at one time.
 pub struct Propagator<'a, T: Number> {
     flow: &'a ModeFlow<T>,
     time: T,
-    blocks: SmallVec<[BlockFactor<T>; INLINE]>,
+    blocks: SmallVec<[BlockFactor<T>; INLINE_BLOCKS]>,
 }
 
 /// exp(B t) of a block, as far as states share it.

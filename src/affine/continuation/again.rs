@@ -25,7 +25,7 @@ pub(super) struct OnLine {
 }
 
 /// Distances beyond the place at which a corner is expected where the piece may have ended.
-const ENDS: [f64; 2] = [2.0, 4.0];
+const END_DISTANCES: [f64; 2] = [2.0, 4.0];
 
 impl Sought {
     pub fn of(found: &ReturnBifurcation) -> Self {
@@ -93,7 +93,7 @@ impl Curve<'_> {
         let leaves = |distance: &f64| {
             self.corrected(start, *distance).is_none_or(|it| !it.is_on_piece_of(start))
         };
-        let distance = ENDS.map(|it| it * reach).into_iter().find(leaves)?;
+        let distance = END_DISTANCES.map(|it| it * reach).into_iter().find(leaves)?;
         let corner = match sought.is_lost {
             true => self.lost_corner(start, distance),
             false => Self::corner(self, start, distance),

@@ -87,7 +87,7 @@ fn traced(found: &ReturnBifurcation, second: f64) -> Traced {
 }
 
 /// Places after which half of a way along a curve is said to be done: its length is not known.
-const USUAL: f64 = 40.0;
+const HALFWAY_POINTS: f64 = 40.0;
 
 /// The curve through a place, from one end to the other.
 fn whole(
@@ -96,7 +96,8 @@ fn whole(
     told: &mut dyn FnMut(f64),
 ) -> (Vec<Traced>, [CurveEnding; 2]) {
     let Some(way) = tracer.ways(&start) else { return (vec![start], [CurveEnding::Lost; 2]) };
-    let share = |half: f64, count: usize| half + 0.5 * count as f64 / (count as f64 + USUAL);
+    let share =
+        |half: f64, count: usize| half + 0.5 * count as f64 / (count as f64 + HALFWAY_POINTS);
     let Trace { points: ahead, ending: last } =
         tracer.trace(&start, way, &mut |count| told(share(0.0, count)));
     if last == CurveEnding::Closed {

@@ -10,25 +10,25 @@ use crate::dynamics::orbit::newton::polished;
 use core::cell::Cell;
 
 /// Distance at which a corner counts as reached: some roundings of the points.
-const REACHED: f64 = 1e-14;
+const CORNER_TOLERANCE: f64 = 1e-14;
 /// Places beyond a corner lie within this many times the square root of the step: a touch moves an
 /// orbit by a root.
-const NEAR: f64 = 10.0;
+const MAX_ROOT_MULTIPLE: f64 = 10.0;
 /// Distances beyond the corner at which its other side is looked at and entered, nearest first.
-const BEYOND: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
+const PROBE_DISTANCES: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
 /// Relative error of a corner with which no nearer place beyond is looked for; none is said to be
 /// smaller, because a touch within the solver's rounding of its guard counts as none.
-const SHARP: f64 = 1e-11;
+const RELATIVE_ERROR_TOLERANCE: f64 = 1e-11;
 /// The next piece ends within this share of the step at which it was found: one that ends further
 /// away has others between it and the corner.
-const AGREED: f64 = 0.1;
+const MAX_END_SHARE: f64 = 0.1;
 /// Times once around after which a motion from an orbit next to a corner is looked at.
-const SETTLING: [u32; 2] = [1, 40];
+const SETTLING_TURNS: [u32; 2] = [1, 40];
 /// Steps along the curve by which such a motion begins aside of the orbit: on one of the two sides
 /// its mode holds there.
-const ASIDE: [f64; 2] = [8.0, -8.0];
+const SIDE_STEPS: [f64; 2] = [8.0, -8.0];
 /// Times that a direction beyond a corner is taken again from a place nearer to it.
-const REFINED: usize = 4;
+const REFINEMENTS: usize = 4;
 
 /// A piece of a curve followed as far as it goes.
 struct Approach {
@@ -50,18 +50,18 @@ impl Curve<'_> {
         let (before, own) = self.end(base, distance);
         let least = self.least_error(base, &before);
         let mut best = Corner { before, beyond: None, error: f64::INFINITY };
-        for step in BEYOND {
+        for step in PROBE_DISTANCES {
             let before = &best.before;
             let Some(beyond) = self.beyond(before, step) else { continue };
             let apart = self.seen_from(&beyond, step, before).unwrap_or(0.0);
-            if apart > AGREED * step {
+            if apart > MAX_END_SHARE * step {
                 continue;
             }
             let error = own + apart;
             if error < best.error || best.beyond.is_none() {
                 (best.beyond, best.error) = (Some(beyond), error);
             }
-            if best.error <= SHARP * best.before.value.abs() {
+            if best.error <= RELATIVE_ERROR_TOLERANCE * best.before.value.abs() {
                 break;
             }
         }
@@ -88,7 +88,7 @@ impl Curve<'_> {
     /// The least error that is said of a corner which was reached from a base.
     fn least_error(&self, base: &CurvePoint, before: &CurvePoint) -> f64 {
         let blur = self.blur(before, &base.tangent);
-        SHARP * before.value.abs() + self.uncertainty(before) + blur
+        RELATIVE_ERROR_TOLERANCE * before.value.abs() + self.uncertainty(before) + blur
     }
 
     /// The distance in the parameter between the corner and where it is found from beyond; none
@@ -102,7 +102,7 @@ impl Curve<'_> {
     /// Follows the curve from a point as far as its piece goes.
     fn approached(&self, base: &CurvePoint, distance: f64) -> Approach {
         let is_lost = Cell::new(false);
-        let (last, rest) = last_along(base, distance, REACHED, &|from, step| {
+        let (last, rest) = last_along(base, distance, CORNER_TOLERANCE, &|from, step| {
             let there = self.corrected(from, step).or_else(|| self.at_value(from, step));
             is_lost.set(there.is_none());
             there.filter(|it| it.is_on_piece_of(from))
@@ -158,7 +158,7 @@ impl Curve<'_> {
     /// large where a guard is nearly touched, and so is the error of a direction that was taken
     /// further away: its square root is the error of the next.
     fn refined(&self, mut base: CurvePoint, step: f64) -> CurvePoint {
-        for _ in 0..REFINED {
+        for _ in 0..REFINEMENTS {
             let Some(shots) = self.shifted(&base, &base.tangent, step) else { break };
             if are_on_one_piece(&shots, &base.shots) {
                 break;
@@ -218,7 +218,8 @@ impl Curve<'_> {
                 Shots::of(map, images)
             })
         });
-        let starts = ASIDE.iter().flat_map(|aside| SETTLING.map(|turns| (aside * step, turns)));
+        let starts =
+            SIDE_STEPS.iter().flat_map(|aside| SETTLING_TURNS.map(|turns| (aside * step, turns)));
         let motions = starts.map(|(aside, turns)| self.settled(from, value, aside, turns));
         let all = [probe, second].into_iter().chain(motions).flatten();
         let others = all.filter(|it| !are_on_one_piece(it, &from.shots));
@@ -232,6 +233,6 @@ impl Curve<'_> {
             let sizes = pairs.map(|(it, own)| map.size(it, &map.apart(&map.taken_up(own), it)));
             Some(sizes.fold(0.0, f64::max))
         });
-        distance.is_some_and(|it| it <= NEAR * libm::sqrt(step))
+        distance.is_some_and(|it| it <= MAX_ROOT_MULTIPLE * libm::sqrt(step))
     }
 }

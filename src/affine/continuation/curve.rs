@@ -1,6 +1,8 @@
 //! The curve of orbits in (points, parameter): its tangent, and the corrector.
 
-use super::super::returns::shooting::{Change, Derivative, MOST, ReturnMap, Shots, identity};
+use super::super::returns::shooting::{
+    Change, Derivative, MAX_COORDINATES, ReturnMap, Shots, identity,
+};
 use super::super::run::place::Place;
 use super::family::{OrbitShots, ReturnFamily};
 use super::point::{CurvePoint, Direction, are_on_one_piece};
@@ -20,13 +22,14 @@ pub(super) struct Curve<'a> {
 const ITERATIONS: usize = 10;
 
 /// The least change of the parameter, in units, from which its derivative is learned.
-const LEARNED: f64 = 1e-6;
+const MIN_PARAMETER_CHANGE: f64 = 1e-6;
 
-const BORDERED: usize = MOST + 1;
+/// The dimension of the bordered system: the co-ordinates of a point, and the parameter.
+const BORDERED_DIMENSION: usize = MAX_COORDINATES + 1;
 
 /// The bordered system: orbits next to shots, and a direction.
 struct Bordered {
-    matrix: [[f64; BORDERED]; BORDERED],
+    matrix: [[f64; BORDERED_DIMENSION]; BORDERED_DIMENSION],
     offset: Change,
 }
 
@@ -37,7 +40,7 @@ struct Around {
 }
 
 fn around(shots: &OrbitShots, added: &[Change]) -> Around {
-    let mut all = Around { matrix: identity(), offset: [0.0; MOST] };
+    let mut all = Around { matrix: identity(), offset: [0.0; MAX_COORDINATES] };
     for (image, added) in shots.images.iter().zip(added) {
         all.matrix = product(&image.derivative, &all.matrix);
         all.offset = sum(&apply(&image.derivative, &all.offset), added, 1.0);
@@ -69,7 +72,7 @@ impl<'a> Curve<'a> {
     pub fn about(family: &'a ReturnFamily<'a>, value: f64, unit: f64) -> Option<Self> {
         let (scales, dimension) = family.at(value, |map| {
             let system = map.system();
-            let mut scales = [1.0; MOST];
+            let mut scales = [1.0; MAX_COORDINATES];
             let own = system.scales.iter().chain([&system.time_scale]);
             scales.iter_mut().zip(own).for_each(|(it, own)| *it = *own);
             Some((scales, system.dimension()))
@@ -79,7 +82,7 @@ impl<'a> Curve<'a> {
 
     /// The first point of a branch, from an orbit's places, with the parameter's way.
     pub fn first(&self, value: f64, places: Vec<Place<f64>>, way: f64) -> Option<CurvePoint> {
-        let points = vec![[0.0; MOST]; places.len()];
+        let points = vec![[0.0; MAX_COORDINATES]; places.len()];
         let along = Direction { points, rate: self.unit * way };
         let shots = self.family.at(value, |map| Shots::of(map, places))?;
         self.point(value, shots, &along)
@@ -118,9 +121,9 @@ impl<'a> Curve<'a> {
                 _ => best = Some((value, shots.clone(), slopes.clone())),
             }
             let bordered = self.bordered(&shots, &slopes, &base.tangent, &base.shots);
-            let mut right = [0.0; BORDERED];
-            (0..MOST).for_each(|n| right[n] = -bordered.offset[n] / self.scales[n]);
-            right[MOST] = -left;
+            let mut right = [0.0; BORDERED_DIMENSION];
+            (0..MAX_COORDINATES).for_each(|n| right[n] = -bordered.offset[n] / self.scales[n]);
+            right[MAX_COORDINATES] = -left;
             let (first, step) = self.unscaled(&solve(bordered.matrix, right));
             let added: Vec<Change> =
                 shots.defects.iter().zip(&slopes).map(|(a, b)| sum(a, b, step)).collect();
@@ -160,7 +163,7 @@ impl<'a> Curve<'a> {
         [before, after]: [&OrbitShots; 2],
         changes: &[Change],
     ) {
-        if step.abs() < LEARNED * self.unit || !are_on_one_piece(before, after) {
+        if step.abs() < MIN_PARAMETER_CHANGE * self.unit || !are_on_one_piece(before, after) {
             return;
         }
         let images: Vec<Place<f64>> = before.images.iter().map(|it| it.point.clone()).collect();
@@ -200,8 +203,8 @@ impl<'a> Curve<'a> {
     /// The curve's direction at shots.
     pub fn tangent(&self, shots: &OrbitShots, slopes: &[Change], along: &Direction) -> Direction {
         let bordered = self.bordered(shots, slopes, along, shots);
-        let mut right = [0.0; BORDERED];
-        right[MOST] = 1.0;
+        let mut right = [0.0; BORDERED_DIMENSION];
+        right[MAX_COORDINATES] = 1.0;
         let (first, rate) = self.unscaled(&solve(bordered.matrix, right));
         let added: Vec<Change> = slopes.iter().map(|it| it.map(|by| by * rate)).collect();
         let mut tangent = Direction { points: spread(shots, first, &added), rate };
@@ -214,9 +217,9 @@ impl<'a> Curve<'a> {
     }
 
     /// A solution of the bordered system as a change of the first point and of the parameter.
-    fn unscaled(&self, solution: &[f64; BORDERED]) -> (Change, f64) {
+    fn unscaled(&self, solution: &[f64; BORDERED_DIMENSION]) -> (Change, f64) {
         let first = std::array::from_fn(|n| solution[n] * self.scales[n]);
-        (first, solution[MOST] * self.unit)
+        (first, solution[MAX_COORDINATES] * self.unit)
     }
 
     /// The distance along the tangent of `base` at which shots lie.
@@ -255,13 +258,13 @@ impl<'a> Curve<'a> {
         let Around { matrix: own, offset } = around(shots, &shots.defects);
         let Around { offset: by_value, .. } = around(shots, slopes);
         let (scales, weight) = (&self.scales, self.weight(weighed));
-        let mut matrix = [[0.0; BORDERED]; BORDERED];
+        let mut matrix = [[0.0; BORDERED_DIMENSION]; BORDERED_DIMENSION];
         for (i, row) in self.less_identity(&own).iter().enumerate() {
-            matrix[i][..MOST].copy_from_slice(row);
-            matrix[i][MOST] = by_value[i] * self.unit / scales[i];
-            matrix[MOST][i] = weight * along.points[0][i] / scales[i];
+            matrix[i][..MAX_COORDINATES].copy_from_slice(row);
+            matrix[i][MAX_COORDINATES] = by_value[i] * self.unit / scales[i];
+            matrix[MAX_COORDINATES][i] = weight * along.points[0][i] / scales[i];
         }
-        matrix[MOST][MOST] = along.rate / self.unit;
+        matrix[MAX_COORDINATES][MAX_COORDINATES] = along.rate / self.unit;
         Bordered { matrix, offset }
     }
 
@@ -280,10 +283,10 @@ impl<'a> Curve<'a> {
     pub fn uncertainty(&self, point: &CurvePoint) -> f64 {
         let Bordered { matrix, .. } =
             self.bordered(&point.shots, &point.slopes, &point.tangent, &point.shots);
-        let by_row = (0..MOST).map(|row| {
-            let mut right = [0.0; BORDERED];
+        let by_row = (0..MAX_COORDINATES).map(|row| {
+            let mut right = [0.0; BORDERED_DIMENSION];
             right[row] = 1.0;
-            solve(matrix, right)[MOST].abs()
+            solve(matrix, right)[MAX_COORDINATES].abs()
         });
         by_row.sum::<f64>() * self.unit * self.rounding(&point.shots)
             + f64::EPSILON * point.value.abs()
@@ -298,8 +301,8 @@ impl<'a> Curve<'a> {
     pub fn blur(&self, point: &CurvePoint, along: &Direction) -> f64 {
         let Around { matrix, .. } = around(&point.shots, &point.shots.defects);
         let apart = self.less_identity(&matrix);
-        let by_row = (0..MOST).map(|row| {
-            let mut right = [0.0; MOST];
+        let by_row = (0..MAX_COORDINATES).map(|row| {
+            let mut right = [0.0; MAX_COORDINATES];
             right[row] = 1.0;
             solve(apart, right).iter().map(|it| it * it).sum::<f64>().sqrt()
         });

@@ -5,7 +5,7 @@ use super::super::model::system::System;
 use super::super::returns::map::{Carried, SectionMap};
 use super::super::returns::orbit::Way;
 use super::super::returns::section::Section;
-use super::super::returns::shooting::{Change, MOST, ReturnMap, Shots};
+use super::super::returns::shooting::{Change, MAX_COORDINATES, ReturnMap, Shots};
 use super::super::run::place::Place;
 use super::super::solver::Solver;
 use std::cell::RefCell;
@@ -25,11 +25,11 @@ pub struct ReturnFamily<'a> {
 }
 
 /// Solvers that are kept: a corrector goes back and forth between few values.
-const KEPT: usize = 8;
+const KEPT_SOLVERS: usize = 8;
 
 /// Relative steps of the differences, longest first: the first balances truncation and rounding,
 /// the others are for neighbourhoods of a corner.
-const STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
+const DIFFERENCE_STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
 
 impl<'a> ReturnFamily<'a> {
     /// The family of a section; `system` is the system at a value, and `longest` the longest time
@@ -64,7 +64,7 @@ impl<'a> ReturnFamily<'a> {
         }
         let system = (self.system)(value).ok()?;
         let solver = Rc::new(Solver::new(&system).ok()?);
-        prepared.truncate(KEPT - 1);
+        prepared.truncate(KEPT_SOLVERS - 1);
         prepared.push_front((bits, Rc::clone(&solver)));
         Some(solver)
     }
@@ -81,7 +81,7 @@ impl<'a> ReturnFamily<'a> {
     /// corner is near, the difference is taken on the shots' own side of it.
     pub(super) fn slopes(&self, value: f64, shots: &OrbitShots, scale: f64) -> Vec<Change> {
         let Some(points) = self.carried(value, &shots.points) else {
-            return vec![[0.0; MOST]; shots.points.len()];
+            return vec![[0.0; MAX_COORDINATES]; shots.points.len()];
         };
         let points = points.iter().zip(0..);
         points.map(|(point, k)| self.slope(value, shots, k, point, scale)).collect()
@@ -109,19 +109,23 @@ impl<'a> ReturnFamily<'a> {
             self.at(value, |map| Some((map.apart(&here.point, &map.taken_up(&image)), same)))
         };
         let size = value.abs().max(scale);
-        let mut fallback = [0.0; MOST];
-        for step in STEPS.map(|relative| relative * size) {
+        let mut fallback = [0.0; MAX_COORDINATES];
+        for step in DIFFERENCE_STEPS.map(|relative| relative * size) {
             let (up, down) = ((value + step) - value, value - (value - step));
             let quotient = |a: Change, b: Change, span: f64| -> Change {
                 std::array::from_fn(|n| (a[n] - b[n]) / span)
             };
-            let is_short = step <= 1.01 * STEPS[2] * size;
+            let is_short = step <= 1.01 * DIFFERENCE_STEPS[2] * size;
             match (beside(up), beside(-down)) {
                 (Some((above, true)), Some((below, true))) => {
                     return quotient(above, below, up + down);
                 }
-                (Some((above, true)), _) if is_short => return quotient(above, [0.0; MOST], up),
-                (_, Some((below, true))) if is_short => return quotient([0.0; MOST], below, down),
+                (Some((above, true)), _) if is_short => {
+                    return quotient(above, [0.0; MAX_COORDINATES], up);
+                }
+                (_, Some((below, true))) if is_short => {
+                    return quotient([0.0; MAX_COORDINATES], below, down);
+                }
                 (Some((above, _)), Some((below, _))) => {
                     fallback = quotient(above, below, up + down)
                 }

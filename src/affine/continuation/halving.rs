@@ -1,6 +1,6 @@
 //! Where a branch ends because its orbits close after half their period.
 
-use super::super::returns::shooting::{Change, MOST, ReturnMap, Shots};
+use super::super::returns::shooting::{Change, MAX_COORDINATES, ReturnMap, Shots};
 use super::curve::Curve;
 use super::point::{CurvePoint, Direction};
 use crate::dynamics::orbit::newton::solved;
@@ -24,7 +24,7 @@ impl Curve<'_> {
             });
             solved(map, Shots::of(map, points.collect())?).ok()
         })?;
-        let along = Direction { points: vec![[0.0; MOST]; half], rate: self.unit };
+        let along = Direction { points: vec![[0.0; MAX_COORDINATES]; half], rate: self.unit };
         self.point(point.value, middle, &along)
     }
 

@@ -4,7 +4,7 @@ use super::again::{OnLine, Sought};
 use super::curve::Curve;
 use super::plane::{Axis, ReturnPlane, Way, cosine, length};
 use super::point::{CurvePoint, Direction};
-use crate::affine::returns::shooting::{MOST, ReturnMap};
+use crate::affine::returns::shooting::{MAX_COORDINATES, ReturnMap};
 use crate::dynamics::continuation::BifurcationKind;
 
 /// A bifurcation in the plane.
@@ -51,26 +51,29 @@ impl CurveEnding {
     }
 }
 
-/// The first step, and the longest and the shortest, in widths of the window.
-const FIRST: f64 = 1e-3;
-const LONGEST: f64 = 0.03;
-const SHORTEST: f64 = 1e-6;
-/// First steps, of which the first that leads anywhere tells the curve's direction.
-const BEGINNINGS: [f64; 3] = [1e-3, 1e-4, 1e-5];
-/// Steps so short are roundings of a place on the window's edge.
-const AT_EDGE: f64 = 8.0 * f64::EPSILON;
+/// The first step, in widths of the window.
+const FIRST_STEP: f64 = 1e-3;
+/// The longest step, in widths of the window.
+const MAX_STEP: f64 = 0.03;
+/// The shortest step, in widths of the window.
+const MIN_STEP: f64 = 1e-6;
+/// Lengths of the first steps that are tried, in widths of the window: the first that leads
+/// anywhere tells the curve's direction.
+const TRIAL_STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
+/// The longest step that is a rounding of a place on the window's edge, in widths of the window.
+const EDGE_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 /// Places on a curve before it is given up.
-const POINTS: usize = 5_000;
+const MAX_POINTS: usize = 5_000;
 /// Cosine of the largest turn of the curve in a step.
-const TURN: f64 = 0.95;
+const MIN_TURN_COSINE: f64 = 0.95;
 /// The reaches along the branch within which a bifurcation is looked for, in steps: the step's
 /// error, which is of second order, has to be smaller, and all else that the branch has further
 /// away.
 const REACHES: [f64; 3] = [1.0, 0.2, 0.04];
-/// The reach of a first step, whose direction is not known, in steps.
-const WIDE: [f64; 4] = [1.0, 4.0, 0.2, 16.0];
+/// The reaches of a first step, whose direction is not known, in steps.
+const FIRST_REACHES: [f64; 4] = [1.0, 4.0, 0.2, 16.0];
 /// A curve passes a place that is within this share of a step.
-const BESIDE: f64 = 0.3;
+const PASSING_TOLERANCE: f64 = 0.3;
 
 /// The tracer of one curve.
 pub(super) struct Tracer<'a> {
@@ -90,15 +93,15 @@ struct Step<'a> {
 impl Tracer<'_> {
     /// The directions in which a curve leaves a place; none where it was found nowhere near.
     pub fn ways(&self, start: &Traced) -> Option<Way> {
-        const TRIES: [Way; 4] = [[0.0, 1.0], [0.0, -1.0], [1.0, 0.0], [-1.0, 0.0]];
-        BEGINNINGS.iter().find_map(|length| {
-            TRIES.iter().find_map(|way| {
+        const TRIAL_WAYS: [Way; 4] = [[0.0, 1.0], [0.0, -1.0], [1.0, 0.0], [-1.0, 0.0]];
+        TRIAL_STEPS.iter().find_map(|length| {
+            TRIAL_WAYS.iter().find_map(|way| {
                 let step = Step { from: start, before: None, way: *way, length: *length };
                 if self.plane.room(start.at, *way) < *length {
                     return None;
                 }
                 let target = self.plane.moved(start.at, way.map(|it| it * length));
-                let found = self.near(&step, target, axis_of(*way), &WIDE)?;
+                let found = self.near(&step, target, axis_of(*way), &FIRST_REACHES)?;
                 Some(self.plane.way(start.at, found.at))
             })
         })
@@ -108,10 +111,10 @@ impl Tracer<'_> {
     pub fn trace(&self, start: &Traced, way: Way, told: &mut dyn FnMut(usize)) -> Trace {
         let mut way = way.map(|it| it / length(way));
         let mut points: Vec<Traced> = Vec::new();
-        if self.plane.room(start.at, way) <= AT_EDGE {
+        if self.plane.room(start.at, way) <= EDGE_TOLERANCE {
             return Trace { points, ending: CurveEnding::Left };
         }
-        let mut step = FIRST;
+        let mut step = FIRST_STEP;
         loop {
             let (from, before) = match points.len() {
                 0 => (start, None),
@@ -120,11 +123,11 @@ impl Tracer<'_> {
             };
             let next = Step { from, before, way, length: step };
             let Some((next, has_left)) = self.step(&next) else {
-                if step > SHORTEST {
+                if step > MIN_STEP {
                     step *= 0.5;
                     continue;
                 }
-                let is_at_edge = self.plane.room(from.at, way) <= 10.0 * SHORTEST;
+                let is_at_edge = self.plane.room(from.at, way) <= 10.0 * MIN_STEP;
                 let ending = if is_at_edge { CurveEnding::Left } else { CurveEnding::Lost };
                 return Trace { points, ending };
             };
@@ -138,11 +141,11 @@ impl Tracer<'_> {
                 way = chord.map(|it| it / length(chord));
                 points.push(next);
             }
-            if has_left || points.len() >= POINTS {
+            if has_left || points.len() >= MAX_POINTS {
                 let ending = if has_left { CurveEnding::Left } else { CurveEnding::Long };
                 return Trace { points, ending };
             }
-            step = (1.5 * step).min(LONGEST);
+            step = (1.5 * step).min(MAX_STEP);
         }
     }
 
@@ -183,7 +186,7 @@ impl Tracer<'_> {
                 let mut at = target;
                 at[axis] = point.value;
                 let chord = self.plane.way(step.from.at, at);
-                let is_ahead = step.before.is_none() || cosine(chord, step.way) >= TURN;
+                let is_ahead = step.before.is_none() || cosine(chord, step.way) >= MIN_TURN_COSINE;
                 is_ahead.then_some(Traced { at, axis, error, point })
             })
         })
@@ -202,7 +205,7 @@ impl Tracer<'_> {
                 _ => {
                     // The corner's other side is on the same side of the curve.
                     let side = -(tangent.rate * way[0] * way[1]).signum();
-                    let points = vec![[0.0; MOST]; shots.points.len()];
+                    let points = vec![[0.0; MAX_COORDINATES]; shots.points.len()];
                     Direction { points, rate: side * self.plane.width(axis) }
                 }
             };
@@ -246,15 +249,15 @@ impl Tracer<'_> {
         let size = length(way);
         let along = (way[0] * to[0] + way[1] * to[1]) / size;
         let aside = (way[0] * to[1] - way[1] * to[0]).abs() / size;
-        let slack = BESIDE * size;
+        let slack = PASSING_TOLERANCE * size;
         if !(aside <= slack && along >= -slack && along <= size + slack) {
             return false;
         }
         let nearer = if along > 0.5 * size { next } else { from };
         let back = self.plane.way(nearer.at, other.at);
-        let reach = length(back).max(FIRST * BESIDE);
+        let reach = length(back).max(FIRST_STEP * PASSING_TOLERANCE);
         let step = Step { from: nearer, before: None, way, length: reach };
-        let found = self.near(&step, other.at, other.axis, &WIDE);
+        let found = self.near(&step, other.at, other.axis, &FIRST_REACHES);
         found.is_some_and(|it| {
             (it.at[other.axis] - other.at[other.axis]).abs() <= it.error + other.error
         })

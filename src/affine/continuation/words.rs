@@ -22,13 +22,13 @@ pub(super) struct Meaning {
 type Sides = (Vec<Crossing>, Vec<Crossing>);
 
 /// Distances from a corner at which its events are looked at; the first that serve do.
-const DISTANCES: [[f64; 2]; 3] = [[1e-6, 1.6e-5], [1e-8, 1.6e-7], [1e-4, 1.6e-3]];
+const PROBE_DISTANCES: [[f64; 2]; 3] = [[1e-6, 1.6e-5], [1e-8, 1.6e-7], [1e-4, 1.6e-3]];
 
 /// A rate or a time that has grown by more vanishes at the corner: the root of sixteen is four.
-const GROWN: f64 = 2.0;
+const MIN_GROWTH_FACTOR: f64 = 2.0;
 
 /// The most letters of two words that are compared from wherever they begin.
-const MOST_LETTERS: usize = 200;
+const MAX_LETTERS: usize = 200;
 
 /// The word from wherever it is least: an event that passes a section does not change it.
 pub(super) fn cyclic(word: &[Guard]) -> Vec<[usize; 3]> {
@@ -41,7 +41,7 @@ pub(super) fn cyclic(word: &[Guard]) -> Vec<[usize; 3]> {
 impl Curve<'_> {
     /// What the corner is at which `before` is the last orbit of its piece.
     pub fn meaning(&self, before: &CurvePoint, beyond: Option<&CurvePoint>) -> Option<Meaning> {
-        let probe = || Some(self.events_of(self.probes(before, DISTANCES[0][0]).first()?));
+        let probe = || Some(self.events_of(self.probes(before, PROBE_DISTANCES[0][0]).first()?));
         let after = beyond.map(|it| it.orbit.events.clone()).or_else(probe)?;
         let [lost, gained] = differing(&before.orbit.events, &after);
         let is_beyond = lost.is_empty();
@@ -55,7 +55,7 @@ impl Curve<'_> {
         // Where orbits beyond have other events again, points that do not close tell as much.
         let orbits = beyond.filter(|_| is_beyond).and_then(|it| self.orbits_beyond(before, it));
         let sides = orbits.or_else(|| {
-            DISTANCES.iter().find_map(|distances| {
+            PROBE_DISTANCES.iter().find_map(|distances| {
                 let [near, far] = distances.map(|it| self.side(before, is_beyond, it));
                 alike(near?, far?)
             })
@@ -115,7 +115,7 @@ fn touched(near: &[Crossing], far: &[Crossing], changed: &[Guard]) -> Option<Gua
     let count = near.len();
     let is_touched = |k: usize| {
         let (one, other) = (&near[k], &far[k]);
-        changed.contains(&one.guard) && other.rate.abs() > GROWN * one.rate.abs()
+        changed.contains(&one.guard) && other.rate.abs() > MIN_GROWTH_FACTOR * one.rate.abs()
     };
     let first = (0..count).find(|k| is_touched(*k) && !is_touched((k + count - 1) % count));
     first.or_else(|| (0..count).find(|k| is_touched(*k))).map(|k| near[k].guard)
@@ -127,14 +127,14 @@ fn are_at_once(near: &[Crossing], far: &[Crossing], changed: &[Guard]) -> bool {
     pairs.into_iter().any(|(near, far)| {
         let is_own = near.iter().any(|it| changed.contains(&it.guard));
         let [near, far] = [near, far].map(|it| it[1].time - it[0].time);
-        is_own && far > GROWN * near
+        is_own && far > MIN_GROWTH_FACTOR * near
     })
 }
 
 /// The parts in which two words differ, as they are cyclically: what the first has alone, and the
 /// second.
 fn differing(one: &[Guard], other: &[Guard]) -> [Vec<Guard>; 2] {
-    let turns = |word: &[Guard]| if word.len() > MOST_LETTERS { 1 } else { word.len().max(1) };
+    let turns = |word: &[Guard]| if word.len() > MAX_LETTERS { 1 } else { word.len().max(1) };
     let mut best: Option<[Vec<Guard>; 2]> = None;
     for k in 0..turns(one) {
         let one = turned(one, k);

@@ -22,7 +22,7 @@ use std::sync::OnceLock;
 pub const BITS: [u32; 6] = [106, 212, 424, 848, 1696, 3392];
 
 /// The most bits of an arithmetic.
-pub(super) const MOST_BITS: u32 = BITS[5];
+pub(super) const MAX_BITS: u32 = BITS[5];
 
 /// A system with a solver in each arithmetic, which is prepared when a run needs it.
 pub struct ProvedSolver {

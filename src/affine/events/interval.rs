@@ -5,7 +5,7 @@ use dashu::integer::{IBig, UBig};
 use std::cmp::Ordering;
 
 /// The exponent of ten below which nothing is printed: f64 has no such numbers.
-pub(super) const LEAST_POWER: i32 = -400;
+pub(super) const MIN_POWER_OF_TEN: i32 = -400;
 
 /// The ends of an interval and its middle, as integers in units of a power of two.
 #[derive(Clone, PartialEq, Eq)]
@@ -112,16 +112,16 @@ impl Interval {
     /// The largest power of ten that is not above the size of a number of the units.
     fn leading_power(&self, number: &IBig) -> i32 {
         /// A logarithm as near to an integer as this does not tell on which side it is.
-        const NEAR: f64 = 1e-6;
+        const INTEGER_TOLERANCE: f64 = 1e-6;
         let bits = bits(number);
         if bits == 0 {
-            return LEAST_POWER;
+            return MIN_POWER_OF_TEN;
         }
         let mantissa = leading_word(number, bits);
         let logarithm =
             mantissa.log10() + f64::from(bits + self.exponent) * std::f64::consts::LOG10_2;
         let mut power = logarithm.floor() as i32;
-        if (logarithm - logarithm.round()).abs() > NEAR {
+        if (logarithm - logarithm.round()).abs() > INTEGER_TOLERANCE {
             return power;
         }
         while self.compare(number, power) == Ordering::Less {
@@ -155,21 +155,21 @@ fn bits(number: &IBig) -> i32 {
 
 /// The size of an integer of so many bits as a number from 1/2 to 1, cut to the digits of f64.
 fn leading_word(number: &IBig, bits: i32) -> f64 {
-    const WORD: usize = 60;
+    const WORD_BITS: usize = 60;
     let size = number.clone().into_parts().1;
-    let surplus = (bits as usize).saturating_sub(WORD);
+    let surplus = (bits as usize).saturating_sub(WORD_BITS);
     let word = u64::try_from(size >> surplus).unwrap_or(u64::MAX);
     word as f64 / 2_f64.powi(bits - surplus as i32)
 }
 
 /// The integer and the power of two whose product a finite f64 is.
 fn split(word: f64) -> (i64, i32) {
-    const FRACTION: u32 = f64::MANTISSA_DIGITS - 1;
+    const FRACTION_BITS: u32 = f64::MANTISSA_DIGITS - 1;
     let bits = word.to_bits();
-    let fraction = (bits & ((1 << FRACTION) - 1)) as i64;
-    let exponent = (bits >> FRACTION & 0x7ff) as i32;
+    let fraction = (bits & ((1 << FRACTION_BITS) - 1)) as i64;
+    let exponent = (bits >> FRACTION_BITS & 0x7ff) as i32;
     let (mantissa, exponent) =
-        if exponent == 0 { (fraction, 1) } else { (fraction | 1 << FRACTION, exponent) };
+        if exponent == 0 { (fraction, 1) } else { (fraction | 1 << FRACTION_BITS, exponent) };
     (if word < 0.0 { -mantissa } else { mantissa }, exponent - 1075)
 }
 

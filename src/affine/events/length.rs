@@ -1,7 +1,7 @@
 //! Runs that are told their length: a time, a number of events or of forcing periods.
 
 use super::answer::Answer;
-use super::escalation::MOST_BITS;
+use super::escalation::MAX_BITS;
 use super::iterators::{Events, Samples};
 use super::proved::Proved;
 use super::request::{Horizon, Request};
@@ -13,10 +13,10 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The significant digits that are wanted of proved numbers, unless a run is told otherwise.
-const USUAL_DIGITS: usize = 17;
+const DEFAULT_DIGITS: usize = 17;
 
 /// The largest number of digits that may be wanted: bounds of errors are printed from f64.
-const MOST_DIGITS: usize = 300;
+const MAX_DIGITS: usize = 300;
 
 /// A run that has a start, and is told its length by one of its methods.
 #[must_use = "a run begins when it is told its length"]
@@ -42,7 +42,7 @@ impl Run<'_, Proved> {
     /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn digits(self, digits: usize) -> Self {
-        Self { digits: digits.min(MOST_DIGITS), ..self }
+        Self { digits: digits.min(MAX_DIGITS), ..self }
     }
 
     /// Takes at most so many bits: 106, which every run takes, to 3392, which it may take without
@@ -56,7 +56,7 @@ impl<'a, A: Answer> Run<'a, A> {
     /// A run of a system that is prepared, from a start if it has one.
     pub(super) fn of(prepared: &'a A::Prepared, start: Option<Cow<'a, StartPoint>>) -> Self {
         let tangents = Vec::new();
-        Self { prepared, start, digits: USUAL_DIGITS, most_bits: MOST_BITS, tangents }
+        Self { prepared, start, digits: DEFAULT_DIGITS, most_bits: MAX_BITS, tangents }
     }
 
     /// Differentiates the run by names: parameters of the system, or `start.STATE` for a state at

@@ -1,6 +1,6 @@
 //! A number with a bound of its error, as a value.
 
-use super::interval::{Interval, LEAST_POWER};
+use super::interval::{Interval, MIN_POWER_OF_TEN};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::number::{Bound, Number};
 use crate::numeric::two_word::TwoWord;
@@ -10,17 +10,17 @@ use dashu::integer::ops::BitTest;
 use std::fmt;
 
 /// The largest number of f64 whose sum a number is taken for: more than those of 3392 bits.
-const MOST_WORDS: usize = 80;
+const MAX_WORDS: usize = 80;
 
 /// Up to this exponent of two numbers are taken as they are; others are divided by a power of two,
 /// because f64 has no such exponents.
-const ORDINARY: i64 = 800;
+const MAX_UNSCALED_EXPONENT: i64 = 800;
 
 /// Beyond this exponent of two no digits are printed, because powers of ten become too long.
-const LONGEST: i64 = 4_000_000;
+const MAX_PRINTED_EXPONENT: i64 = 4_000_000;
 
 /// The digits of a number that is printed without a precision.
-const USUAL_DIGITS: usize = 17;
+const DEFAULT_DIGITS: usize = 17;
 
 /// A number that is known within a bound of its error: its true value lies between
 /// [`lower`](Self::lower) and [`upper`](Self::upper).
@@ -59,16 +59,16 @@ impl Proved {
     pub(super) fn of<T: Number>(value: T, error: T::Bound) -> Self {
         let size = value.bound().abs();
         let exponent = size.max(error).parts().1;
-        if exponent.abs() > LONGEST {
+        if exponent.abs() > MAX_PRINTED_EXPONENT {
             // The logarithm of two, rounded up.
             let power = ((exponent + 1) as f64 * 0.301_029_995_663_981_3).ceil() as i64 + 1;
             return Self(Content::Below(power));
         }
-        let shift = if exponent.abs() <= ORDINARY { 0 } else { exponent };
+        let shift = if exponent.abs() <= MAX_UNSCALED_EXPONENT { 0 } else { exponent };
         let words = words(value.scaled(-shift));
         let error = error.scaled(-shift).to_f64();
         if !(error.is_finite() && words.iter().all(|it| it.is_finite())) {
-            return Self(Content::Below(-i64::from(LEAST_POWER)));
+            return Self(Content::Below(-i64::from(MIN_POWER_OF_TEN)));
         }
         // What a value has below the exponents of f64 is an error, too.
         let error = if words.len() > 2 { error.abs() + f64::MIN_POSITIVE } else { error.abs() };
@@ -172,7 +172,7 @@ impl Proved {
 
 impl fmt::Display for Proved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let digits = f.precision().unwrap_or(USUAL_DIGITS).max(1);
+        let digits = f.precision().unwrap_or(DEFAULT_DIGITS).max(1);
         let text = self.to_digits(digits);
         let size = text.strip_prefix('-');
         f.pad_integral(size.is_none(), "", size.unwrap_or(&text))
@@ -181,7 +181,13 @@ impl fmt::Display for Proved {
 
 impl fmt::Debug for Proved {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} ({:e} +- {:e})", self.to_digits(USUAL_DIGITS), self.midpoint(), self.error())
+        write!(
+            f,
+            "{} ({:e} +- {:e})",
+            self.to_digits(DEFAULT_DIGITS),
+            self.midpoint(),
+            self.error()
+        )
     }
 }
 
@@ -209,7 +215,7 @@ fn words<T: Number>(mut value: T) -> Vec<f64> {
         if word == 0.0 {
             return words;
         }
-        if words.len() == MOST_WORDS {
+        if words.len() == MAX_WORDS {
             words.push(f64::NAN);
             return words;
         }
@@ -224,9 +230,9 @@ fn words<T: Number>(mut value: T) -> Vec<f64> {
 /// An integer times a power of two, rounded to f64.
 fn to_f64(number: &IBig, exponent: i32) -> f64 {
     /// More bits than f64 has; those beyond them only say on which side of a tie a number is.
-    const BITS: usize = 100;
+    const KEPT_BITS: usize = 100;
     let (sign, size) = number.clone().into_parts();
-    let surplus = size.bit_len().saturating_sub(BITS);
+    let surplus = size.bit_len().saturating_sub(KEPT_BITS);
     let short = &size >> surplus;
     let is_cut = (&short << surplus) != size;
     let number = IBig::from_parts(sign, (short << 1) + u8::from(is_cut));

@@ -11,11 +11,11 @@ use smallvec::SmallVec;
 type Hull<T> = [T; 9];
 
 /// The narrowest part of a piece that is examined without an evaluation.
-const NARROWEST: f64 = 1.0 / 65_536.0;
+const MIN_WIDTH: f64 = 1.0 / 65_536.0;
 
 /// The distance to a root at which the search of a place before it ends, relative to the root:
 /// Newton's method does the rest.
-const NEAR: f64 = 1e-2;
+const ROOT_TOLERANCE: f64 = 1e-2;
 
 /// The sign of a guard on a piece, as far as it is proved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,7 +140,7 @@ fn clear_share<T: Number>(hull: &Hull<T>, slack: T::Bound, zeros: usize) -> f64 
         if is_clear(&hull, slack, zeros) {
             continue;
         }
-        if width <= NARROWEST {
+        if width <= MIN_WIDTH {
             return from;
         }
         if let Some(share) = simple_root(&hull, slack, zeros) {
@@ -192,29 +192,29 @@ fn relative<B: Bound>(hull: [B; 9]) -> [f64; 9] {
 /// distance that is near enough; it begins at `place`, inside.
 #[inline]
 fn negative_until(hull: &[f64; 9], mut place: f64) -> f64 {
-    const STEPS: usize = 16;
+    const MAX_STEPS: usize = 16;
     /// A difference of order k is off by 2^k roundings of k sums, and has the weight C(8, k): 3^8
     /// in all, and eight times that.
     const ROUNDING: f64 = 8.0 * 6561.0 * f64::EPSILON;
     let powers = powers(hull);
     let rounding = ROUNDING * hull.iter().fold(0.0_f64, |size, it| size.larger(it.abs()));
     let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..STEPS {
+    for _ in 0..MAX_STEPS {
         let (value, slope) = value_and_slope(&powers, place);
         let value = value + rounding;
         let ahead = -value / slope;
         if value < 0.0 {
             low = place;
-            if ahead >= 0.0 && ahead < NEAR * place {
+            if ahead >= 0.0 && ahead < ROOT_TOLERANCE * place {
                 break;
             }
         } else {
             high = place;
         }
-        if high - low < NEAR * high {
+        if high - low < ROOT_TOLERANCE * high {
             break;
         }
-        let aim = (1.0 - 0.5 * NEAR) * (place + ahead);
+        let aim = (1.0 - 0.5 * ROOT_TOLERANCE) * (place + ahead);
         place = if low < aim && aim < high { aim } else { 0.5 * (low + high) };
     }
     low
@@ -239,7 +239,7 @@ fn value_and_slope(powers: &[f64; 9], x: f64) -> (f64, f64) {
 /// differences.
 #[inline]
 fn powers(hull: &[f64; 9]) -> [f64; 9] {
-    const CHOOSE: [f64; 9] = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
+    const BINOMIALS: [f64; 9] = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
     let mut powers = *hull;
     for order in 1..9 {
         for n in (order..9).rev() {
@@ -247,7 +247,7 @@ fn powers(hull: &[f64; 9]) -> [f64; 9] {
         }
     }
     for n in 0..9 {
-        powers[n] *= CHOOSE[n];
+        powers[n] *= BINOMIALS[n];
     }
     powers
 }

@@ -18,8 +18,8 @@ pub(super) const WINDOW: f64 = 1.0 / 16.0;
 /// of its terms' sizes: 2N additions and products, twice.
 const ROUNDINGS: f64 = 4.0 * ORDERS as f64 * f64::EPSILON;
 
-/// Room for the rounding of a remainder.
-const OUTWARD: f64 = 1.0 + 1e-12;
+/// The factor by which a remainder is raised against its rounding.
+const OUTWARD_FACTOR: f64 = 1.0 + 1e-12;
 
 /// A guard after a point, divided by the power of the time with which it begins; N is the number of
 /// derivatives that are used, the value and the one that is bounded included.
@@ -61,19 +61,19 @@ impl AddedTerm {
 impl<const N: usize> Quotient<N> {
     /// An upper bound of a sum of powers at the end of the largest window, relative to its value at
     /// the root.
-    const WIDER: f64 = power(1.0 + WINDOW, N - 1);
+    const WINDOW_GROWTH: f64 = power(1.0 + WINDOW, N - 1);
 
     /// The factors of the terms in the slope, times the time.
-    pub const SLOPE: [f64; N] = falling(1);
+    pub const SLOPE_FACTORS: [f64; N] = falling(1);
 
     /// The factors of the terms in the second derivative, times the square of the time.
-    pub const BEND: [f64; N] = falling(2);
+    pub const BEND_FACTORS: [f64; N] = falling(2);
 
     /// The factors of the terms in the third derivative, times the cube of the time.
-    const THIRD: [f64; N] = falling(3);
+    const THIRD_FACTORS: [f64; N] = falling(3);
 
     /// The inverses of the binomial coefficients.
-    const SHARES: [f64; N] = inverse_binomials();
+    const INVERSE_BINOMIALS: [f64; N] = inverse_binomials();
 
     /// The quotient of a guard with these orders, positive outside, and the sizes of what they are
     /// summed from; `margin` is what rounding does to them relative to these sizes, `slack` what it
@@ -107,8 +107,8 @@ impl<const N: usize> Quotient<N> {
     #[inline]
     pub fn step(&self, root: f64) -> (f64, f64) {
         let terms = self.terms(&powers(root));
-        let (value, slope) = (sum(&terms), sum(&weighted(&terms, &Self::SLOPE)));
-        let bend = 0.5 * sum(&weighted(&terms, &Self::BEND));
+        let (value, slope) = (sum(&terms), sum(&weighted(&terms, &Self::SLOPE_FACTORS)));
+        let bend = 0.5 * sum(&weighted(&terms, &Self::BEND_FACTORS));
         (value * slope / (slope * slope - value * bend), slope)
     }
 
@@ -128,17 +128,18 @@ impl<const N: usize> Quotient<N> {
         let powers = powers(root);
         let terms = self.terms(&powers);
         let value = sum(&terms) + added.value;
-        let slope = sum(&weighted(&terms, &Self::SLOPE)) + added.slope;
-        let bend = sum(&weighted(&terms, &Self::BEND));
-        let third = sum(&weighted(&terms.map(f64::abs), &Self::THIRD));
-        let remainder = Self::WIDER * self.remainder(last, &powers);
-        let rounding = Self::WIDER * self.rounding(&powers);
+        let slope = sum(&weighted(&terms, &Self::SLOPE_FACTORS)) + added.slope;
+        let bend = sum(&weighted(&terms, &Self::BEND_FACTORS));
+        let third = sum(&weighted(&terms.map(f64::abs), &Self::THIRD_FACTORS));
+        let remainder = Self::WINDOW_GROWTH * self.remainder(last, &powers);
+        let rounding = Self::WINDOW_GROWTH * self.rounding(&powers);
         let open = value.abs() + remainder + rounding + added.off[0];
         let room = 2.0 * open / slope + 8.0 * f64::EPSILON;
         let window = 2.0 * room;
         // The remainder is r/s^z with |r'| <= (N - 1) |r|/s, and each power has at most N - 2 times
         // its error in its slope.
-        let change = window * (bend.abs() + 0.5 * window * Self::WIDER * third + added.bend)
+        let change = window
+            * (bend.abs() + 0.5 * window * Self::WINDOW_GROWTH * third + added.bend)
             + added.off[1]
             + (N + self.zeros) as f64 * remainder
             + N as f64 * rounding;
@@ -162,7 +163,7 @@ impl<const N: usize> Quotient<N> {
     pub fn hull(&self, powers: &[f64; N], last: f64) -> [f64; N] {
         let mut hull = self.terms(powers);
         hull[N - 1 - self.zeros] += self.remainder(last, powers);
-        hull = weighted(&hull, &Self::SHARES);
+        hull = weighted(&hull, &Self::INVERSE_BINOMIALS);
         // Sums of powers with binomial weights are Bernstein coefficients.
         for order in (1..N).rev() {
             for n in order..N {
@@ -182,7 +183,7 @@ impl<const N: usize> Quotient<N> {
     /// derivative.
     #[inline]
     fn remainder(&self, last: f64, powers: &[f64; N]) -> f64 {
-        let factor = OUTWARD * f64::inverse_factorial(N - 1);
+        let factor = OUTWARD_FACTOR * f64::inverse_factorial(N - 1);
         factor * last * powers[N - 1 - self.zeros]
     }
 
@@ -198,17 +199,17 @@ impl<const N: usize> Quotient<N> {
 /// the slope is not positive.
 #[inline(always)]
 pub(super) fn root_by(rough: f64, step: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
-    const STEPS: usize = 8;
-    const SHORT: f64 = 1e-3;
+    const MAX_STEPS: usize = 8;
+    const STEP_TOLERANCE: f64 = 1e-3;
     let mut root = rough;
-    for _ in 0..STEPS {
+    for _ in 0..MAX_STEPS {
         let (step, slope) = step(root);
         let rises = slope > 0.0 && step < 0.5;
         if !rises {
             return None;
         }
         root *= 1.0 - step.larger(-0.5);
-        if step.abs() <= SHORT {
+        if step.abs() <= STEP_TOLERANCE {
             return Some(root);
         }
     }

@@ -15,7 +15,7 @@ use crate::numeric::exponential::exp;
 
 /// The relative error of a decaying exponential by the rounding of its rate and its exponent:
 /// beyond the exponent 745 the exponential is zero.
-const OFF: f64 = 1e-9;
+const DECAY_ERROR: f64 = 1e-9;
 
 /// The decaying term of a guard, with the sign that makes the guard positive outside its mode.
 #[derive(Clone, Copy, Debug)]
@@ -48,10 +48,10 @@ impl DecayTerm {
         let share = fallen(step);
         let falls = powers::<N>(share);
         if self.value > 0.0 {
-            let value = self.value * (1.0 + OFF);
+            let value = self.value * (1.0 + DECAY_ERROR);
             hull.iter_mut().zip(falls).for_each(|(entry, fallen)| *entry += value * fallen);
         } else {
-            let end = self.value * (1.0 - OFF) * falls[N - 1];
+            let end = self.value * (1.0 - DECAY_ERROR) * falls[N - 1];
             for (n, entry) in hull.iter_mut().enumerate() {
                 *entry += end * (1.0 + step * (N - 1 - n) as f64);
             }
@@ -63,8 +63,8 @@ impl DecayTerm {
 #[inline]
 fn fallen(x: f64) -> f64 {
     /// An exponent from which on the exponential is below half of the smallest number.
-    const GONE: f64 = 746.0;
-    if x >= GONE { 0.0 } else { exp(-x) }
+    const MAX_EXPONENT: f64 = 746.0;
+    if x >= MAX_EXPONENT { 0.0 } else { exp(-x) }
 }
 
 impl<const N: usize> QuotientWithDecay<N> {
@@ -81,8 +81,9 @@ impl<const N: usize> QuotientWithDecay<N> {
         let terms = self.rest.terms(&powers(root));
         let (decay, turn) = (self.decay.at(root), self.decay.rate * root);
         let value = sum(&terms) + decay;
-        let slope = sum(&weighted(&terms, &Quotient::<N>::SLOPE)) - turn * decay;
-        let bend = 0.5 * (sum(&weighted(&terms, &Quotient::<N>::BEND)) + turn * turn * decay);
+        let slope = sum(&weighted(&terms, &Quotient::<N>::SLOPE_FACTORS)) - turn * decay;
+        let bend =
+            0.5 * (sum(&weighted(&terms, &Quotient::<N>::BEND_FACTORS)) + turn * turn * decay);
         (value * slope / (slope * slope - value * bend), slope)
     }
 
@@ -91,8 +92,8 @@ impl<const N: usize> QuotientWithDecay<N> {
     #[inline]
     pub fn crosses(&self, root: f64, last: f64) -> Option<f64> {
         let (decay, turn) = (self.decay.at(root), self.decay.rate * root);
-        let most = self.decay.at((1.0 - WINDOW) * root).abs() * (1.0 + OFF);
-        let off = OFF * decay.abs();
+        let most = self.decay.at((1.0 - WINDOW) * root).abs() * (1.0 + DECAY_ERROR);
+        let off = DECAY_ERROR * decay.abs();
         let added = AddedTerm {
             value: decay,
             slope: -turn * decay,

@@ -18,20 +18,21 @@ use crate::crossing::certificate::MIDDLE;
 use crate::numeric::number::{Bound, Number};
 
 /// The share of a guard's size that the remainder of a piece may have.
-const REMAINDER: f64 = 3e-2;
+const MAX_REMAINDER: f64 = 3e-2;
 
-/// The share of a guard's size that has to be left when its fastest blocks are enclosed.
-const LEFT: f64 = 0.25;
+/// Fast blocks may be enclosed instead of expanded only if at least this share of the guard's size
+/// remains between guard and zero.
+const MIN_CLEARANCE: f64 = 0.25;
 
-/// The share of a guard's size that has to be left where all but a constant is enclosed: rounding
-/// is far below it.
-const CLOSE: f64 = 1e-3;
+/// The clearance that suffices where all but a constant is enclosed, as a share of the guard's
+/// size: rounding is far below it.
+const MIN_CONSTANT_CLEARANCE: f64 = 1e-3;
 
 /// The share of its largest part that a guard near zero is taken to have.
-const SMALLEST: f64 = 1e-3;
+const MIN_RELATIVE_SIZE: f64 = 1e-3;
 
-/// Room for the rounding of a part.
-const OUTWARD: f64 = 1.0 + 1e-12;
+/// The factor by which a part is raised against its rounding.
+const OUTWARD_FACTOR: f64 = 1.0 + 1e-12;
 
 /// The lengths of pieces on which a guard's sign may be proved.
 #[derive(Clone, Copy, Debug, Default)]
@@ -148,8 +149,9 @@ fn enclose<T: Number>(
     (begin, rests, longest): (T::Bound, &Vector<T::Bound>, f64),
     reach: &mut Reach,
 ) {
-    /// A rest that is smaller by less makes a piece longer by less than a third.
-    const MUCH: f64 = 0.1;
+    /// The largest ratio of a new rest to the best that is worth another reach: a larger one makes
+    /// a piece longer by less than a third.
+    const MAX_REST_RATIO: f64 = 0.1;
     let (mut value, mut best) = (begin, rests[0]);
     for (k, part) in row.parts.iter().enumerate() {
         let own = part_of(row, part, track, &left.modal.y);
@@ -160,9 +162,10 @@ fn enclose<T: Number>(
         };
         let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { T::Bound::ZERO };
         let is_constant = || row.parts[k + 1..].iter().all(|it| it.norms[1] == 0.0);
-        let share = if rest == 0.0 && is_constant() { CLOSE } else { LEFT };
+        let share =
+            if rest == 0.0 && is_constant() { MIN_CONSTANT_CLEARANCE } else { MIN_CLEARANCE };
         if value > begin * share {
-            if part.growth == BlockGrowth::Decaying && rest < best * MUCH {
+            if part.growth == BlockGrowth::Decaying && rest < best * MAX_REST_RATIO {
                 let from = row.first_column(k + 1);
                 let slope = row.first_orders(&left.modal.y, from)[1].bound() * track.outward;
                 let rate = (part.norms[1] / part.norms[0]).to_f64();
@@ -173,8 +176,8 @@ fn enclose<T: Number>(
             }
             break;
         }
-        if rest < best * MUCH {
-            let root = (-value * (REMAINDER * MIDDLE) / rest).approximate_root(8);
+        if rest < best * MAX_REST_RATIO {
+            let root = (-value * (MAX_REMAINDER * MIDDLE) / rest).approximate_root(8);
             let length = root.to_f64().min(longest);
             if length > reach.length {
                 best = rest;
@@ -224,7 +227,7 @@ fn eighth<T: Number>(
             sum += part.bound(8, length, &left.norms);
         }
     }
-    sum * OUTWARD
+    sum * OUTWARD_FACTOR
 }
 
 /// Upper bounds of the first blocks' part in a guard at both ends of a piece; between them the part
@@ -235,9 +238,9 @@ fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize
     for part in &row.parts[..cut] {
         let [from, to] = [&ends.left, &ends.right].map(|it| part_of(row, part, track, &it.modal.y));
         let own = match part.growth {
-            BlockGrowth::Decaying if from > 0.0 => [from * OUTWARD, to * OUTWARD],
-            BlockGrowth::Decaying => [to / OUTWARD; 2],
-            _ => [part.norms[0] * ends.left.norms[part.subspace] * OUTWARD; 2],
+            BlockGrowth::Decaying if from > 0.0 => [from * OUTWARD_FACTOR, to * OUTWARD_FACTOR],
+            BlockGrowth::Decaying => [to / OUTWARD_FACTOR; 2],
+            _ => [part.norms[0] * ends.left.norms[part.subspace] * OUTWARD_FACTOR; 2],
         };
         raise = [raise[0] + own[0], raise[1] + own[1]];
     }
@@ -261,16 +264,16 @@ pub(super) fn part_of<T: Number>(
 /// where they have grown so much that rounding would hide the beginning.
 #[inline]
 fn polynomial_reach<B: Bound>(orders: &[B; 4], zeros: usize, slack: B) -> f64 {
-    const GROWTH: f64 = 1e6;
+    const MAX_GROWTH: f64 = 1e6;
     let [value, slope, bend, third] = *orders;
     let size = value.abs().max(slack);
     if zeros > 0 || size == 0.0 {
         return f64::INFINITY;
     }
     let rise = if value < -slack { rise([value, slope, bend * 0.5]) } else { B::INFINITY };
-    let by_slope = size * GROWTH / slope.abs();
-    let by_bend = (size * GROWTH / bend.abs()).approximate_root(2);
-    let by_third = (size * GROWTH / third.abs()).approximate_root(3);
+    let by_slope = size * MAX_GROWTH / slope.abs();
+    let by_bend = (size * MAX_GROWTH / bend.abs()).approximate_root(2);
+    let by_third = (size * MAX_GROWTH / third.abs()).approximate_root(3);
     (rise * 1.25).min(by_slope).min(by_bend).min(by_third).to_f64()
 }
 
@@ -291,7 +294,7 @@ fn length_after<B: Bound>(lead: B, zeros: usize, eighth: B) -> f64 {
     }
     // The interpolant takes at most seven derivatives of the guard.
     let zeros = zeros.min(7);
-    let power = lead.abs() * (REMAINDER * f64::inverse_factorial(zeros) * MIDDLE) / eighth;
+    let power = lead.abs() * (MAX_REMAINDER * f64::inverse_factorial(zeros) * MIDDLE) / eighth;
     power.approximate_root(8 - zeros).to_f64()
 }
 
@@ -305,9 +308,9 @@ fn length<B: Bound>(orders: &[B; 4], eighth: B, zeros: usize, size: impl Fn() ->
     if !eighth.is_finite() {
         return 0.0;
     }
-    let room = B::of(REMAINDER * MIDDLE) / eighth;
+    let room = B::of(MAX_REMAINDER * MIDDLE) / eighth;
     let [value, slope, bend, _] = orders.map(Bound::abs);
-    let smallest = size() * SMALLEST;
+    let smallest = size() * MIN_RELATIVE_SIZE;
     let by_value = if zeros > 0 { smallest } else { value.max(smallest) };
     let by_slope = if zeros > 1 { B::ZERO } else { (room * 0.5 * slope).approximate_root(7) };
     let by_bend = (room * 0.125 * bend).approximate_root(6);

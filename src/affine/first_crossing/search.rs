@@ -21,12 +21,12 @@ use crate::numeric::number::{Bound, Number};
 use std::ops::ControlFlow;
 
 /// The largest number of pieces from one event to the next, of all guards together: about a
-/// second's work in 106 bits. A mode of many guards has [`FEWEST_PIECES`] nevertheless.
-const MOST_PIECES: u64 = 1 << 18;
-const FEWEST_PIECES: u64 = 1 << 14;
+/// second's work in 106 bits. A mode of many guards has [`MIN_PIECES`] nevertheless.
+const MAX_PIECES: u64 = 1 << 18;
+const MIN_PIECES: u64 = 1 << 14;
 
-/// A piece that has to be divided counts as this many more.
-const OPEN: u64 = 8;
+/// The number of pieces that dividing one counts as.
+const DIVISION_PIECES: u64 = 8;
 
 /// The outcome of a search for the first crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         // After a crossing of a watched guard the piece in which it lies is continued.
         let mut is_ahead = ends.left.time < ends.passed.until;
         let guards = live(tracks).count().max(1) as u64;
-        let mut work_left = (MOST_PIECES / guards).max(FEWEST_PIECES);
+        let mut work_left = (MAX_PIECES / guards).max(MIN_PIECES);
         while work_left > 0 {
             work_left -= 1;
             if ends.left.time >= limit {
@@ -83,7 +83,7 @@ impl<T: Number> GuardedSegment<'_, T> {
                 clear_zeros(tracks);
                 continue;
             };
-            work_left = work_left.saturating_sub(OPEN);
+            work_left = work_left.saturating_sub(DIVISION_PIECES);
             match self.after_open_piece(tracks, ends, share, span, work) {
                 ControlFlow::Break(outcome) => return outcome,
                 ControlFlow::Continue(factor) => most = factor * length,

@@ -47,7 +47,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         [from, limit]: [T; 2],
         work: &mut SearchWork,
     ) -> bool {
-        const ROUNDS: usize = 128;
+        const MAX_ROUNDS: usize = 128;
         // A crossing exactly at the limit counts.
         let room = T::of_bound(T::unit() * 4.0 * limit.bound());
         let n = crossing.guards.trailing_zeros() as usize;
@@ -58,7 +58,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let inside = low <= crossing.time && crossing.time <= high;
         let mut bracket = Bracket { low, high, last: T::Bound::INFINITY };
         let mut next = if inside { crossing.time } else { bracket.middle() };
-        for _ in 0..ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             self.evaluate_guard(n, point, next, work);
             next = match self.next_to_root(n, &tracks[n], point, &mut bracket) {
                 Next::Evaluate(time) => time,
@@ -88,7 +88,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     ) -> Next<T> {
         /// The share of a point's time beyond which a cubic does not give the step to the last
         /// digit.
-        const FAR: f64 = 1e-4;
+        const MAX_STEP_SHARE: f64 = 1e-4;
         // A value within a few roundings of its terms shows no better time.
         let noise = T::unit() * 4.0 * self.rows[n].size(&point.modal.y);
         let orders = outward(&point.orders[n], track);
@@ -102,7 +102,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         if bracket.low <= end && end <= bracket.high && self.is_last(&orders, step) {
             return Next::Step(step);
         }
-        if step.bound().abs() > point.time.bound() * FAR {
+        if step.bound().abs() > point.time.bound() * MAX_STEP_SHARE {
             step = self.root(n, track, point).0;
         }
         let (mut better, mut size) = (point.time + step, step.bound().abs());
@@ -126,26 +126,26 @@ impl<T: Number> GuardedSegment<'_, T> {
 
     /// Whether a step to a crossing is so short that two derivatives of all co-ordinates do what
     /// another evaluation would do: what the third adds is less than rounding, and so is what the
-    /// fourth of a guard that nearly touches adds to the step, turn^2 BEND/24 of it. Errors are
-    /// followed from one evaluation to the next.
+    /// fourth of a guard that nearly touches adds to the step, turn^2 MAX_SLOPE_CHANGE/24 of it.
+    /// Errors are followed from one evaluation to the next.
     #[inline]
     fn is_last(&self, orders: &[T; 4], step: T) -> bool {
-        /// The share by which the guard's slope may change.
-        const BEND: f64 = 1e-5;
+        /// The largest relative change of the guard's slope over the step.
+        const MAX_SLOPE_CHANGE: f64 = 1e-5;
         let turn = (self.flow.speed * step.to_f64()).abs();
         let is_small = T::unit() * 0.25 >= turn * turn * turn;
         let rises = orders[1].bound() > 0.0;
-        rises && is_small && is_straight(orders, step, BEND) && !self.follows_errors()
+        rises && is_small && is_straight(orders, step, MAX_SLOPE_CHANGE) && !self.follows_errors()
     }
 }
 
 /// The step from a point to a root, where it is so short that a cubic gives it; zero elsewhere.
 #[inline]
 fn remaining<T: Number>(orders: &[T; 4]) -> T {
-    /// The share by which the slope may change.
-    const SHORT: f64 = 1e-2;
+    /// The largest relative change of the slope over the step.
+    const MAX_SLOPE_CHANGE: f64 = 1e-2;
     let step = newton(orders);
-    if is_straight(orders, step, SHORT) { step } else { T::zero() }
+    if is_straight(orders, step, MAX_SLOPE_CHANGE) { step } else { T::zero() }
 }
 
 /// Whether a guard's slope changes by at most a share on a step.

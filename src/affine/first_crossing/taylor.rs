@@ -13,22 +13,23 @@ use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
 use crate::affine::guards::track::{SearchWork, Track, live, outward};
 use crate::numeric::number::{Bound, Number};
 
-/// The smaller number of derivatives that are used, the value and the one that is bounded included.
-pub(super) const FEW: usize = 9;
+/// The terms of the shorter polynomial: derivatives, the value and the one that is bounded
+/// included.
+pub(super) const SHORT_TERMS: usize = 9;
 
-/// The larger number of derivatives that are used.
-pub(super) const ALL: usize = ORDERS;
+/// The terms of the longer polynomial, counted in the same way.
+pub(super) const LONG_TERMS: usize = ORDERS;
 
-/// The largest share of a guard's leading term at which the remainder after [`FEW`] derivatives
-/// leaves some digits of the root.
-pub(super) const LITTLE: f64 = 1e-3;
+/// The largest share of a guard's leading term at which the remainder after [`SHORT_TERMS`]
+/// derivatives leaves some digits of the root.
+pub(super) const MAX_SHORT_REMAINDER: f64 = 1e-3;
 
-/// The share of a guard's leading term beyond which the derivatives after [`FEW`] give so many more
-/// digits of the root that one evaluation is enough.
-pub(super) const NOTHING: f64 = 1e-7;
+/// The share of a guard's leading term beyond which the derivatives after [`SHORT_TERMS`] give so
+/// many more digits of the root that one evaluation is enough.
+pub(super) const MAX_UNREFINED_REMAINDER: f64 = 1e-7;
 
-/// The share of a guard's leading term beyond which even [`ALL`] derivatives prove nothing.
-const MUCH: f64 = 10.0;
+/// The share of a guard's leading term beyond which even [`LONG_TERMS`] derivatives prove nothing.
+const MAX_LONG_REMAINDER: f64 = 10.0;
 
 /// For each kind of Taylor polynomials, the number of attempts in a mode since they last proved a
 /// crossing: of whole guards at the entry and later, and of guards without a decaying term at the
@@ -51,14 +52,14 @@ impl FailedAttempts {
     const FAILURES_BEFORE_PAUSE: u8 = 2;
     /// The pauses after so many failures, in attempts: those without a decaying term seldom succeed
     /// where they once failed.
-    const PAUSE: [u8; 2] = [16, 64];
+    const PAUSE_ATTEMPTS: [u8; 2] = [16, 64];
 
     /// Whether an attempt is to be made: at first, and then once after each pause.
     #[inline]
     pub(super) fn is_due(&mut self, attempt: Attempt, is_later: bool) -> bool {
         let count = &mut self.0[Self::at(attempt, is_later)];
         *count += 1;
-        if *count > Self::FAILURES_BEFORE_PAUSE + Self::PAUSE[attempt as usize] {
+        if *count > Self::FAILURES_BEFORE_PAUSE + Self::PAUSE_ATTEMPTS[attempt as usize] {
             *count = Self::FAILURES_BEFORE_PAUSE;
         }
         *count <= Self::FAILURES_BEFORE_PAUSE
@@ -96,15 +97,16 @@ impl<T: Number> GuardedSegment<'_, T> {
         let zeros = tracks[n].zeros;
         let power = |sum: f64, last: usize| (1..=last).fold(sum, |sum, k| sum * rough / k as f64);
         let lead = power(at.orders[n][zeros].to_f64().abs(), zeros);
-        let rest = power(self.rows[n].bound(FEW - 1, &at.norms, rough).to_f64(), FEW - 1);
-        let crossing = if rest <= LITTLE * lead {
-            let mut crossing = self.proved::<FEW>(n, tracks, at, rough)?;
-            if rest > NOTHING * lead {
+        let rest =
+            power(self.rows[n].bound(SHORT_TERMS - 1, &at.norms, rough).to_f64(), SHORT_TERMS - 1);
+        let crossing = if rest <= MAX_SHORT_REMAINDER * lead {
+            let mut crossing = self.proved::<SHORT_TERMS>(n, tracks, at, rough)?;
+            if rest > MAX_UNREFINED_REMAINDER * lead {
                 self.refine(n, at, &mut crossing);
             }
             crossing
-        } else if rest <= MUCH * lead {
-            self.proved::<ALL>(n, tracks, at, rough)?
+        } else if rest <= MAX_LONG_REMAINDER * lead {
+            self.proved::<LONG_TERMS>(n, tracks, at, rough)?
         } else {
             return None;
         };
@@ -143,10 +145,10 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// Improves the time of a crossing by all derivatives of its guard.
     #[inline]
     fn refine(&self, n: usize, at: &GuardedPoint<T>, crossing: &mut FirstCrossing<T>) {
-        let orders = self.rows[n].rounded_orders::<ALL>(&at.modal.y, 0);
+        let orders = self.rows[n].rounded_orders::<LONG_TERMS>(&at.modal.y, 0);
         let after = crossing.time - at.time;
         let root = after.to_f64();
-        let (step, _) = Quotient::of([&orders, &[0.0; ALL]], 0, 0.0, [0.0; 2]).step(root);
+        let (step, _) = Quotient::of([&orders, &[0.0; LONG_TERMS]], 0, 0.0, [0.0; 2]).step(root);
         let better = crossing.time - T::exact(step * root);
         let [low, high] = crossing.between;
         if low < better && better < high {
@@ -228,7 +230,7 @@ pub(super) fn rough_root<T: Number>(track: &Track, orders: &[T; 4]) -> f64 {
 /// where that stays negative, its last root. Infinite, or no number, where there is none.
 #[inline]
 pub(super) fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
-    const STEPS: usize = 4;
+    const MAX_STEPS: usize = 4;
     let is_below = value < 0.0;
     if !is_below {
         return f64::INFINITY;
@@ -242,7 +244,7 @@ pub(super) fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
     let share = |of: f64| (-of).max(0.0) / third;
     let mut at =
         1.1 * (share(value).approximate_root(3) + share(slope).approximate_root(2) + share(bend));
-    for _ in 0..STEPS {
+    for _ in 0..MAX_STEPS {
         let cubic = value + at * (slope + at * (bend + at * third));
         at -= cubic / (slope + at * (2.0 * bend + 3.0 * at * third));
     }

@@ -9,7 +9,8 @@ use super::quotient::{Quotient, WINDOW};
 use super::quotient_with_decay::{DecayTerm, QuotientWithDecay};
 use super::reach::part_of;
 use super::taylor::{
-    ALL, Attempt, FEW, FailedAttempts, LITTLE, NOTHING, positive_root, rough_root,
+    Attempt, FailedAttempts, LONG_TERMS, MAX_SHORT_REMAINDER, MAX_UNREFINED_REMAINDER, SHORT_TERMS,
+    positive_root, rough_root,
 };
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
 use crate::affine::guards::track::{SearchWork, Track, live, outward};
@@ -51,15 +52,15 @@ impl<T: Number> GuardedSegment<'_, T> {
         at: &GuardedPoint<T>,
     ) -> Option<FirstCrossing<T>> {
         let (n, rough, lead) = self.nearest_with_decay(tracks, at)?;
-        let power = |sum: f64| (1..FEW).fold(sum, |sum, k| sum * rough / k as f64);
-        let rest = power(self.rest_bound(n, FEW - 1, at, rough));
+        let power = |sum: f64| (1..SHORT_TERMS).fold(sum, |sum, k| sum * rough / k as f64);
+        let rest = power(self.rest_bound(n, SHORT_TERMS - 1, at, rough));
         // More derivatives would make longer chains of sums than the evaluation that they save.
-        let is_small = rest <= LITTLE * lead;
+        let is_small = rest <= MAX_SHORT_REMAINDER * lead;
         if !is_small {
             return None;
         }
         let mut crossing = self.proved_with_decay(n, tracks, at, rough)?;
-        if rest > NOTHING * lead {
+        if rest > MAX_UNREFINED_REMAINDER * lead {
             self.refine_with_decay(n, &tracks[n], at, &mut crossing);
         }
         Some(crossing)
@@ -112,9 +113,10 @@ impl<T: Number> GuardedSegment<'_, T> {
         at: &GuardedPoint<T>,
         rough: f64,
     ) -> Option<FirstCrossing<T>> {
-        let guard = self.quotient_with_decay::<FEW>(n, &tracks[n], at)?;
+        let guard = self.quotient_with_decay::<SHORT_TERMS>(n, &tracks[n], at)?;
         let after = guard.root(rough)?;
-        let room = guard.crosses(after, self.rest_bound(n, FEW - 1, at, (1.0 + WINDOW) * after))?;
+        let room = guard
+            .crosses(after, self.rest_bound(n, SHORT_TERMS - 1, at, (1.0 + WINDOW) * after))?;
         let end = (1.0 + room) * after;
         let mut guards = 1 << n;
         for (other, track) in live(tracks).filter(|(other, _)| *other != n) {
@@ -122,9 +124,9 @@ impl<T: Number> GuardedSegment<'_, T> {
                 guards |= 1 << other;
                 continue;
             }
-            let stays_negative = self.stays_negative::<FEW>(other, track, at, end)
-                || self.quotient_with_decay::<FEW>(other, track, at).is_some_and(|guard| {
-                    guard.is_negative(end, self.rest_bound(other, FEW - 1, at, end))
+            let stays_negative = self.stays_negative::<SHORT_TERMS>(other, track, at, end)
+                || self.quotient_with_decay::<SHORT_TERMS>(other, track, at).is_some_and(|guard| {
+                    guard.is_negative(end, self.rest_bound(other, SHORT_TERMS - 1, at, end))
                 });
             if !stays_negative {
                 return None;
@@ -144,7 +146,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         at: &GuardedPoint<T>,
         crossing: &mut FirstCrossing<T>,
     ) {
-        let Some(guard) = self.quotient_with_decay::<ALL>(n, track, at) else { return };
+        let Some(guard) = self.quotient_with_decay::<LONG_TERMS>(n, track, at) else { return };
         let root = (crossing.time - at.time).to_f64();
         let better = crossing.time - T::exact(guard.step(root).0 * root);
         let [low, high] = crossing.between;
@@ -172,9 +174,10 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// A bound of a derivative of a guard without its decaying term.
     #[inline]
     fn rest_bound(&self, n: usize, order: usize, at: &GuardedPoint<T>, length: f64) -> f64 {
-        /// Room for the rounding of a sum.
-        const OUTWARD: f64 = 1.0 + 1e-12;
+        /// The factor by which a sum is raised against its rounding.
+        const OUTWARD_FACTOR: f64 = 1.0 + 1e-12;
         let rest = &self.rows[n].parts[1..];
-        rest.iter().map(|part| part.bound(order, length, &at.norms).to_f64()).sum::<f64>() * OUTWARD
+        rest.iter().map(|part| part.bound(order, length, &at.norms).to_f64()).sum::<f64>()
+            * OUTWARD_FACTOR
     }
 }

@@ -5,8 +5,9 @@ use crate::affine::arithmetic::vector::rounded;
 use crate::affine::model::rational::Rational;
 use crate::numeric::number::{Bound, Number};
 
-/// Room for the roundings of a bound itself, a few of which are made in each operation.
-const OUTWARD: f64 = 1.0 + 16.0 * f64::EPSILON;
+/// The factor by which a bound is raised against its own roundings, a few of which are made in each
+/// operation.
+const OUTWARD_FACTOR: f64 = 1.0 + 16.0 * f64::EPSILON;
 
 /// All numbers within a radius of a middle.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +41,7 @@ impl<T: Number> Ball<T> {
     /// The result of an operation on middles, with the rounding that this made.
     fn computed(middle: T, radius: T::Bound) -> Self {
         let rounding = T::unit() * 2.0 * middle.bound().abs() + T::Bound::LAST_WORD;
-        Self { middle, radius: (radius + rounding) * OUTWARD }
+        Self { middle, radius: (radius + rounding) * OUTWARD_FACTOR }
     }
 
     fn is_zero(&self) -> bool {
@@ -49,13 +50,13 @@ impl<T: Number> Ball<T> {
 
     /// A bound of the size of every number of the ball.
     pub fn size(&self) -> T::Bound {
-        (self.middle.bound().abs() + self.radius) * OUTWARD
+        (self.middle.bound().abs() + self.radius) * OUTWARD_FACTOR
     }
 
     /// Whether all numbers of the ball have one sign: then whether they are positive.
     pub fn sign(&self) -> Option<bool> {
         let size = self.middle.bound().abs();
-        (size > self.radius * OUTWARD && size.is_finite()).then(|| self.middle > T::zero())
+        (size > self.radius * OUTWARD_FACTOR && size.is_finite()).then(|| self.middle > T::zero())
     }
 
     pub fn plus(self, other: Self) -> Self {
@@ -88,21 +89,21 @@ impl<T: Number> Ball<T> {
             return Some(Self::zero());
         }
         let quotient = self.middle / divisor.middle;
-        let least = divisor.middle.bound().abs() - divisor.radius * OUTWARD;
+        let least = divisor.middle.bound().abs() - divisor.radius * OUTWARD_FACTOR;
         let size = quotient.bound().abs();
-        let radius = (self.radius + size * divisor.radius) / least * OUTWARD;
-        Some(Self::computed(quotient, radius * OUTWARD))
+        let radius = (self.radius + size * divisor.radius) / least * OUTWARD_FACTOR;
+        Some(Self::computed(quotient, radius * OUTWARD_FACTOR))
     }
 
     /// The number times a power of two.
     pub fn scaled(self, exponent: i64) -> Self {
-        let radius = (self.radius.scaled(exponent) + T::Bound::LAST_WORD) * OUTWARD;
+        let radius = (self.radius.scaled(exponent) + T::Bound::LAST_WORD) * OUTWARD_FACTOR;
         let radius = if self.is_zero() { T::Bound::ZERO } else { radius };
         Self { middle: self.middle.scaled(exponent), radius }
     }
 
     pub fn widened(self, radius: T::Bound) -> Self {
-        Self { radius: (self.radius + radius) * OUTWARD, ..self }
+        Self { radius: (self.radius + radius) * OUTWARD_FACTOR, ..self }
     }
 }
 

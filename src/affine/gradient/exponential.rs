@@ -6,11 +6,11 @@ use crate::numeric::number::{Bound, Number};
 
 type Matrix<T> = Vec<Vec<Jet<T>>>;
 
-/// The summed part of the matrix has at most a norm of 2 to the power of minus this.
-const SMALL: i64 = 4;
+/// The summed part of the matrix has a norm of at most 2 to the power of minus this.
+const NORM_BITS: i64 = 4;
 
 /// More squarings than this are not tried: every digit of a result would be gone.
-const MOST_SQUARINGS: i64 = 4096;
+const MAX_SQUARINGS: i64 = 4096;
 
 /// exp(matrix * time), with its derivative; none where the matrix is too large.
 pub fn exponential<T: Number>(matrix: &[Vec<Jet<T>>], time: Ball<T>) -> Option<Matrix<T>> {
@@ -21,8 +21,8 @@ pub fn exponential<T: Number>(matrix: &[Vec<Jet<T>>], time: Ball<T>) -> Option<M
     if !norm.is_finite() {
         return None;
     }
-    let squarings = (norm.parts().1 + 1 + SMALL).max(0);
-    if squarings > MOST_SQUARINGS {
+    let squarings = (norm.parts().1 + 1 + NORM_BITS).max(0);
+    if squarings > MAX_SQUARINGS {
         return None;
     }
     let small: Matrix<T> =
@@ -40,7 +40,7 @@ fn norm<T: Number>(matrix: &[Vec<Jet<T>>], part: fn(&Jet<T>) -> &Ball<T>) -> T::
     sums.fold(T::Bound::ZERO, T::Bound::max) * (1.0 + 1e-14)
 }
 
-/// The exponential of a matrix whose norm a is at most 2^-SMALL.
+/// The exponential of a matrix whose norm a is at most 2^-NORM_BITS.
 ///
 /// The terms after the one of order n add up to at most 2 a^(n + 1)/(n + 1)!, and their derivatives
 /// to at most 2 b a^n/n!, where b is the norm of the matrix's derivative.

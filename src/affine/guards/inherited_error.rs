@@ -7,7 +7,7 @@ use crate::affine::closed_form::flow::ModeFlow;
 use crate::numeric::number::{Bound, Number};
 
 /// The factor by which bounds are raised against rounding in f64.
-pub const OUTWARD: f64 = 1.0 + 1e-9;
+pub const OUTWARD_FACTOR: f64 = 1.0 + 1e-9;
 
 /// Bounds of a row's error along a segment, by the errors at the segment's entry.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,7 +32,7 @@ impl<B: Bound> InheritedError<B> {
         let (norms, mut orders) = (flow.norms_of_bounds(error), [B::ZERO; ORDERS]);
         for part in &row.parts {
             if part.growth != BlockGrowth::Polynomial {
-                self.norms[part.subspace] += norms[part.subspace] * OUTWARD;
+                self.norms[part.subspace] += norms[part.subspace] * OUTWARD_FACTOR;
                 continue;
             }
             for it in &row.columns[part.columns.0..part.columns.1] {
@@ -41,14 +41,14 @@ impl<B: Bound> InheritedError<B> {
             }
         }
         let all = self.orders.iter_mut().zip(orders);
-        all.for_each(|(sum, order)| *sum += order.abs() * OUTWARD);
+        all.for_each(|(sum, order)| *sum += order.abs() * OUTWARD_FACTOR);
     }
 
     /// A bound of the row's error at a time, which is not negative. Between two times it is at most
     /// the larger of theirs, because decays and polynomials of positive terms are convex.
     pub fn by<T: Number<Bound = B>>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>, time: f64) -> B {
         let norms = flow.decayed(&self.norms, time);
-        (self.orders[0] + self.polynomial(1, time)) * OUTWARD + row.bound(0, &norms, time)
+        (self.orders[0] + self.polynomial(1, time)) * OUTWARD_FACTOR + row.bound(0, &norms, time)
     }
 
     /// A bound of the row's error at a time, which is not negative, where so many of its first
@@ -57,7 +57,7 @@ impl<B: Bound> InheritedError<B> {
     pub fn without<T: Number<Bound = B>>(&self, zeros: usize, row: &ModalRow<T>, time: f64) -> B {
         let norms = row.bound(zeros, &self.norms, time);
         let others = (1..=zeros).fold(norms, |sum, k| sum * time / k as f64);
-        (self.polynomial(zeros, time) + others) * OUTWARD
+        (self.polynomial(zeros, time) + others) * OUTWARD_FACTOR
     }
 
     /// The Taylor terms of the polynomial blocks at a time, from an order on that is not zero.

@@ -15,10 +15,10 @@ use std::cell::OnceCell;
 use std::ops::Range;
 
 /// The number of guards up to which no heap memory is needed.
-const INLINE: usize = 4;
+const INLINE_GUARDS: usize = 4;
 
 /// A list with one entry for each guard of a mode.
-pub type PerGuard<T> = SmallVec<[T; INLINE]>;
+pub type PerGuard<T> = SmallVec<[T; INLINE_GUARDS]>;
 
 /// A segment with its guards, and with everything about them that is fixed at its entry.
 pub struct GuardedSegment<'a, T: Number> {

@@ -232,8 +232,8 @@ impl<B: Bound> RowPart<B> {
     /// The rate of a decay: the quotient of two norms, unless they have lost digits to underflow or
     /// have overflown.
     fn decay_rate(&self) -> Option<f64> {
-        const RANGE: std::ops::Range<f64> = 1e-250..1e250;
-        let is_in_range = self.norms[..2].iter().all(|norm| RANGE.contains(&norm.to_f64()));
+        const NORM_RANGE: std::ops::Range<f64> = 1e-250..1e250;
+        let is_in_range = self.norms[..2].iter().all(|norm| NORM_RANGE.contains(&norm.to_f64()));
         let is_decay = self.growth == BlockGrowth::Decaying && is_in_range;
         is_decay.then(|| (self.norms[1] / self.norms[0]).to_f64())
     }

@@ -30,21 +30,21 @@ use crate::numeric::number::{Bound, ScaledF64};
 
 /// Eigenvalues stay together if their distance is below this share of the larger one: the
 /// projectors of others are then at most some tens in size.
-const CLOSE: f64 = 0.125;
+const MIN_RELATIVE_GAP: f64 = 0.125;
 
 /// Eigenvalues stay together if their distance times the system's unit of time is below this:
 /// over such a time their exponentials are nearly alike.
-const SLOW: f64 = 0.05;
+const MIN_GAP: f64 = 0.05;
 
 /// The bits between the last and the rounding that is left of a zero of a block, relative to the
 /// terms of the block's largest entry.
-const ABOVE_THE_LAST: isize = 140;
+const ZERO_ROUNDING_BITS: isize = 140;
 
 /// A factor for the growth of residuals by the errors of a block's columns and rows: 2^40.
-const ROOM: isize = 40;
+const RESIDUAL_GROWTH_BITS: isize = 40;
 
 /// Entries of a mode whose sizes differ by less than this power of two are left as they are.
-const ALIKE: isize = 100;
+const MIN_SPREAD_BITS: isize = 100;
 
 /// The kind of a block, by its eigenvalues.
 #[derive(Clone, Debug)]
@@ -200,8 +200,8 @@ fn measured(
     spread: &[Vec<ScaledF64>],
 ) -> Block {
     let Block { columns, rows, matrix: inner, .. } = &block;
-    let nearest = (CLOSE * norm(inner)).max(SLOW / time_scale);
-    let factor = libm::exp2(ROOM as f64) / nearest;
+    let nearest = (MIN_RELATIVE_GAP * norm(inner)).max(MIN_GAP / time_scale);
+    let factor = libm::exp2(RESIDUAL_GROWTH_BITS as f64) / nearest;
     let difference = |a: BigMatrix, b: BigMatrix| -> Vec<Vec<ScaledF64>> {
         let size = |(a, b): (&BigReal, &BigReal)| (a - b).bound::<ScaledF64>().abs() * factor;
         a.iter().zip(&b).map(|(a, b)| a.iter().zip(b).map(size).collect()).collect()
@@ -239,7 +239,7 @@ fn close(a: &Eigenvalue, b: &Eigenvalue, time_scale: f64) -> bool {
 
 fn is_close(gap: f64, a: &Eigenvalue, b: &Eigenvalue, time_scale: f64) -> bool {
     let larger = a.value.norm().to_f64().max(b.value.norm().to_f64());
-    gap < CLOSE * larger || gap * time_scale < SLOW
+    gap < MIN_RELATIVE_GAP * larger || gap * time_scale < MIN_GAP
 }
 
 fn block(matrix: &BigMatrix, cluster: &[Eigenvalue], time_scale: f64) -> Option<Block> {
@@ -255,7 +255,7 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue], time_scale: f64) -> Option<
         }
     }
     // Where the factors annihilate all, only their rounding is left.
-    let rounding = size.scaled(ABOVE_THE_LAST - size.bits() as isize);
+    let rounding = size.scaled(ZERO_ROUNDING_BITS - size.bits() as isize);
     let columns = null_space(&annihilator, dimensions, &rounding)?;
     let left = transposed(&null_space(&transposed(&annihilator), dimensions, &rounding)?);
     let rows = product(&inverse(&product(&left, &columns))?, &left);
@@ -289,14 +289,14 @@ fn noise(matrix: &BigMatrix, [columns, rows]: [&BigMatrix; 2], inner: &BigMatrix
     let left = product(&off, &sizes(columns));
     let largest_term = largest(&terms);
     let last = -(largest_term.bits() as isize);
-    &largest_term.scaled(last + ABOVE_THE_LAST) + &largest(&left).scaled(ROOM)
+    &largest_term.scaled(last + ZERO_ROUNDING_BITS) + &largest(&left).scaled(RESIDUAL_GROWTH_BITS)
 }
 
 /// Powers of two, one for each entry of z, by which a matrix is scaled so that its entries become
 /// more alike: entry i is measured in 2 to the power i. Without them a small coupling would look
 /// like the rounding of a large one. Nothing is scaled where all sizes are alike.
 fn scales(exact: &[Row]) -> Vec<isize> {
-    const ROUNDS: usize = 64;
+    const MAX_ROUNDS: usize = 64;
     let power = |number: &Rational| -> Option<isize> {
         let exponent = libm::frexp(number.to_f64()).1;
         (!number.is_zero()).then_some(exponent as isize)
@@ -306,10 +306,10 @@ fn scales(exact: &[Row]) -> Vec<isize> {
     let all = || powers.iter().flatten().flatten();
     let mut scales = vec![0; exact.len()];
     let (Some(least), Some(most)) = (all().min(), all().max()) else { return scales };
-    if most - least < ALIKE {
+    if most - least < MIN_SPREAD_BITS {
         return scales;
     }
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let before = scales.clone();
         for n in 0..exact.len() {
             let others = || (0..exact.len()).filter(|k| *k != n);
@@ -347,7 +347,8 @@ fn named(mut block: Block, cluster: &[Eigenvalue]) -> Block {
         block.kind = if root.multiplicity == 1 { Kind::Real(rate) } else { Kind::Nilpotent(rate) };
         return block;
     }
-    let steep = (&root.value.im + &root.value.im).to_f64() >= CLOSE * root.value.norm().to_f64();
+    let steep =
+        (&root.value.im + &root.value.im).to_f64() >= MIN_RELATIVE_GAP * root.value.norm().to_f64();
     if root.multiplicity > 1 || !steep {
         return block;
     }

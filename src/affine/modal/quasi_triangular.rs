@@ -9,30 +9,30 @@ use super::matrix::{
     BigMatrix, identity, inverse, largest, null_space, product, row_times, shifted, transposed,
 };
 use super::polynomial::Eigenvalue;
-use super::{Block, CLOSE, SLOW, factor, logarithmic_norm, norm, rotation};
+use super::{Block, MIN_GAP, MIN_RELATIVE_GAP, factor, logarithmic_norm, norm, rotation};
 use crate::affine::arithmetic::real::{BigComplex, BigReal};
 
 /// Couplings below this part of the distances of eigenvalues let bounds grow no faster than the
 /// beats of these.
-const OF_THE_SPREAD: f64 = 1.0 / 16.0;
+const COUPLING_PER_SPREAD: f64 = 1.0 / 16.0;
 
 /// Couplings below this part of the fastest rate are small enough.
-const OF_THE_FASTEST: f64 = 1.0 / 1024.0;
+const COUPLING_PER_RATE: f64 = 1.0 / 1024.0;
 
 /// The exponent of two of the rounding that is left of a zero of the triangular matrix, relative to
 /// its largest entry: it is far below half of the bits.
 fn nothing(matrix: &BigMatrix) -> isize {
-    /// Room for what the invariant spaces of close eigenvalues lose.
-    const ROOM: isize = 20;
-    ROOM - matrix.first().map_or(0, |row| row[0].bits() as isize) / 2
+    /// The bits that the invariant spaces of close eigenvalues lose.
+    const SEPARATION_LOSS_BITS: isize = 20;
+    SEPARATION_LOSS_BITS - matrix.first().map_or(0, |row| row[0].bits() as isize) / 2
 }
 
 /// A coupling that is smaller than this part of the largest would be among the roundings of others
 /// in another basis, while an eigenvalue's direction may hang on it.
-const FAINT: f64 = 1e-14;
+const MIN_COUPLING: f64 = 1e-14;
 
 /// The largest condition number of a basis: beyond it too many digits are lost.
-const SKEWED: f64 = 100.0;
+const MAX_CONDITION: f64 = 100.0;
 
 /// The place of one eigenvalue's co-ordinates in the triangular matrix.
 #[derive(Clone, Copy)]
@@ -49,9 +49,9 @@ pub(super) fn triangular(block: &Block, cluster: &[Eigenvalue], time_scale: f64)
     let wanted = wanted(cluster, time_scale);
     // Bounds of what decays are to decay nearly as fast.
     let decay = slowest_decay(cluster);
-    let largest = if decay > 0.0 { -(1.0 - OF_THE_SPREAD) * decay } else { wanted };
+    let largest = if decay > 0.0 { -(1.0 - COUPLING_PER_SPREAD) * decay } else { wanted };
     let is_small = logarithmic_norm(&block.matrix) <= largest;
-    if is_small || least(&block.matrix) < FAINT * norm(&block.matrix) {
+    if is_small || least(&block.matrix) < MIN_COUPLING * norm(&block.matrix) {
         return None;
     }
     let (mut basis, places) = split_off(&block.matrix, cluster)?;
@@ -65,7 +65,7 @@ pub(super) fn triangular(block: &Block, cluster: &[Eigenvalue], time_scale: f64)
         turned = in_basis(&turned, &rotating)?;
         clear_below(&mut turned.matrix, &places)?;
     }
-    if condition(&basis)? > SKEWED {
+    if condition(&basis)? > MAX_CONDITION {
         return None;
     }
     let units = units(&turned.matrix, &places, wanted / block.matrix.len() as f64)?;
@@ -91,7 +91,7 @@ fn split_off(matrix: &BigMatrix, cluster: &[Eigenvalue]) -> Option<(BigMatrix, V
 
 /// Whether a pair turns fast enough beside its size that its rotation is worth its own axes.
 fn steep(root: &Eigenvalue) -> bool {
-    root.value.im.to_f64() >= CLOSE * root.value.norm().to_f64()
+    root.value.im.to_f64() >= MIN_RELATIVE_GAP * root.value.norm().to_f64()
 }
 
 /// Vectors that span a space of an eigenvalue which the matrix, a part of one of this size, takes
@@ -209,17 +209,17 @@ fn clear_below(matrix: &mut BigMatrix, places: &[Place]) -> Option<()> {
 fn wanted(cluster: &[Eigenvalue], time_scale: f64) -> f64 {
     let values = || cluster.iter().map(|it| &it.value);
     /// A share of the fastest rate below which a decay counts for none.
-    const TINY: f64 = OF_THE_FASTEST * OF_THE_FASTEST;
+    const MIN_DECAY_SHARE: f64 = COUPLING_PER_RATE * COUPLING_PER_RATE;
     let decay = slowest_decay(cluster);
     let apart =
         |a: &BigComplex| -> Vec<f64> { values().map(|b| (a - b).norm().to_f64()).collect() };
     let spread = values().flat_map(apart).fold(0.0, f64::max);
     let fastest = values().map(|it| it.norm().to_f64()).fold(0.0, f64::max);
-    let slow = OF_THE_SPREAD * SLOW / time_scale;
-    if decay > TINY * fastest {
-        return OF_THE_FASTEST * decay;
+    let slow = COUPLING_PER_SPREAD * MIN_GAP / time_scale;
+    if decay > MIN_DECAY_SHARE * fastest {
+        return COUPLING_PER_RATE * decay;
     }
-    decay.max(OF_THE_SPREAD * spread).max(OF_THE_FASTEST * fastest).max(slow)
+    decay.max(COUPLING_PER_SPREAD * spread).max(COUPLING_PER_RATE * fastest).max(slow)
 }
 
 /// The slowest rate at which a cluster decays; not positive where a part of it does not.

@@ -38,14 +38,14 @@ fn of_quadratic(constant: &Rational, linear: &Rational, bits: usize) -> Vec<BigC
 /// The roots of a polynomial that has each once, and none at zero: Aberth's iteration, all of them
 /// at a time.
 fn roots_away_from_zero(polynomial: &[Rational], bits: usize) -> Option<Vec<BigComplex>> {
-    const ROUNDS: usize = 2000;
+    const MAX_ROUNDS: usize = 2000;
     let coefficients: Vec<_> = polynomial.iter().map(|it| BigReal::of(it, bits)).collect();
     let degree = coefficients.len() - 1;
     if degree == 1 {
         return Some(vec![BigComplex::real(&-&coefficients[0] / &coefficients[1])]);
     }
     let mut roots = beginnings(&coefficients);
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let mut settled = true;
         for n in 0..degree {
             let step = step(&coefficients, &roots, n);

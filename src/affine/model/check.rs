@@ -5,7 +5,7 @@ use super::form;
 use super::naming::{check_event, check_kebab, check_symbol};
 use super::rational::Rational;
 use super::system::{
-    LARGEST_COUNT, LARGEST_DIMENSION, Limit, Mode, Row, Successor, System, TROUBLE, Until, Watch,
+    LARGEST_DIMENSION, Limit, MAX_COUNT, Mode, Row, Successor, System, TROUBLE, Until, Watch,
     is_unit,
 };
 use std::collections::BTreeSet;
@@ -80,7 +80,7 @@ impl System {
                 return Err(refuse("the state is there twice".to_owned()));
             }
         }
-        count("modes", self.modes.len(), 1, LARGEST_COUNT)
+        count("modes", self.modes.len(), 1, MAX_COUNT)
     }
 
     fn check_units(&self) -> Result<(), SystemError> {
@@ -134,7 +134,7 @@ impl ModeCheck<'_> {
             return Err(SystemError::LastRow { item: self.item.clone() });
         }
         let events = mode.until.len() + mode.watch.len();
-        count(&format!("{}, events", self.item), events, 0, LARGEST_COUNT)?;
+        count(&format!("{}, events", self.item), events, 0, MAX_COUNT)?;
         let mut seen = BTreeSet::new();
         for until in &mode.until {
             let own = self.within(&format!("until {:?}", until.name));
@@ -187,7 +187,7 @@ impl ModeCheck<'_> {
 
     /// A list of modes, of which the first follows whose condition holds.
     fn choices(&self, all: &str, one: &str, choices: &[Successor]) -> Result<(), SystemError> {
-        count(&format!("{}, {all}", self.item), choices.len(), 1, LARGEST_COUNT)?;
+        count(&format!("{}, {all}", self.item), choices.len(), 1, MAX_COUNT)?;
         if (1..).zip(choices).any(|(n, it)| it.when.is_some() == (n == choices.len())) {
             return Err(SystemError::Successors { item: self.item.clone() });
         }

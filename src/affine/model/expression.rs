@@ -6,12 +6,13 @@ use super::form::Form;
 use crate::affine::model::rational::Rational;
 
 /// The deepest nesting of parentheses and signs that is read.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// The largest exponent.
-const LARGEST_EXPONENT: usize = 64;
+const MAX_EXPONENT: usize = 64;
 
-const DECIMAL: &str = "a decimal is not accepted here: give it as a parameter";
+/// The error of a decimal in an expression, whose coefficients are exact.
+const DECIMAL_ERROR: &str = "a decimal is not accepted here: give it as a parameter";
 
 /// The names that an expression may use, with their values.
 pub(super) trait Scope {
@@ -39,7 +40,7 @@ pub(super) fn expression(text: &str, scope: &mut dyn Scope) -> Result<Form, Stri
     let form = reader.sum()?;
     match reader.rest.chars().next() {
         None => Ok(form),
-        Some('.') => Err(DECIMAL.to_owned()),
+        Some('.') => Err(DECIMAL_ERROR.to_owned()),
         Some('=') => Err("`=` is not accepted here: a condition uses `>` or `<`".to_owned()),
         Some('(') => {
             Err("a name before `(` is not accepted: cos and sin are those of theta and take no \
@@ -100,9 +101,9 @@ impl Reader<'_> {
             return Ok(base);
         }
         let digits = self.digits();
-        let exponent = digits.parse().ok().filter(|it| *it <= LARGEST_EXPONENT);
+        let exponent = digits.parse().ok().filter(|it| *it <= MAX_EXPONENT);
         let exponent = exponent.ok_or_else(|| {
-            format!("an exponent is an integer from 0 to {LARGEST_EXPONENT}, written as such")
+            format!("an exponent is an integer from 0 to {MAX_EXPONENT}, written as such")
         })?;
         let power = base.to_the(exponent)?;
         if self.takes('^') {
@@ -121,7 +122,7 @@ impl Reader<'_> {
             return self.scope.value(&name);
         }
         if self.has_exponent() {
-            return Err(DECIMAL.to_owned());
+            return Err(DECIMAL_ERROR.to_owned());
         }
         let digits = self.digits();
         let states = self.scope.states();
@@ -147,7 +148,7 @@ impl Reader<'_> {
     fn nothing(&self) -> String {
         let what = match self.rest.chars().next() {
             None => "the expression ends".to_owned(),
-            Some('.') => return DECIMAL.to_owned(),
+            Some('.') => return DECIMAL_ERROR.to_owned(),
             Some(other) => format!("{other:?} stands"),
         };
         format!("{what} where an integer, a name or `(` is accepted")
@@ -157,8 +158,8 @@ impl Reader<'_> {
         &mut self,
         read: impl FnOnce(&mut Self) -> Result<Form, String>,
     ) -> Result<Form, String> {
-        if self.depth == DEEPEST {
-            return Err(format!("the expression is nested more than {DEEPEST} deep"));
+        if self.depth == MAX_DEPTH {
+            return Err(format!("the expression is nested more than {MAX_DEPTH} deep"));
         }
         self.depth += 1;
         let form = read(self)?;

@@ -5,10 +5,10 @@ use super::dual::Dual;
 use crate::affine::model::rational::Rational;
 
 /// The largest number of bits of a coefficient's numerator or denominator.
-const LARGEST_BITS: usize = 16_384;
+const MAX_BITS: usize = 16_384;
 
 /// Coefficients lie between about 2^-1000 and 2^1000: f64 holds few others.
-const LARGEST_POWER: usize = 1000;
+const MAX_POWER_OF_TWO: usize = 1000;
 
 /// The coefficients of the states, then of cos theta, sin theta and 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -119,14 +119,14 @@ pub(super) fn check_range<'a>(
     mut coefficients: impl Iterator<Item = &'a Rational>,
 ) -> Result<(), String> {
     let far =
-        |(above, below): &(usize, usize)| *above > 0 && above.abs_diff(*below) > LARGEST_POWER;
+        |(above, below): &(usize, usize)| *above > 0 && above.abs_diff(*below) > MAX_POWER_OF_TWO;
     let Some((above, below)) = coefficients.by_ref().map(Rational::bits).find(far) else {
         return Ok(());
     };
     let (sign, power) = (if above < below { "-" } else { "" }, above.abs_diff(below));
     Err(format!(
         "a coefficient of about 2^{sign}{power} is not accepted: 0 is, and sizes from \
-             2^-{LARGEST_POWER} to 2^{LARGEST_POWER}"
+             2^-{MAX_POWER_OF_TWO} to 2^{MAX_POWER_OF_TWO}"
     ))
 }
 
@@ -139,9 +139,9 @@ fn check_sizes(number: &Dual) -> Result<(), String> {
 pub(super) fn check_size(number: &Rational) -> Result<(), String> {
     let (above, below) = number.bits();
     let bits = above.max(below);
-    if bits > LARGEST_BITS {
+    if bits > MAX_BITS {
         return Err(format!(
-            "a coefficient of {bits} bits is too long: up to {LARGEST_BITS} are accepted"
+            "a coefficient of {bits} bits is too long: up to {MAX_BITS} are accepted"
         ));
     }
     Ok(())

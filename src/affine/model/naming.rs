@@ -3,16 +3,16 @@
 use super::ending::Ending;
 
 /// Names that expressions cannot give to anything else.
-const RESERVED: [&str; 4] = ["cos", "sin", "omega", "phi"];
+const RESERVED_NAMES: [&str; 4] = ["cos", "sin", "omega", "phi"];
 
 /// Keys of a start beside the states.
-const OF_A_START: [&str; 2] = ["t", "mode"];
+const START_KEYS: [&str; 2] = ["t", "mode"];
 
 /// Refuses what is no name of a state, of a parameter or of a `[let]`.
 pub(super) fn check_symbol(name: &str, is_state: bool) -> Result<(), String> {
-    if is_state && OF_A_START.contains(&name) {
+    if is_state && START_KEYS.contains(&name) {
         Err(format!("{name} is no name of a state: a start holds a {name} beside the states"))
-    } else if RESERVED.contains(&name) {
+    } else if RESERVED_NAMES.contains(&name) {
         Err(format!("{name} is reserved for theta = omega t + phi"))
     } else if !is_symbol(name) {
         Err(format!("{name:?} is no name: a letter, then letters, digits and underscores are"))

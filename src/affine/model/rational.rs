@@ -8,7 +8,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 use std::str::FromStr;
 
 /// The largest size of a decimal exponent that is read.
-const LARGEST_EXPONENT: u32 = 10_000;
+const MAX_EXPONENT: u32 = 10_000;
 
 /// An exact rational number: the numerator and the denominator have as many digits as they need.
 ///
@@ -247,7 +247,7 @@ fn decimal(text: &str) -> Option<Rational> {
         Some((digits, exponent)) => (digits, exponent.parse::<i32>().ok()?),
         None => (text, 0),
     };
-    if exponent.unsigned_abs() > LARGEST_EXPONENT {
+    if exponent.unsigned_abs() > MAX_EXPONENT {
         return None;
     }
     let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));

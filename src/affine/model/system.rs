@@ -38,7 +38,7 @@ pub fn is_unit(row: &Row, n: usize) -> bool {
 pub const LARGEST_DIMENSION: usize = 12;
 
 /// The largest number of modes, of events in a mode and of successors of an event.
-pub(super) const LARGEST_COUNT: usize = 64;
+pub(super) const MAX_COUNT: usize = 64;
 
 /// The kinds of trouble that a system or a case may be said to make.
 pub const TROUBLE: [&str; 19] = [

@@ -195,10 +195,10 @@ impl System {
 
 /// Another value than this, by a share of it that no model has.
 fn apart(value: &Rational, sign: i32) -> Rational {
-    /// A prime.
-    const PARTS: i32 = 1_048_583;
+    /// A prime, which no model's share has.
+    const DENOMINATOR: i32 = 1_048_583;
     let size = if value.is_zero() { Rational::ONE } else { value.abs() };
-    value + size * Rational::from(sign) / Rational::from(PARTS)
+    value + size * Rational::from(sign) / Rational::from(DENOMINATOR)
 }
 
 /// Moves the state of a start that is the name.

@@ -84,7 +84,7 @@ impl std::error::Error for ValueError {
 }
 
 /// Values whose systems are prepared in one go: those of two such blocks are held in memory.
-const BLOCK: usize = 32;
+const BLOCK_VALUES: usize = 32;
 
 impl ReturnDiagram {
     /// Makes the diagram at these values, of which each has a system; `seen` is called as values
@@ -110,7 +110,7 @@ impl ReturnDiagram {
                     Ok(step)
                 };
                 let mut steps = Vec::with_capacity(values.len());
-                for block in values.chunks(BLOCK) {
+                for block in values.chunks(BLOCK_VALUES) {
                     let done: Result<Vec<_>, _> = parallel::map(block, alone).into_iter().collect();
                     steps.extend(done?);
                 }
@@ -138,7 +138,7 @@ impl ReturnDiagram {
             }
             Ok(())
         };
-        for block in values.chunks(BLOCK) {
+        for block in values.chunks(BLOCK_VALUES) {
             let prepare = || parallel::map(block, &solver);
             let solvers = std::mem::take(&mut prepared);
             let (next, done) = parallel::join(prepare, || follow(now, solvers));

@@ -16,13 +16,13 @@ use crate::dynamics::batches::{Batches, Stationarity, standard_error};
 
 /// The most that a rate times a piece of a segment may be: a change then decays by a factor that
 /// f64 has digits for.
-const LONGEST_PIECE: f64 = 8.0;
+const MAX_PIECE_DECAY_TIMES: f64 = 8.0;
 
 /// The most pieces of a segment.
-const MOST_PIECES: f64 = 10_000.0;
+const MAX_PIECES: f64 = 10_000.0;
 
 /// A direction of which an event leaves no larger share of the largest change is gone.
-const GONE: f64 = 1e-11;
+const MIN_DIRECTION_SHARE: f64 = 1e-11;
 
 /// Lyapunov exponents of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -180,7 +180,8 @@ impl<'a> Frame<'a> {
         self.settle_at(from, &state);
         let elapsed = to.time.since(&from.time).value();
         let flow = &self.solver.modes[from.mode].flow;
-        let pieces = libm::ceil(flow.speed * elapsed / LONGEST_PIECE).clamp(1.0, MOST_PIECES);
+        let pieces =
+            libm::ceil(flow.speed * elapsed / MAX_PIECE_DECAY_TIMES).clamp(1.0, MAX_PIECES);
         let motion = flow.propagator(elapsed / pieces);
         for _ in 0..pieces as usize {
             self.variation.flow(&motion);
@@ -201,7 +202,7 @@ impl<'a> Frame<'a> {
     fn settle_at(&mut self, at: &Event<f64>, z: &Vector<f64>) {
         if self.variation.delays.is_some() {
             self.variation.settle_at(self.solver, at, z);
-            self.renew(GONE);
+            self.renew(MIN_DIRECTION_SHARE);
         }
     }
 

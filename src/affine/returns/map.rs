@@ -145,12 +145,13 @@ impl<'a, T: Number> SectionMap<'a, T> {
 
     /// The number of the first strobe after a time, or at it where that counts.
     pub(super) fn strobe_after(&self, time: &Time<T>, counts_this: bool) -> f64 {
-        /// Times so close to a strobe, beside a forcing period, are it.
-        const AT_IT: f64 = 1e-9;
+        /// The largest distance of a time from a strobe, in forcing periods, at which it counts as
+        /// the strobe.
+        const STROBE_TOLERANCE: f64 = 1e-9;
         let Some([period, first]) = &self.period else { return 0.0 };
         let turns = (time.since(first).value() / period.high).to_f64();
         let nearest = libm::round(turns);
-        match (turns - nearest).abs() <= AT_IT * turns.abs().max(1.0) {
+        match (turns - nearest).abs() <= STROBE_TOLERANCE * turns.abs().max(1.0) {
             true if counts_this => nearest,
             true => nearest + 1.0,
             false => libm::ceil(turns),

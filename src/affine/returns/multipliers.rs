@@ -14,14 +14,14 @@ type Columns = Vec<Vec<f64>>;
 
 /// A direction of which a return leaves a smaller share, beside its largest growth, is gone: sums
 /// of twelve products have as many roundings, and events make some of them.
-const GONE: f64 = 1e-12;
+const MIN_DIRECTION_SHARE: f64 = 1e-12;
 
 /// Directions of a space that agree with one of it to within this are that one: the errors of a
 /// direction that many returns have carried.
-const ALONG: f64 = 1e-7;
+const ALIGNMENT_TOLERANCE: f64 = 1e-7;
 
 /// The most exact factors: the digits of their product are as many as those of all together.
-const MOST_FACTORS: usize = 16;
+const MAX_FACTORS: usize = 16;
 
 /// The multipliers of an orbit, largest modulus first, as many as states: `returns` are the
 /// derivatives at fixed times, by columns. Of an autonomous system `flow` is the direction of the
@@ -33,14 +33,14 @@ pub fn multipliers(returns: &[Columns], flow: Option<&[f64]>) -> Option<Vec<[f64
     for matrix in returns.iter().chain(returns) {
         let carried = space.iter().map(|it| product(matrix, it)).collect();
         let largest = size(matrix);
-        space = orthonormal(carried, GONE * largest);
+        space = orthonormal(carried, MIN_DIRECTION_SHARE * largest);
     }
     if let Some(flow) = flow {
         let scale = norm(flow);
         let along: Vec<f64> = flow.iter().map(|it| it / scale).collect();
         let mut all = vec![along];
         all.extend(space);
-        space = orthonormal(all, ALONG).split_off(1);
+        space = orthonormal(all, ALIGNMENT_TOLERANCE).split_off(1);
     }
     let mut values =
         if space.is_empty() { Vec::new() } else { spectrum(&around(returns, &space)?)? };
@@ -52,7 +52,7 @@ pub fn multipliers(returns: &[Columns], flow: Option<&[f64]>) -> Option<Vec<[f64
 
 /// The product of all returns on a space, in its own co-ordinates, exactly.
 fn around(returns: &[Columns], space: &Columns) -> Option<Vec<Row>> {
-    let share = returns.len().div_ceil(MOST_FACTORS);
+    let share = returns.len().div_ceil(MAX_FACTORS);
     let factors = returns.chunks(share).map(|chunk| {
         let mut factor = chunk[0].clone();
         for matrix in &chunk[1..] {

@@ -4,7 +4,7 @@ use super::map::SectionMap;
 use super::multipliers::multipliers;
 use super::passage::Passage;
 use super::section::Guard;
-use super::shooting::{Change, Derivative, Image, MOST, ReturnMap, Shots};
+use super::shooting::{Change, Derivative, Image, MAX_COORDINATES, ReturnMap, Shots};
 use super::walk::{NoReturn, Return};
 use crate::affine::model::system::System;
 use crate::affine::run::place::Place;
@@ -149,7 +149,7 @@ impl SectionMap<'_, f64> {
     /// The derivative of a return's co-ordinates: the states, and the time where points have one.
     fn derivative(&self, from: &Place<f64>, passage: &Passage<f64>) -> Derivative {
         let states = from.state.len();
-        let mut derivative = [[0.0; MOST]; MOST];
+        let mut derivative = [[0.0; MAX_COORDINATES]; MAX_COORDINATES];
         for (j, (column, delay)) in passage.at_return.iter().zip(&passage.delays).enumerate() {
             (0..states).for_each(|i| derivative[i][j] = column[i]);
             derivative[states][j] = if self.has_times() { *delay } else { 0.0 };
@@ -160,7 +160,7 @@ impl SectionMap<'_, f64> {
             derivative[states][states] = delay;
         }
         for n in (0..states).filter(|n| self.is_drift(*n)) {
-            derivative[n] = [0.0; MOST];
+            derivative[n] = [0.0; MAX_COORDINATES];
             derivative.iter_mut().for_each(|row| row[n] = 0.0);
         }
         derivative
@@ -210,7 +210,7 @@ impl ReturnMap for SectionMap<'_, f64> {
     }
 
     fn apart(&self, from: &Place<f64>, to: &Place<f64>) -> Change {
-        let mut change = [0.0; MOST];
+        let mut change = [0.0; MAX_COORDINATES];
         for (n, (from, to)) in from.state.iter().zip(&to.state).enumerate() {
             change[n] = if self.is_drift(n) { 0.0 } else { to - from };
         }

@@ -8,19 +8,19 @@ use crate::dynamics::linear::{apply, product, solve};
 use crate::dynamics::orbit::newton::Shooting;
 
 /// The most co-ordinates of a point: the states, and the time.
-pub const MOST: usize = LARGEST_DIMENSION;
+pub const MAX_COORDINATES: usize = LARGEST_DIMENSION;
 
 /// A change of a point; entries beyond its co-ordinates are zero.
-pub type Change = [f64; MOST];
+pub type Change = [f64; MAX_COORDINATES];
 
 /// The derivative of an image; rows and columns beyond the co-ordinates are zero.
-pub type Derivative = [[f64; MOST]; MOST];
+pub type Derivative = [[f64; MAX_COORDINATES]; MAX_COORDINATES];
 
 /// Roundings of a segment's closed form and of the state it hands on, in units of eps.
 const ROUNDINGS: f64 = 8.0;
 
-/// Changes that are smaller, beside the largest, are roundings of it.
-const SMALLEST: f64 = 1e-12;
+/// The smallest change beside the largest one that is not a rounding of it.
+const MIN_RELATIVE_CHANGE: f64 = 1e-12;
 
 /// A return map, as Newton's method sees it.
 pub trait ReturnMap {
@@ -125,7 +125,7 @@ impl<P: Clone, W: Clone> Shots<P, W> {
             // The roundings of a point lie along the changes that the return to it leaves.
             let changes = columns(&self.images[(k + count - 1) % count].derivative);
             let largest = changes.iter().map(|it| length(it)).fold(0.0, f64::max);
-            let axes = orthonormal(changes, SMALLEST * largest);
+            let axes = orthonormal(changes, MIN_RELATIVE_CHANGE * largest);
             let grown = axes.iter().map(|axis| {
                 let axis: Change = std::array::from_fn(|n| axis[n]);
                 length(&apply(&it.derivative, &axis))
@@ -140,7 +140,7 @@ impl<P: Clone, W: Clone> Shots<P, W> {
     /// others from it.
     fn newton_step(&self) -> Vec<Change> {
         let mut around = identity();
-        let mut offset = [0.0; MOST];
+        let mut offset = [0.0; MAX_COORDINATES];
         for (image, defect) in self.images.iter().zip(&self.defects) {
             around = product(&image.derivative, &around);
             offset = sum(&apply(&image.derivative, &offset), defect);
@@ -215,7 +215,7 @@ impl<M: ReturnMap> Shooting<M> for Shots<M::Point, M::Way> {
 
 /// The columns of a derivative.
 fn columns(derivative: &Derivative) -> Vec<Vec<f64>> {
-    (0..MOST).map(|n| derivative.iter().map(|row| row[n]).collect()).collect()
+    (0..MAX_COORDINATES).map(|n| derivative.iter().map(|row| row[n]).collect()).collect()
 }
 
 fn length(change: &[f64]) -> f64 {

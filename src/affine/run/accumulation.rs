@@ -13,7 +13,7 @@ use crate::affine::zeros::graph::Firing;
 use crate::numeric::number::{Bound, Number};
 
 /// A run ends at an accumulation once at most this share of the system's unit of time is left.
-const LEFT: f64 = 1.0 / (1u64 << 30) as f64;
+const MAX_TIME_LEFT: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// The rest of the motion from an impact to the limit at which impacts accumulate.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ impl<T: Number> Run<'_, T> {
         let scale = self.solver.system.time_scale;
         let guess = 4.0 * u / (bend.to_f64() * (1.0 - e_f64));
         let sensible = e_f64 > 0.0 && e_f64 < 1.0 && u > 0.0 && bend.to_f64() > 0.0;
-        let near = guess <= 4.0 * LEFT * scale;
+        let near = guess <= 4.0 * MAX_TIME_LEFT * scale;
         if !(sensible && near) {
             return None;
         }
@@ -89,7 +89,7 @@ impl<T: Number> Run<'_, T> {
         let earliest = twice / (a2 * (one - e * (a1 / a2).sqrt()));
         let latest = twice / (a1 * (one - q));
         let (earliest, latest) = self.widened(earliest, latest, gap, u);
-        let proved = a1 > T::zero() && q < one && latest.to_f64() <= LEFT * scale;
+        let proved = a1 > T::zero() && q < one && latest.to_f64() <= MAX_TIME_LEFT * scale;
         let [rate_share, bend_share] = [(1, departing), (2, bend)]
             .map(|(order, value)| self.share(gap, order, value.to_f64()));
         let rest = T::unit() * 16.0 + bend_share * 2.0 + rate_share * (2.0 / (1.0 - e_f64));

@@ -14,14 +14,14 @@ use crate::affine::arithmetic::vector::{Vector, dot, sum_rounding};
 use crate::affine::closed_form::bound::ORDERS;
 use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::closed_form::modal_state::ModalState;
-use crate::affine::guards::inherited_error::{InheritedError, OUTWARD};
+use crate::affine::guards::inherited_error::{InheritedError, OUTWARD_FACTOR};
 use crate::affine::guards::row::ModalRow;
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::numeric::number::{Bound, Number};
 
 /// A bound of the rounding errors of a column's entry, relative to the sizes of what it is summed
 /// from: bounds have the digits of f64, and up to four sums of `LARGEST_DIMENSION` products follow
-/// each other. Where terms cancel this is more than [`OUTWARD`] covers.
+/// each other. Where terms cancel this is more than [`OUTWARD_FACTOR`] covers.
 const COLUMN_ROUNDING: f64 = 4.0 * (LARGEST_DIMENSION + 2) as f64 * f64::EPSILON;
 
 /// An error of z and of the time, up to an unknown factor between -1 and 1.
@@ -142,7 +142,7 @@ impl<B: Bound> Enclosure<B> {
     }
 
     fn sum(&self, entry: impl Fn(&ErrorColumn<B>) -> B) -> B {
-        self.columns.iter().map(|column| entry(column).abs()).sum::<B>() * OUTWARD
+        self.columns.iter().map(|column| entry(column).abs()).sum::<B>() * OUTWARD_FACTOR
     }
 
     /// The errors at a fixed time after the entry, and the sizes of what their entries are summed
@@ -214,7 +214,7 @@ impl<B: Bound> Enclosure<B> {
         let whole = shift + rounded;
         let second = whole * 2.0 * (bend.abs() * whole + slope_error) / slope.abs();
         let mut own = ErrorColumn::ZERO;
-        own.delayed((rounded + second) * OUTWARD, &rates);
+        own.delayed((rounded + second) * OUTWARD_FACTOR, &rates);
         later.columns.push(own);
         later.anchor(crossing.phase, flow.dimension - 1, &rates);
         let mut rest = crossing.roundings;

@@ -19,20 +19,20 @@ use crate::numeric::number::{Bound, Number};
 
 /// The share of an arithmetic's bits by which the time left to a limit is below the system's unit
 /// of time where its first order is taken: the depth of a flight then has a third of them left.
-const NEAR: [u32; 2] = [1, 3];
+const FIRST_ORDER_SHARE: [u32; 2] = [1, 3];
 
 /// The share of the bits beyond which errors leave open whether there is another impact at all.
-const LAST: [u32; 2] = [2, 5];
+const UNDECIDED_SHARE: [u32; 2] = [2, 5];
 
 /// The most bits of which a share is taken.
-const MOST_BITS: u32 = 848;
+const MAX_BITS: u32 = 848;
 
 /// The bits by which the time left is below the unit of time in f64, where a horizon before the
 /// limit is told no more from one behind it.
-const LAST_IN_F64: u32 = 44;
+const UNDECIDED_F64_BITS: u32 = 44;
 
 /// The largest number of times that a tube is widened until it holds the motion.
-const MOST_WIDENINGS: u32 = 8;
+const MAX_WIDENINGS: u32 = 8;
 
 /// The event just passed: an `until`, the state before its reset, and bounds of the errors of that.
 pub(super) struct Jump<'a, T: Number> {
@@ -125,7 +125,7 @@ impl<T: Number> Run<'_, T> {
             self.fire_limit(&limit, self.entered, self.state);
             return true;
         };
-        let last = if T::WORDS == 1 { LAST_IN_F64 } else { share::<T>(LAST) };
+        let last = if T::WORDS == 1 { UNDECIDED_F64_BITS } else { share::<T>(UNDECIDED_SHARE) };
         let is_last = self.is_within(remaining, last);
         let there = self.limit_state(&limit, remaining);
         let left = self.time_left().value();
@@ -192,7 +192,7 @@ impl<T: Number> Run<'_, T> {
 
     /// The state at a limit; none where that is too far for the first order.
     fn limit_state(&self, limit: &LimitAhead<T>, left: &Remaining<T>) -> Option<LimitState<T>> {
-        if T::WORDS > 1 && !self.is_within(left, share::<T>(NEAR)) {
+        if T::WORDS > 1 && !self.is_within(left, share::<T>(FIRST_ORDER_SHARE)) {
             return None;
         }
         let mode = self.graph.node(self.node).mode;
@@ -256,7 +256,7 @@ impl<T: Number> Run<'_, T> {
         };
         let mut tube = reach(off);
         let mut is_held = false;
-        for _ in 0..MOST_WIDENINGS {
+        for _ in 0..MAX_WIDENINGS {
             let wider = tube.map(|it| it * 2.0);
             tube = reach(&wider);
             is_held = tube.iter().zip(&wider).all(|(it, wider)| *it <= *wider);
@@ -286,5 +286,5 @@ impl<T: Number> Run<'_, T> {
 /// A share of the arithmetic's bits, as far as times that are so short stay far from underflow in
 /// f64.
 fn share<T: Number>([part, whole]: [u32; 2]) -> u32 {
-    (T::WORDS as u32 * f64::MANTISSA_DIGITS).min(MOST_BITS) * part / whole
+    (T::WORDS as u32 * f64::MANTISSA_DIGITS).min(MAX_BITS) * part / whole
 }

@@ -11,31 +11,31 @@ use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::numeric::number::Bound;
 
 /// The largest number of columns; beyond it the smallest are replaced by a box.
-const MOST_COLUMNS: usize = 160;
+const MAX_COLUMNS: usize = 160;
 
 /// The number of the largest columns that are kept then.
-const KEPT: usize = 80;
+const KEPT_COLUMNS: usize = 80;
 
 /// The share of the errors below which what is left of them is the rounding of f64.
-const NOISE: f64 = 1e-14;
+const ROUNDING_SHARE: f64 = 1e-14;
 
 /// The entries of a column: those of the state, and the time.
-const ENTRIES: usize = LARGEST_DIMENSION + 1;
+const COLUMN_ENTRIES: usize = LARGEST_DIMENSION + 1;
 
 /// A column whose entries are measured in their own sizes.
-type Scaled = [f64; ENTRIES];
+type Scaled = [f64; COLUMN_ENTRIES];
 
 impl<B: Bound> Enclosure<B> {
     /// Replaces the smallest columns by a box, if there are many.
     pub(super) fn reduce(&mut self) {
-        if self.columns.len() <= MOST_COLUMNS {
+        if self.columns.len() <= MAX_COLUMNS {
             return;
         }
         let sizes = largest_entries(&self.columns);
         let share =
             |column: &ErrorColumn<B>| scaled(column, &sizes).iter().map(|it| it.abs()).sum::<f64>();
         self.columns.sort_by(|a, b| share(b).total_cmp(&share(a)));
-        let small = self.columns.split_off(KEPT);
+        let small = self.columns.split_off(KEPT_COLUMNS);
         let sizes = largest_entries(&small);
         let boxed = boxed(small.iter().map(|it| scaled(it, &sizes)).collect());
         self.columns.extend(boxed.iter().map(|axis| unscaled(axis, &sizes)));
@@ -45,9 +45,12 @@ impl<B: Bound> Enclosure<B> {
 /// The columns of a box that holds all sums of these.
 fn boxed(mut rest: Vec<Scaled>) -> Vec<Scaled> {
     let mut axes = Vec::new();
-    for _ in 0..ENTRIES {
+    for _ in 0..COLUMN_ENTRIES {
         let largest = rest.iter().copied().max_by(|a, b| square(a).total_cmp(&square(b)));
-        let Some(largest) = largest.filter(|it| square(it) > NOISE * NOISE) else { break };
+        let Some(largest) = largest.filter(|it| square(it) > ROUNDING_SHARE * ROUNDING_SHARE)
+        else {
+            break;
+        };
         let length = square(&largest).sqrt();
         let axis = largest.map(|it| it / length);
         let mut reach = 0.0;
@@ -59,10 +62,10 @@ fn boxed(mut rest: Vec<Scaled>) -> Vec<Scaled> {
         axes.push(axis.map(|it| it * reach));
     }
     // What rounding leaves has no direction.
-    for n in 0..ENTRIES {
+    for n in 0..COLUMN_ENTRIES {
         let left: f64 = rest.iter().map(|column| column[n].abs()).sum();
         if left > 0.0 {
-            let mut column = [0.0; ENTRIES];
+            let mut column = [0.0; COLUMN_ENTRIES];
             column[n] = left;
             axes.push(column);
         }
@@ -75,7 +78,7 @@ fn square(column: &Scaled) -> f64 {
 }
 
 /// The largest size of each entry.
-fn largest_entries<B: Bound>(columns: &[ErrorColumn<B>]) -> [B; ENTRIES] {
+fn largest_entries<B: Bound>(columns: &[ErrorColumn<B>]) -> [B; COLUMN_ENTRIES] {
     std::array::from_fn(|n| {
         columns.iter().map(|column| entry(column, n).abs()).fold(B::ZERO, Bound::max)
     })
@@ -85,7 +88,7 @@ fn entry<B: Bound>(column: &ErrorColumn<B>, n: usize) -> B {
     column.state.get(n).copied().unwrap_or(column.time)
 }
 
-fn scaled<B: Bound>(column: &ErrorColumn<B>, sizes: &[B; ENTRIES]) -> Scaled {
+fn scaled<B: Bound>(column: &ErrorColumn<B>, sizes: &[B; COLUMN_ENTRIES]) -> Scaled {
     std::array::from_fn(
         |n| {
             if sizes[n] > 0.0 { (entry(column, n) / sizes[n]).to_f64() } else { 0.0 }
@@ -93,7 +96,7 @@ fn scaled<B: Bound>(column: &ErrorColumn<B>, sizes: &[B; ENTRIES]) -> Scaled {
     )
 }
 
-fn unscaled<B: Bound>(column: &Scaled, sizes: &[B; ENTRIES]) -> ErrorColumn<B> {
+fn unscaled<B: Bound>(column: &Scaled, sizes: &[B; COLUMN_ENTRIES]) -> ErrorColumn<B> {
     let entry = |n: usize| sizes[n] * column[n];
     ErrorColumn { state: std::array::from_fn(entry), time: entry(LARGEST_DIMENSION) }
 }

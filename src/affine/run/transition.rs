@@ -11,7 +11,7 @@ use crate::affine::zeros::graph::Firing;
 use crate::numeric::number::{Bound, Number};
 
 /// The largest number of `until` events in one instant.
-const MOST_AT_ONCE: u32 = 64;
+const MAX_SIMULTANEOUS_EVENTS: u32 = 64;
 
 impl<T: Number> Run<'_, T> {
     /// Ends the mode by an `until`: resets the state, chooses the successor and enters the next
@@ -84,7 +84,7 @@ impl<T: Number> Run<'_, T> {
         } else if rests && self.graph.node(next).mode == mode {
             self.rest(mode, &jump);
         }
-        if self.events_in_instant >= MOST_AT_ONCE {
+        if self.events_in_instant >= MAX_SIMULTANEOUS_EVENTS {
             self.end(Ending::NoProgress);
         }
     }

@@ -44,12 +44,12 @@ impl<T: Number> Run<'_, T> {
     /// the number type.
     #[must_use]
     pub fn overflows(&self) -> bool {
-        /// Room for the bounds of derivatives.
-        const LARGEST: f64 = 1e280;
+        /// The largest size of a state's entry, so that bounds of derivatives do not overflow.
+        const MAX_SIZE: f64 = 1e280;
         let has_exponents = T::Bound::UNDERFLOW == 0.0;
         let within = |it: &T| match has_exponents {
             true => it.bound().is_finite(),
-            false => it.bound().abs() <= LARGEST,
+            false => it.bound().abs() <= MAX_SIZE,
         };
         let is_large = || self.present().is_none_or(|(_, state)| !state.iter().all(within));
         self.ending() == Some(&Ending::Undecided) && is_large()

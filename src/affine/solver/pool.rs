@@ -10,7 +10,7 @@ use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex};
 
 /// The largest number of graphs in the pool: one for each thread that runs the system.
-const MOST: usize = 64;
+const MAX_GRAPHS: usize = 64;
 
 /// A pool of the graphs and starts that no run uses at present.
 #[derive(Clone, Debug)]
@@ -63,7 +63,7 @@ impl<T: Copy> Loan<'_, T> {
 impl<T> Drop for Loan<'_, T> {
     fn drop(&mut self) {
         if let Ok(mut all) = self.pool.returned.lock()
-            && all.len() < MOST
+            && all.len() < MAX_GRAPHS
         {
             let graph = std::mem::take(&mut self.own.graph);
             let starts = std::mem::take(&mut self.own.starts);

@@ -10,13 +10,13 @@ use crate::affine::zeros::residue::residues;
 use crate::affine::zeros::space::{ZeroSpace, kernel};
 
 /// The largest number of starts in the cache.
-const MOST: usize = 8;
+const MAX_STARTS: usize = 8;
 
 /// A cache of the starts of the last runs.
 #[derive(Clone, Debug)]
 pub(super) struct StartCache<T> {
     entries: Vec<CachedStart<T>>,
-    /// The index of the start that the next new one replaces, once there are [`MOST`].
+    /// The index of the start that the next new one replaces, once there are [`MAX_STARTS`].
     oldest: usize,
 }
 
@@ -68,11 +68,11 @@ impl<T: Copy> StartCache<T> {
     }
 
     fn keep(&mut self, start: CachedStart<T>) {
-        if self.entries.len() < MOST {
+        if self.entries.len() < MAX_STARTS {
             self.entries.push(start);
         } else {
             self.entries[self.oldest] = start;
-            self.oldest = (self.oldest + 1) % MOST;
+            self.oldest = (self.oldest + 1) % MAX_STARTS;
         }
     }
 }

@@ -52,14 +52,16 @@ impl Circle {
 
     /// The number of the rational point that is nearest to an angle, if the two are well apart.
     pub fn nearest(&self, cos: f64, sin: f64) -> Option<usize> {
-        /// The points' distances differ by much more than the rounding of f64.
-        const APART: f64 = 1e-6;
+        /// The least difference of the two points' distances, and the largest distance of the
+        /// nearer one: far above the rounding of f64.
+        const DISTANCE_TOLERANCE: f64 = 1e-6;
         let distance = |[x, y]: &[Rational; 2]| {
             let (x, y) = (x.to_f64() - cos, y.to_f64() - sin);
             (x * x + y * y).sqrt()
         };
         let [first, second] = self.points.as_ref()?.each_ref().map(distance);
-        let is_apart = (first - second).abs() > APART && first.min(second) < APART;
+        let is_apart =
+            (first - second).abs() > DISTANCE_TOLERANCE && first.min(second) < DISTANCE_TOLERANCE;
         is_apart.then_some(usize::from(second < first))
     }
 }

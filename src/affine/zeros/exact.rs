@@ -192,15 +192,16 @@ fn first_sign(values: &[Rational]) -> Option<(usize, bool)> {
 /// The exact zero of which a rounded one is known, by how far each is away, which has at most this
 /// error: the next one is much farther.
 fn nearest<Z: PartialEq>(mut zeros: Vec<Z>, away: impl Fn(&Z) -> f64, error: f64) -> Option<Z> {
-    /// The rounding of f64, with room.
-    const NEAR: f64 = 1e-9;
-    /// So many times as far the next zero is at least.
-    const APART: f64 = 1e3;
+    /// The largest distance of a zero found in f64, whose rounding is smaller.
+    const ZERO_TOLERANCE: f64 = 1e-9;
+    /// The least distance of the next zero, in distances of this one and its error.
+    const MIN_ISOLATION_RATIO: f64 = 1e3;
     zeros.dedup();
     zeros.sort_by(|a, b| away(a).total_cmp(&away(b)));
     let distance = away(zeros.first()?);
-    let is_alone = zeros.get(1).is_none_or(|it| away(it) > APART * (distance + error));
-    (distance < NEAR && is_alone).then(|| zeros.swap_remove(0))
+    let is_alone =
+        zeros.get(1).is_none_or(|it| away(it) > MIN_ISOLATION_RATIO * (distance + error));
+    (distance < ZERO_TOLERANCE && is_alone).then(|| zeros.swap_remove(0))
 }
 
 /// A constant and an oscillation: c + a cos(w t) + b sin(w t)/w.

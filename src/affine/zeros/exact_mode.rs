@@ -7,7 +7,7 @@ use crate::affine::model::rational::Rational;
 use crate::affine::model::system::{Mode, Row, Successor, System};
 
 /// The most bits of a rational entry: what is longer is not followed any more.
-const LONGEST: usize = 4096;
+const MAX_ENTRY_BITS: usize = 4096;
 
 /// A guard with the forcing angle in it: a cos theta + b sin theta + rest.
 #[derive(Clone, Debug)]
@@ -80,7 +80,7 @@ impl ExactMode {
 
 /// The entries after a reset, as far as they are known and not too long.
 pub fn entries_after(reset: &[Row], entries: &Entries) -> Entries {
-    let is_short = |it: &Rational| it.bits().0 + it.bits().1 < LONGEST;
+    let is_short = |it: &Rational| it.bits().0 + it.bits().1 < MAX_ENTRY_BITS;
     reset.iter().map(|row| product(row, entries).filter(is_short)).collect()
 }
 

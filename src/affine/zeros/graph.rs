@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The number of nodes at which all are discarded: a system that counts its own events has a new
 /// node at each of them.
-const MOST_NODES: usize = 4096;
+const MAX_NODES: usize = 4096;
 
 /// A mode's rows modulo primes.
 #[derive(Clone, Debug)]
@@ -175,7 +175,7 @@ impl ZeroGraph {
             return known;
         }
         let after = arrival.after.clone();
-        if self.nodes.len() >= MOST_NODES {
+        if self.nodes.len() >= MAX_NODES {
             self.nodes.clear();
             self.known.clear();
             return self.intern(mode, after);

@@ -15,7 +15,7 @@ pub enum Touch {
 }
 
 /// Room for the rounding of times in f64, which add up to less.
-const ROOM: f64 = 1e-9;
+const TIME_TOLERANCE: f64 = 1e-9;
 
 impl Touch {
     /// The tops of an oscillation of a frequency that is at its top at an angle, where zero is not
@@ -28,7 +28,7 @@ impl Touch {
 
     /// Whether a touch may lie between two times after the origin, these included.
     pub fn may_lie_in(self, [from, to]: [f64; 2]) -> bool {
-        let room = ROOM * to.abs();
+        let room = TIME_TOLERANCE * to.abs();
         let [from, to] = [from - room, to + room];
         let next = match self {
             Self::Once(time) => time,

@@ -9,9 +9,7 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::file::{GivenParameter, SystemFile};
 use crate::affine::model::observable::Observable;
 use crate::affine::model::scalar::Scalar;
-use crate::affine::model::system::{
-    LARGEST_COUNT, LARGEST_DIMENSION, Origin, Row, System, TROUBLE,
-};
+use crate::affine::model::system::{LARGEST_DIMENSION, MAX_COUNT, Origin, Row, System, TROUBLE};
 use crate::affine::model::tangent::Name;
 use mode::ModeReader;
 use names::Names;
@@ -138,8 +136,8 @@ fn mode_places(file: &SystemFile) -> Result<BTreeMap<String, usize>, SystemError
             return Err(file.error(&mode.name.span(), &what));
         }
     }
-    if places.is_empty() || places.len() > LARGEST_COUNT {
-        let what = format!("{} modes are not accepted: 1 to {LARGEST_COUNT} are", places.len());
+    if places.is_empty() || places.len() > MAX_COUNT {
+        let what = format!("{} modes are not accepted: 1 to {MAX_COUNT} are", places.len());
         return Err(file.error(&file.tables.name.span(), &what));
     }
     Ok(places)

@@ -13,7 +13,7 @@ use crate::affine::model::naming::{check_event, unknown_mode};
 use crate::affine::model::rational::Rational;
 use crate::affine::model::scalar::{Assignment, Condition, Scalar};
 use crate::affine::model::system::{
-    Direction, LARGEST_COUNT, Limit, Mode, Row, Successor, Until, Watch,
+    Direction, Limit, MAX_COUNT, Mode, Row, Successor, Until, Watch,
 };
 use crate::unknown_name::UnknownName;
 use std::collections::{BTreeMap, BTreeSet};
@@ -46,9 +46,9 @@ impl ModeReader<'_> {
         }
         matrix.push(vec![Rational::ZERO; dimension]);
         let count = table.until.len() + table.watch.len();
-        if count > LARGEST_COUNT {
+        if count > MAX_COUNT {
             let what =
-                format!("{count} events are too many: up to {LARGEST_COUNT} a mode are accepted");
+                format!("{count} events are too many: up to {MAX_COUNT} a mode are accepted");
             return Err(self.file.error(&table.name.span(), &what));
         }
         self.check_events(table)?;
@@ -224,10 +224,8 @@ impl ModeReader<'_> {
     ) -> Result<Vec<Successor>, SystemError> {
         let refuse = |what: &str| Err(self.file.error(span, what));
         let count = next.len();
-        if count == 0 || count > LARGEST_COUNT {
-            return refuse(&format!(
-                "{count} successors are not accepted: 1 to {LARGEST_COUNT} are"
-            ));
+        if count == 0 || count > MAX_COUNT {
+            return refuse(&format!("{count} successors are not accepted: 1 to {MAX_COUNT} are"));
         }
         let mut successors = Vec::with_capacity(count);
         for (n, entry) in next.iter().enumerate() {
@@ -250,8 +248,8 @@ impl ModeReader<'_> {
         table: &StartTable,
     ) -> Result<Vec<Successor>, SystemError> {
         let count = table.modes.len();
-        if count > LARGEST_COUNT {
-            let what = format!("{count} modes of a start are too many: 1 to {LARGEST_COUNT} are");
+        if count > MAX_COUNT {
+            let what = format!("{count} modes of a start are too many: 1 to {MAX_COUNT} are");
             return Err(SystemError::at(&table.place, &format!("{what} accepted")));
         }
         let mut choices = Vec::with_capacity(count);
