@@ -3,7 +3,9 @@
 use crate::one_sided::{Effort, OneSidedEnd, one_sided_end};
 use crate::{Case, Family};
 use percuss::affine::DoubleDouble;
-use percuss::insides::crossing::limit::{GRANTED, LAST_ROOT, MOST, PER_RADIAN};
+use percuss::insides::crossing::limit::{
+    EVALUATIONS_PER_RADIAN, GRANTED_EVALUATIONS, LAST_ROOT_EVALUATIONS, MAX_EVALUATIONS,
+};
 use percuss::{Exit, Model, Parameters, Phase, Segment, State};
 
 /// Phases followed in one run.
@@ -128,7 +130,7 @@ fn without_horizon(
     let mut run = model.trajectory(*segment.entry());
     let Some(whole) = run.next() else { return Err("no phase without a horizon".to_owned()) };
     let counters = run.counters();
-    let limit = SEARCHES * (MOST + GRANTED + LAST_ROOT);
+    let limit = SEARCHES * (MAX_EVALUATIONS + GRANTED_EVALUATIONS + LAST_ROOT_EVALUATIONS);
     let evaluations = counters.evaluations;
     ensure!(evaluations <= limit, "{evaluations} evaluations without a horizon");
     let (cut, free) = (segment.duration(), whole.duration());
@@ -222,8 +224,9 @@ impl History {
         // horizon is looked for twice.
         let omega = model.parameters().omega;
         let clear = duration.min(periods * model.period()) + 0.2 / omega;
-        let granted = (GRANTED as f64 + PER_RADIAN * (1.0 + omega) * clear).min(MOST as f64);
-        let limit = 2.0 * (granted + LAST_ROOT as f64);
+        let granted = (GRANTED_EVALUATIONS as f64 + EVALUATIONS_PER_RADIAN * (1.0 + omega) * clear)
+            .min(MAX_EVALUATIONS as f64);
+        let limit = 2.0 * (granted + LAST_ROOT_EVALUATIONS as f64);
         ensure!((evaluations as f64) <= limit, "{evaluations} evaluations, the limit is {limit}");
 
         self.stuck = if duration > 0.0 { 0 } else { self.stuck + 1 };

@@ -16,45 +16,46 @@ pub const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
 
 /// A trial force in lanes this near to a threshold is left to the scalar solver: it is rounded in
 /// another order, and the decision is not to depend on that.
-pub const LANE_TIE: f64 = 16.0 * FOUR_ULPS;
+pub const LANE_TIE_TOLERANCE: f64 = 16.0 * FOUR_ULPS;
 
 /// What each step of a contact that is followed in steps may round off, in eps of its parts.
 pub const STEP_ROUNDINGS: f64 = 16.0;
 
-/// How much longer than a step the last one may be.
-pub const REST: f64 = 1.3;
+/// The largest length of the last step, in lengths of the others.
+pub const MAX_LAST_STEP_RATIO: f64 = 1.3;
 
 /// Pieces in which a contact is certified before its search divides it.
-pub const PIECES: usize = 8;
+pub const CONTACT_PIECES: usize = 8;
 
 /// Shorter pieces that lanes take where the usual ones do not prove a contact; the solver divides
 /// there instead.
 pub const LANE_FINE_PIECES: usize = 16;
 
 /// Stretches of negative force in which a flight is certified by tangents.
-pub const STRETCHES: usize = 8;
+pub const TANGENT_STRETCHES: usize = 8;
 
 /// The forcing angle up to which one interpolant is tried for a whole flight or progression.
-pub const LONGEST_ANGLE: f64 = 4.0;
+pub const MAX_WHOLE_PHASE_RADIANS: f64 = 4.0;
 
 /// Steps in which the end of a contact is guessed. Lanes guess other ends in as many; the solver
 /// goes on there.
 pub const GUESS_STEPS: usize = 24;
 
 /// Evaluations in which a guess has to lead to a root.
-pub const ATTEMPTS: usize = 5;
+pub const GUESS_EVALUATIONS: usize = 5;
 
 /// The longest step from an evaluation to a root, against the time of the root: over a longer one
 /// the rounding of the evaluation would show.
-pub const LONGEST_STEP: f64 = 0.25;
+pub const MAX_ROOT_STEP: f64 = 0.25;
 
-/// What may be left of an excess where its cubic is zero: the series puts it right.
-pub const RESIDUAL: f64 = 1e-6;
+/// The largest share of an excess that may be left where its cubic is zero: the series puts it
+/// right.
+pub const RESIDUAL_TOLERANCE: f64 = 1e-6;
 
 /// The part of an exponential below which one step of a guess forgets it.
-pub const SHORT_LIVED: f64 = 0.05;
+pub const NEGLIGIBLE_DECAY: f64 = 0.05;
 
 /// Margin on the largest force in lanes, in its amplitudes. Lanes take the largest force up to the
 /// time in question, which only the rounding of its cosine can exceed; the solver bounds it by its
-/// amplitudes ([`crate::flow::steps::SINKING`]).
-pub const LANE_SINKING: f64 = 1e-12;
+/// amplitudes ([`crate::flow::steps::FORCE_FACTOR`]).
+pub const LANE_FORCE_MARGIN: f64 = 1e-12;

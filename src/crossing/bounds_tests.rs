@@ -39,7 +39,7 @@ impl Eighth for Progression<f64> {
 }
 
 /// Times after the evaluation, in units of the motion's shortest time.
-const LATER: [f64; 8] = [0.0, 0.1, 0.3, 0.7, 1.3, 2.5, 5.0, 20.0];
+const LATER_TIMES: [f64; 8] = [0.0, 0.1, 0.3, 0.7, 1.3, 2.5, 5.0, 20.0];
 
 /// The bounds at `from` hold at all later times, up to the rounding of the derivatives: each order
 /// multiplies the guard's terms by the fastest rate, with a few roundings.
@@ -47,7 +47,7 @@ fn hold<P: Eighth>(phase: &P, from: f64) -> Result<(), TestCaseError> {
     let here = phase.at(from);
     let (least, most) = phase.eighth_within(&here);
     let rate = phase.fastest_rate();
-    for later in LATER {
+    for later in LATER_TIMES {
         let there = phase.at(from + later / rate);
         let derivatives = phase.series::<9>(&there).0;
         let size: f64 = (0..4).map(|k| derivatives[k].abs() / rate.powi(k as i32)).sum();

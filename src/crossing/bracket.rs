@@ -37,7 +37,7 @@ pub fn bracketed<G: Guarded>(
         }
         let interior = root > inside && root < outside;
         // Newton's steps may creep, where a bracket holds many oscillations.
-        let creeps = halvings > PLAIN && halvings.is_multiple_of(2);
+        let creeps = halvings > MAX_PLAIN_STEPS && halvings.is_multiple_of(2);
         let next = if within && interior && !creeps { root } else { middle };
         point = evaluate_again(phase, next, counters);
         let excess = corridor.excess(point.guard.orders[0]);
@@ -55,14 +55,14 @@ pub fn bracketed<G: Guarded>(
 
 /// Steps towards a root after which it counts as hidden: Newton's method, or halving, has not found
 /// it.
-const PLAIN: usize = 8;
+const MAX_PLAIN_STEPS: usize = 8;
 
 /// The time between two times at which the search looks next. A root that some halvings have not
 /// found may be smaller by orders of magnitude: then it is the exponent that is halved, so that
 /// 1e-300 is no further than 1e-3.
 pub fn middle(inside: f64, outside: f64, halvings: usize) -> f64 {
     let smallest = inside.max(f64::MIN_POSITIVE);
-    if halvings > PLAIN && outside > 4.0 * smallest {
+    if halvings > MAX_PLAIN_STEPS && outside > 4.0 * smallest {
         (smallest.sqrt() * outside.sqrt()).max(inside)
     } else {
         0.5 * (inside + outside)

@@ -1,11 +1,11 @@
 //! Finds almost every event: from a guess, one closed-form evaluation per step and a Taylor series
 //! at the end lead to a candidate, and one certificate proves that it is the first crossing.
 
-use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL, SLACK};
+use crate::crossing::allowances::{GUESS_EVALUATIONS, MAX_ROOT_STEP, RESIDUAL_TOLERANCE, SLACK};
 use crate::crossing::{Counters, Guarded, Proof, Root, SearchHint, Side, ThresholdEnds, slack};
 use crate::flow::Point;
 use crate::flow::steps::Steps;
-use crate::numeric::roots::{CubicPolynomial, EXACT_SQUARE};
+use crate::numeric::roots::{CubicPolynomial, MIN_EXACT_SQUARE};
 use crate::numeric::series::{SHORT_TERMS, Series, TERMS};
 use crate::numeric::two_word::TwoWord;
 
@@ -92,7 +92,7 @@ pub(super) fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep
     let over = if rises { above } else { below };
     let cubic = CubicPolynomial { value: over, slope, bend, third };
     let step = cubic.near_zero().unwrap_or_else(|| cubic.zero());
-    let room = SLACK * point.guard.largest_term + RESIDUAL * over.abs();
+    let room = SLACK * point.guard.largest_term + RESIDUAL_TOLERANCE * over.abs();
     CubicStep { step, rises, settled: cubic.at(step).abs() <= room }
 }
 
@@ -112,7 +112,7 @@ impl CubicStep {
     /// to `left` than the point is that the point's rounding would show.
     pub fn is_short(&self, point: &Point<f64>, left: f64, reach: f64) -> bool {
         let root = point.elapsed + self.step;
-        self.settled && self.step.abs() <= reach && self.step.abs() <= LONGEST_STEP * (root - left)
+        self.settled && self.step.abs() <= reach && self.step.abs() <= MAX_ROOT_STEP * (root - left)
     }
 }
 
@@ -142,20 +142,20 @@ fn polished_by<G: Guarded, const N: usize>(
     /// What Newton's last step may change the slope by: it is put right to fifth order, which
     /// leaves REACH^4/24 = 3e-8 of that, so that the force of an impact keeps its digits; the time
     /// is settled by twice as many.
-    const SETTLED: f64 = 1e-9;
+    const SLOPE_CHANGE_TOLERANCE: f64 = 1e-9;
     let CubicStep { mut step, rises, .. } = *cubic;
     let corridor = phase.corridor();
     let threshold = if rises { corridor.high } else { corridor.low };
-    for attempt in 1..=ATTEMPTS {
+    for attempt in 1..=GUESS_EVALUATIONS {
         let (value, slope) = series.value_and_slope(step);
         let change = (threshold - value) / slope;
         step += change;
         let bend = series.bend(step);
         let gain = change * (bend + 0.5 * change * series.0[3]);
-        let settled = gain.abs() <= SETTLED * slope.abs();
+        let settled = gain.abs() <= SLOPE_CHANGE_TOLERANCE * slope.abs();
         // Next to a graze rounding keeps the time from settling any further.
         let hidden = (value - threshold).abs() <= SLACK * point.guard.largest_term;
-        if settled || (attempt == ATTEMPTS && hidden) {
+        if settled || (attempt == GUESS_EVALUATIONS && hidden) {
             if !passes((value - threshold, slope, bend), rises, slack(phase, point, point)) {
                 return None;
             }
@@ -185,7 +185,7 @@ fn passes((over, slope, bend): (f64, f64, f64), rises: bool, slack: f64) -> bool
     let outward = if rises { 1.0 } else { -1.0 };
     let (bend, over) = (bend * outward, over * outward - slack);
     let square = slope * slope;
-    if square >= EXACT_SQUARE {
+    if square >= MIN_EXACT_SQUARE {
         square > 2.0 * bend * over
     } else {
         passes_without_squares(slope, bend, over)
@@ -212,7 +212,7 @@ pub fn follow<G: Guarded>(
     let [_, reach] = phase.reaches();
     let mut point = evaluate(phase, guess, counters);
     let mut last_step = f64::INFINITY;
-    for _ in 0..ATTEMPTS {
+    for _ in 0..GUESS_EVALUATIONS {
         let cubic = cubic_step(phase, &point);
         let step = cubic.step;
         let next = point.elapsed + step;
@@ -240,7 +240,7 @@ mod tests {
 
     /// Excess, slope, bend and slack next to a threshold, and whether the guard passes it: a crest
     /// of slope^2/(2 bend) above the excess, less the slack.
-    const NEXT_TO_A_CREST: [([f64; 4], bool); 7] = [
+    const CREST_CASES: [([f64; 4], bool); 7] = [
         ([0.0, 1.0, -1.0, 0.4], true),
         ([0.0, 1.0, -1.0, 0.6], false),
         ([-0.3, 1.0, -1.0, 0.1], true),
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn a_crest_passes_its_threshold_or_not_at_every_scale() {
-        for ([over, slope, bend, slack], passing) in NEXT_TO_A_CREST {
+        for ([over, slope, bend, slack], passing) in CREST_CASES {
             for scale in [1.0, 1e-100, 1e-144, 1e-146, 1e-150, 1e-200, 1e-290] {
                 let [over, slope, bend, slack] = [over, slope, bend, slack].map(|it| it * scale);
                 let rises = passes((over, slope, bend), true, slack);

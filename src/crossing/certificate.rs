@@ -16,7 +16,7 @@ use crate::numeric::real::Real;
 
 /// 8! C(8, 4): the middle Bernstein coefficient of s^4 (1 - s)^4/8! is its inverse, and all others
 /// are zero.
-pub const MIDDLE: f64 = 2_822_400.0;
+pub const REMAINDER_DIVISOR: f64 = 2_822_400.0;
 
 /// The guard, or something that bounds it, on a piece.
 #[derive(Clone, Copy, Debug)]
@@ -98,7 +98,7 @@ impl Piece {
     #[inline]
     fn bounds(&self, middle: f64) -> (f64, f64) {
         let square = self.length * self.length;
-        let scale = square * square * (square * square) * (1.0 / MIDDLE);
+        let scale = square * square * (square * square) * (1.0 / REMAINDER_DIVISOR);
         let (least, most) = self.eighth;
         (middle + least.smaller(0.0) * scale, middle + most.larger(0.0) * scale)
     }

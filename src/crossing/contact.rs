@@ -17,10 +17,10 @@ use std::borrow::Borrow;
 
 /// The longest reach, a length times the rate at which derivatives repeat a rounding, at which
 /// the slack has room for the derivatives in a piece's coefficients.
-const FEW: f64 = 4.0;
+const MAX_REACH: f64 = 4.0;
 
 /// The angle of the faster of forcing and free oscillation up to which one piece must do.
-const SHORT: f64 = 2.0;
+const MAX_PIECE_RADIANS: f64 = 2.0;
 
 /// Contact's trial force split into what is forced for ever and what dies out.
 #[derive(Clone, Copy, Debug)]
@@ -45,17 +45,17 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// no derivative.
     pub(super) fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
         /// The recurrence rounds in each of its eight steps, and the sums here round as well.
-        const RECURRENCE: f64 = 16.0;
+        const RECURRENCE_ROUNDINGS: f64 = 16.0;
         /// The squares of two numbers whose sum is smaller may underflow.
-        const SQUARABLE: f64 = 1e-140;
+        const MIN_SQUARABLE_SUM: f64 = 1e-140;
         let [[a, b], [c, d]] = self.constants.borrow().free_eighth;
         let [x, rate, ..] = split.free;
         let [ax, br, cx, dr] = [a * x, b * rate, c * x, d * rate];
         let (eighth, ninth) = (ax + br, cx + dr);
         let terms = (ax.abs() + br.abs()) + (cx.abs() + dr.abs());
-        let room = RECURRENCE * f64::EPSILON * terms;
+        let room = RECURRENCE_ROUNDINGS * f64::EPSILON * terms;
         // The norm of two numbers without squares is at most their sum.
-        let norm = if terms > SQUARABLE {
+        let norm = if terms > MIN_SQUARABLE_SUM {
             (eighth * eighth + ninth * ninth).sqrt()
         } else {
             eighth.abs() + ninth.abs()
@@ -80,7 +80,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         let Constants { omega, two_xi, .. } = *self.constants.borrow();
         // Most pieces are short at any of the rates.
         let length = right.elapsed - left.elapsed;
-        if length <= FEW && length * two_xi <= FEW && length * omega <= FEW {
+        if length <= MAX_REACH && length * two_xi <= MAX_REACH && length * omega <= MAX_REACH {
             return 0.0;
         }
         self.room_of_a_long_piece(left, right)
@@ -95,7 +95,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             _ => two_xi.max(1.0),
         };
         let reach = (right.elapsed - left.elapsed) * rate;
-        if reach <= FEW {
+        if reach <= MAX_REACH {
             return 0.0;
         }
         // The derivatives' weights in the fourth coefficient of degree eight, the largest there
@@ -141,10 +141,10 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// threshold within much less than what dies out before.
     fn dies_out_next_to_a_threshold(&self) -> bool {
         /// A steady state of more than this has nine digits left when the rest has died out.
-        const NEXT: f64 = 1e-6;
+        const MIN_STEADY_SHARE: f64 = 1e-6;
         let Constants { b, two_xi, steady, .. } = *self.constants.borrow();
         let free = (self.offset + (self.reference - b)).abs() + (two_xi + 1.0) * self.entry.y.abs();
-        (b - self.nearest_threshold()).abs() + steady.amplitude < NEXT * free
+        (b - self.nearest_threshold()).abs() + steady.amplitude < MIN_STEADY_SHARE * free
     }
 
     /// The parts of the trial force, from their split.
@@ -228,7 +228,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         if verdict != Proof::Open {
             return verdict;
         }
-        if length * self.constants.borrow().omega.max(1.0) < SHORT {
+        if length * self.constants.borrow().omega.max(1.0) < MAX_PIECE_RADIANS {
             let inside = whole.stays_inside_in_parts(&corridor, ends, slack);
             return if inside { Proof::Inside } else { verdict };
         }
@@ -237,9 +237,9 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
 
     fn stage(&self) -> f64 {
         /// Over so many decay times the trial force loses three to four of its sixteen digits.
-        const DECAY_TIMES: f64 = 8.0;
+        const STAGE_DECAY_TIMES: f64 = 8.0;
         if self.dies_out_next_to_a_threshold() {
-            DECAY_TIMES / self.constants.borrow().decays().0
+            STAGE_DECAY_TIMES / self.constants.borrow().decays().0
         } else {
             f64::INFINITY
         }
@@ -320,12 +320,12 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         (ends, room): (ThresholdEnds, f64),
     ) -> Proof {
         /// Under stronger damping the free part's derivatives would multiply its rounding.
-        const MILD: f64 = 4.0;
+        const MAX_DAMPING: f64 = 4.0;
         let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
         let slack = slack(self, left, right);
         let [x, x1, x2, x3] = split.free;
         let length = right.elapsed - left.elapsed;
-        if two_xi < MILD {
+        if two_xi < MAX_DAMPING {
             let size = split.amplitude + x.abs() + x1.abs();
             let stepped = slack + STEP_ROUNDINGS * f64::EPSILON * (size + b.abs());
             let shape = self.shape(self.eighth(free), stepped);

@@ -42,9 +42,9 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// Whether the steady state, which the trial force approaches, fits inside by rounding alone.
     pub(super) fn rests_by_rounding(&self) -> bool {
         /// The amplitude is good to a few eps, and [`Self::fits`] allows four of them.
-        const ROOM: f64 = 1.0 + 16.0 * f64::EPSILON;
+        const AMPLITUDE_FACTOR: f64 = 1.0 + 16.0 * f64::EPSILON;
         let Constants { b, steady, .. } = *self.constants.borrow();
-        let reach = ROOM * steady.amplitude;
+        let reach = AMPLITUDE_FACTOR * steady.amplitude;
         reach > 1.0 - b || reach > b
     }
 
@@ -52,9 +52,9 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// steady state beyond a threshold by its last digit is beyond it, so b itself gets no room:
     /// 1 - b is exact for b of at least 1/2, and else half a unit of what fits into it.
     fn fits(&self, up: f64, down: f64) -> bool {
-        const KEPT: f64 = 1.0 - 4.0 * f64::EPSILON;
+        const ROUNDING_FACTOR: f64 = 1.0 - 4.0 * f64::EPSILON;
         let b = self.constants.borrow().b;
-        KEPT * up <= 1.0 - b && KEPT * down <= b
+        ROUNDING_FACTOR * up <= 1.0 - b && ROUNDING_FACTOR * down <= b
     }
 
     /// Looks from critical damping on, where what dies out keeps its sign: for x = f - b less
@@ -93,23 +93,23 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// part moves no faster than its amplitude times omega, around which the free part keeps
     /// within its own energy norm: that carries where the forcing is slow.
     fn calm(&self, left: &Point<f64>, split: &Split) -> f64 {
-        const ROOM: f64 = 1e-12;
+        const FORCE_TOLERANCE: f64 = 1e-12;
         let Constants { a, b, two_xi, omega, .. } = *self.constants.borrow();
         let f = left.guard.orders[0] + self.reference;
         let push = a * 1.0_f64.hypot(two_xi * omega);
-        let weak = (b.min(1.0 - b) - (f - b).hypot(left.guard.orders[1]) - ROOM) / push;
+        let weak = (b.min(1.0 - b) - (f - b).hypot(left.guard.orders[1]) - FORCE_TOLERANCE) / push;
         let free = split.free[0].hypot(split.free[1]);
         let steady = f - split.free[0];
-        let slow = (steady.min(1.0 - steady) - free - ROOM) / (split.amplitude * omega);
+        let slow = (steady.min(1.0 - steady) - free - FORCE_TOLERANCE) / (split.amplitude * omega);
         weak.max(slow)
     }
 
     /// The first place where a cubic from `left` leaves the corridor, if that is soon.
     #[inline(always)]
     fn soon(&self, left: &Point<f64>) -> Option<f64> {
-        const SOON: f64 = 0.4;
+        const CUBIC_REACH: f64 = 0.4;
         let [f, f1, f2, f3] = left.guard.orders;
-        let horizon = SOON / self.fastest_rate();
+        let horizon = CUBIC_REACH / self.fastest_rate();
         let cubic = |d: f64| f + d * (f1 + d * (0.5 * f2 + d * (f3 * (1.0 / 6.0))));
         let corridor = self.corridor();
         let beyond = |d: &f64| corridor.excess(cubic(*d)) >= 0.0;
@@ -136,16 +136,17 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// under strong damping, as its fast part lives and dies.
     #[inline(always)]
     fn exit(&self, steps: &Steps, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
-        const QUICK: usize = 16;
-        const DEAD: f64 = 40.0; // exp(-40) is below the rounding of what it is added to
+        const QUICK_STEPS: usize = 16;
+        // exp(-40) is below the rounding of what it is added to.
+        const NEGLIGIBLE_DECAY_TIMES: f64 = 40.0;
         let shape = self.shape(0.0, 0.0);
         let mut parts = self.parts(left, split);
         let mut look = &steps.contact_look;
         if let Damping::Over { fast, .. } = self.constants.borrow().damping {
-            if fast * left.elapsed > DEAD {
+            if fast * left.elapsed > NEGLIGIBLE_DECAY_TIMES {
                 look = &steps.slow_look;
             } else {
-                match parts.first_exit(&shape, &steps.quick_look, QUICK) {
+                match parts.first_exit(&shape, &steps.quick_look, QUICK_STEPS) {
                     Ok(time) => return Ok(time),
                     Err(further) => parts = further,
                 }

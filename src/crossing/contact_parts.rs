@@ -4,7 +4,7 @@
 //! The force less b is a free oscillation and a forced one. A step of the model's own length
 //! turns both by known factors, so that places around an evaluation need none of their own.
 
-use crate::crossing::allowances::{PIECES, REST};
+use crate::crossing::allowances::{CONTACT_PIECES, MAX_LAST_STEP_RATIO};
 use crate::crossing::certificate::Piece;
 use crate::crossing::{Corridor, Proof, ThresholdEnds};
 use crate::flow::steps::ContactStep;
@@ -132,9 +132,9 @@ impl ContactParts<f64> {
         };
         let (mut here, mut orders) = (*self, *orders);
         let mut left_ends = ThresholdEnds { right: false, ..ends };
-        for _ in 0..PIECES {
+        for _ in 0..CONTACT_PIECES {
             let rest = right - here.elapsed;
-            if rest < REST * step.length {
+            if rest < MAX_LAST_STEP_RATIO * step.length {
                 let ends = ThresholdEnds { right: ends.right, ..left_ends };
                 return inside(&orders, right_orders, rest, ends);
             }

@@ -16,13 +16,13 @@ impl Piece {
 
     /// Makes one Newton step on the slope, where an end is already near a crest of the excess.
     fn crest_next_to_an_end(&self, corridor: &Corridor) -> Option<f64> {
-        const NEAR: f64 = 0.1; // of the piece
+        const MAX_STEP_SHARE: f64 = 0.1; // of the piece
         let newton = |orders: &[f64; 4]| {
             let [value, slope, bend, _] = *orders;
             let outward = if value - corridor.high >= corridor.low - value { 1.0 } else { -1.0 };
             (bend * outward < 0.0).then(|| -slope / bend)
         };
-        let near = NEAR * self.length;
+        let near = MAX_STEP_SHARE * self.length;
         let from_left = newton(&self.left).filter(|step| *step > 0.0 && *step < near);
         let from_right = newton(&self.right).filter(|step| *step < 0.0 && *step > -near);
         from_left.or(from_right.map(|step| self.length + step))

@@ -12,20 +12,20 @@ use crate::flow::steps::Steps;
 use std::f64::consts::TAU;
 
 /// Evaluations that the search of one phase may take wherever it stands.
-pub const GRANTED: u64 = 4096;
+pub const GRANTED_EVALUATIONS: u64 = 4096;
 
 /// Evaluations granted for each radian of the forcing and each unit of time that are proved to be
 /// clear. A certificate of degree eight reaches about a radian of the fastest harmonic, and halving
 /// finds such pieces with as many evaluations again: 64 leave a factor of thirty.
-pub const PER_RADIAN: f64 = 64.0;
+pub const EVALUATIONS_PER_RADIAN: f64 = 64.0;
 
 /// Evaluations that the search of one phase may take in all, however long the phase: a second or
 /// so.
-pub const MOST: u64 = 1 << 20;
+pub const MAX_EVALUATIONS: u64 = 1 << 20;
 
 /// Evaluations by which a search may pass its limit: those of one bracketed root, which are not
 /// interrupted.
-pub const LAST_ROOT: u64 = 1200;
+pub const LAST_ROOT_EVALUATIONS: u64 = 1200;
 
 /// The work that is left to one search.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,8 @@ impl Limit {
     pub fn is_passed(&self, elapsed: f64, counters: &Counters) -> bool {
         let spent = counters.evaluations - self.begun;
         // Written so that a NaN has passed it.
-        let honest = spent as f64 <= GRANTED as f64 + PER_RADIAN * self.pace * elapsed;
-        spent > GRANTED && (!honest || spent > MOST)
+        let honest = spent as f64
+            <= GRANTED_EVALUATIONS as f64 + EVALUATIONS_PER_RADIAN * self.pace * elapsed;
+        spent > GRANTED_EVALUATIONS && (!honest || spent > MAX_EVALUATIONS)
     }
 }

@@ -1,6 +1,6 @@
 //! The guard of a flight: h rises to zero at the impact.
 
-use crate::crossing::allowances::LONGEST_ANGLE;
+use crate::crossing::allowances::MAX_WHOLE_PHASE_RADIANS;
 use crate::crossing::certificate::Piece;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::slow_envelope::{EnvelopePlace, SlowEnvelope};
@@ -9,7 +9,7 @@ use crate::crossing::{Corridor, Guarded, Proof, SearchHint, ThresholdEnds, slack
 use crate::flow::constants::Constants;
 use crate::flow::forcing::{EntryAngle, Push};
 use crate::flow::no_contact::{NoContact, PushedOrders};
-use crate::flow::steps::{PULLING, Steps, Turning};
+use crate::flow::steps::{MAX_PULLING_DECAY_TIMES, Steps, Turning};
 use crate::flow::{Jet, Point};
 use crate::numeric::remainders::short_decay;
 use crate::numeric::roots::first_root;
@@ -72,23 +72,25 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
     /// three derivatives. Steps might pass over a short contact, and to find that out costs more
     /// than all of the search.
     pub fn first_closing(&self) -> Option<f64> {
-        /// Against the rates of the harmonic and of the spring.
-        const SOON: f64 = 0.7;
-        const SETTLED: f64 = 0.1;
+        /// The longest time to a closing, in the shortest time of the harmonic and of the spring.
+        const CUBIC_REACH: f64 = 0.7;
+        /// The largest last step of Newton's method, beside the time.
+        const STEP_TOLERANCE: f64 = 0.1;
         if self.surface.is_some() {
             return None;
         }
         let Constants { omega, rate, .. } = *self.constants.borrow();
         let fastest = if self.entry.q == 0.0 { omega } else { omega.max(rate) };
         let [h, h1, h2, h3] = self.entry().guard.orders;
-        let mut time = first_root(h, h1, h2).filter(|it| it * fastest < SOON)?;
+        let mut time = first_root(h, h1, h2).filter(|it| it * fastest < CUBIC_REACH)?;
         let mut change = 0.0;
         for _ in 0..3 {
             let value = h + time * (h1 + time * (0.5 * h2 + time * (h3 * (1.0 / 6.0))));
             change = value / (h1 + time * (h2 + time * (0.5 * h3)));
             time -= change;
         }
-        let closes = time > 0.0 && time * fastest < SOON && change.abs() < SETTLED * time;
+        let closes =
+            time > 0.0 && time * fastest < CUBIC_REACH && change.abs() < STEP_TOLERANCE * time;
         closes.then_some(time)
     }
 }
@@ -160,10 +162,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, .. } = *self.constants.borrow();
-        if length * rate <= PULLING && length * omega <= LONGEST_ANGLE {
+        if length * rate <= MAX_PULLING_DECAY_TIMES && length * omega <= MAX_WHOLE_PHASE_RADIANS {
             let piece = Piece::between(left, right, (0.0, self.eighth_most(left)));
             let verdict = piece.verdict(&self.corridor(), ends, slack);
-            if verdict != Proof::Open || length * omega < 0.5 * LONGEST_ANGLE {
+            if verdict != Proof::Open || length * omega < 0.5 * MAX_WHOLE_PHASE_RADIANS {
                 return verdict;
             }
         }
@@ -177,7 +179,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         let (from, to) = (left.elapsed, right.elapsed);
-        self.slow_envelope().division(from, to, PULLING).unwrap_or_else(|| {
+        self.slow_envelope().division(from, to, MAX_PULLING_DECAY_TIMES).unwrap_or_else(|| {
             Piece::between(left, right, (0.0, 0.0)).worst_place(from, &self.corridor())
         })
     }

@@ -11,10 +11,13 @@
 //! inequality. What is left of it is replaced by a line above it: by its tangent at the right end
 //! where it pulls inwards (it is concave then), else by its chord.
 
-use crate::crossing::allowances::REST;
+use crate::crossing::allowances::MAX_LAST_STEP_RATIO;
 use crate::crossing::certificate::Piece;
 use crate::crossing::{Corridor, Proof, ThresholdEnds};
-use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, SINKING, Steps};
+use crate::flow::steps::{
+    FORCE_FACTOR, FreeStep, MAX_PULLING_DECAY_TIMES, MAX_PUSHING_DECAY_TIMES, MIN_SLIDER_RETURN,
+    Steps,
+};
 
 /// A guard's excess in parts, at some place.
 #[derive(Clone, Copy, Debug)]
@@ -141,7 +144,7 @@ struct Crests {
 }
 
 /// Pieces after which the stretch is left to divisions.
-const MOST_PIECES: usize = 12;
+const MAX_PIECES: usize = 12;
 
 const BELOW_ZERO: Corridor = Corridor { low: f64::NEG_INFINITY, high: 0.0 };
 
@@ -161,9 +164,9 @@ impl<'a> PiecewiseCertificate<'a> {
         ends: ThresholdEnds,
         slack: f64,
     ) -> Proof {
-        const MUCH: f64 = 16.0;
+        const MAX_TOUCH_SLACKS: f64 = 16.0;
         match self.verdict(left, right, ends) {
-            (Proof::Touches, room) if room > MUCH * slack => Proof::Open,
+            (Proof::Touches, room) if room > MAX_TOUCH_SLACKS * slack => Proof::Open,
             (verdict, _) => verdict,
         }
     }
@@ -173,7 +176,7 @@ impl<'a> PiecewiseCertificate<'a> {
     fn verdict(mut self, left: PieceEnd, right: PieceEnd, ends: ThresholdEnds) -> (Proof, f64) {
         let rate = self.shape.rate;
         let pushes = left.parts.lasting > 0.0;
-        let decay_times = if pushes { PUSHING } else { PULLING };
+        let decay_times = if pushes { MAX_PUSHING_DECAY_TIMES } else { MAX_PULLING_DECAY_TIMES };
         let length = right.parts.elapsed - left.parts.elapsed;
         let left_ends = ThresholdEnds { right: false, ..ends };
         if rate * self.steps.piece.length <= decay_times || rate * length <= decay_times {
@@ -207,11 +210,12 @@ impl<'a> PiecewiseCertificate<'a> {
     }
 
     /// Whether a flight that begins with value and slope zero stays inside until z has the value
-    /// [`SEPARATION_INTERVAL`](crate::flow::steps::SEPARATION_INTERVAL): its guard is at most the
-    /// largest force times d^2/2, less q0 (exp(-z) - 1 + z).
+    /// [`SEPARATION_DECAY_TIMES`](crate::flow::steps::SEPARATION_DECAY_TIMES): its guard is at most
+    /// the largest force times d^2/2, less q0 (exp(-z) - 1 + z).
     fn parts_for_certain(&self, left: &FreeParts) -> bool {
         let FreeShape { curvature, strength, rate, .. } = *self.shape;
-        -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * SINKING
+        -left.lasting * (rate * rate) * MIN_SLIDER_RETURN
+            > (strength + curvature.max(0.0)) * FORCE_FACTOR
     }
 
     /// Goes from the left end until the amplitude takes over, then back from the right end.
@@ -223,13 +227,13 @@ impl<'a> PiecewiseCertificate<'a> {
         let step = &self.steps.piece;
         let mut worst = Proof::Inside;
         let mut room = 0.0;
-        for _ in 0..MOST_PIECES {
+        for _ in 0..MAX_PIECES {
             room = near.parts.room.max(far.parts.room);
             let Crests { here, most, rounding } = self.crests(&near.parts, &far.parts);
             if most < -(room + rounding) {
                 return (worst, room);
             }
-            if far.parts.elapsed - near.parts.elapsed < REST * step.length {
+            if far.parts.elapsed - near.parts.elapsed < MAX_LAST_STEP_RATIO * step.length {
                 let last = self.piece(&near, &far, ThresholdEnds { right: is_root, ..near_ends });
                 return (worst.max(last), room);
             }

@@ -1,6 +1,6 @@
 //! The guard of a progression: the drift velocity w falls to zero when the slider's bottom stops.
 
-use crate::crossing::allowances::LONGEST_ANGLE;
+use crate::crossing::allowances::MAX_WHOLE_PHASE_RADIANS;
 use crate::crossing::certificate::Piece;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::slow_envelope::SlowEnvelope;
@@ -8,7 +8,7 @@ use crate::crossing::{Corridor, Guarded, Proof, SearchHint, ThresholdEnds, slack
 use crate::flow::constants::Constants;
 use crate::flow::forcing::{EntryAngle, Push};
 use crate::flow::progression::Progression;
-use crate::flow::steps::{PUSHING, Steps};
+use crate::flow::steps::{MAX_PUSHING_DECAY_TIMES, Steps};
 use crate::flow::{Jet, Point};
 use crate::numeric::real::Real;
 use crate::numeric::remainders::short_decay;
@@ -101,10 +101,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, .. } = *self.constants.borrow();
-        if length * rate <= PUSHING && length * omega <= LONGEST_ANGLE {
+        if length * rate <= MAX_PUSHING_DECAY_TIMES && length * omega <= MAX_WHOLE_PHASE_RADIANS {
             let piece = Piece::between(left, right, (self.eighth_least(left), 0.0));
             let verdict = piece.verdict(&self.corridor(), ends, slack);
-            if verdict != Proof::Open || length * omega < 0.5 * LONGEST_ANGLE {
+            if verdict != Proof::Open || length * omega < 0.5 * MAX_WHOLE_PHASE_RADIANS {
                 return verdict;
             }
         }
@@ -121,7 +121,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         let (from, to) = (left.elapsed, right.elapsed);
-        self.slow_envelope().division(from, to, PUSHING).unwrap_or_else(|| {
+        self.slow_envelope().division(from, to, MAX_PUSHING_DECAY_TIMES).unwrap_or_else(|| {
             Piece::between(left, right, (0.0, 0.0)).worst_place(from, &self.corridor())
         })
     }
@@ -178,8 +178,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
 #[inline(always)]
 pub fn stops_once<T: Real>([a, b, omega, rate]: [T; 4], [closing, w]: [T; 2], lag: T) -> T::Mask {
     /// The inequalities round a few times.
-    const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
-    let room = a.same(ROOM);
+    const ROUNDING_FACTOR: f64 = 1.0 + 64.0 * f64::EPSILON;
+    let room = a.same(ROUNDING_FACTOR);
     let zero = a.same(0.0);
     let steepest = a * omega * room;
     let fall = (a.same(1.0) - b) - a * room;

@@ -204,14 +204,14 @@ const FIRST_STEP: f64 = 0.1;
 
 /// Advice to go on by less than this share of the time so far comes from bounds that rounding keeps
 /// from settling: it is followed in steps.
-const CREEPING: f64 = 1e-3;
+const MIN_ADVANCE: f64 = 1e-3;
 
 /// A hint that makes progress. A guess that falls on `left` is no guess; that, or a hint to go
 /// on by less than the least step, is replaced by that step, which doubles each time.
 fn onwards(hint: SearchHint, left: f64, least_step: &mut f64) -> SearchHint {
     let resolution = 8.0 * f64::EPSILON * left;
     let nearest = match hint {
-        SearchHint::Onward(_) => left + least_step.max(CREEPING * left),
+        SearchHint::Onward(_) => left + least_step.max(MIN_ADVANCE * left),
         SearchHint::Root(_) | SearchHint::ClearUntil(_) => left + resolution,
         SearchHint::ClearFrom(_) => return hint,
     };
@@ -295,19 +295,19 @@ fn divide<G: Guarded>(
 /// Whether most of a piece's rounding room comes from one of its ends, from what dies out in it or
 /// grows: then a touch may be decided on the part next to the other.
 fn uneven(left: &Point<f64>, right: &Point<f64>) -> bool {
-    const MUCH: f64 = 16.0;
+    const UNEVEN_RATIO: f64 = 16.0;
     let [left, right] = [left, right].map(|end| end.guard.largest_term);
-    left > MUCH * right || right > MUCH * left
+    left > UNEVEN_RATIO * right || right > UNEVEN_RATIO * left
 }
 
 /// A place well inside a piece: what a phase proposes, unless rounding puts it at an end or many
 /// divisions have led nowhere.
 fn between(left: f64, proposed: f64, right: f64, divisions: usize) -> f64 {
-    const MARGIN: f64 = 1e-7;
-    const PATIENCE: usize = 16;
-    let margin = MARGIN * (right - left);
+    const END_MARGIN: f64 = 1e-7;
+    const MAX_PROPOSALS: usize = 16;
+    let margin = END_MARGIN * (right - left);
     let inside = proposed > left + margin && proposed < right - margin;
-    if inside && divisions < PATIENCE { proposed } else { middle(left, right, divisions) }
+    if inside && divisions < MAX_PROPOSALS { proposed } else { middle(left, right, divisions) }
 }
 
 /// The crossing before the target, if the guard is outside there by more than rounding.

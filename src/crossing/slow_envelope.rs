@@ -9,7 +9,7 @@
 //! searched each time the bound becomes positive.
 
 use crate::crossing::SearchHint;
-use crate::crossing::allowances::SHORT_LIVED;
+use crate::crossing::allowances::NEGLIGIBLE_DECAY;
 use crate::flow::steps::{FreeStep, Steps};
 use crate::numeric::circle::rough_sin_cos;
 use crate::numeric::exponential::rough_decay;
@@ -51,11 +51,11 @@ pub enum EnvelopeBound {
     NeverAfter(f64),
 }
 
-/// Smaller slopes have no square.
-const SQUARABLE: f64 = 1e-150;
+/// The smallest slope whose square does not underflow.
+const MIN_SQUARABLE_SLOPE: f64 = 1e-150;
 
 /// Room for rounding in statements about the parabola, relative to its terms.
-const ROOM: f64 = 8.0 * f64::EPSILON;
+const ROUNDING_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
 impl SlowEnvelope {
     /// What the bound says from elapsed time `from` on.
@@ -70,7 +70,7 @@ impl SlowEnvelope {
         if lasting <= 0.0 {
             return dropped;
         }
-        let sinking = self.rate * lasting * (1.0 + ROOM);
+        let sinking = self.rate * lasting * (1.0 + ROUNDING_TOLERANCE);
         let tangent = self.opening(from, value - lasting, rising + sinking, curvature);
         match (dropped, tangent) {
             (EnvelopeBound::OpenFrom(first), EnvelopeBound::OpenFrom(second)) => {
@@ -93,10 +93,10 @@ impl SlowEnvelope {
     fn opening(&self, from: f64, value: f64, rising: f64, curvature: f64) -> EnvelopeBound {
         let bent = curvature.abs();
         let size = self.offset.abs() + (self.slope * from).abs() + 2.0 * bent * from * from;
-        let value = value + ROOM * (size + self.amplitude + self.exponential.abs());
-        let rising = rising + ROOM * self.slope.abs();
-        let rising = if rising > 0.0 { rising.max(SQUARABLE) } else { rising };
-        let curvature = curvature + 4.0 * ROOM * bent;
+        let value = value + ROUNDING_TOLERANCE * (size + self.amplitude + self.exponential.abs());
+        let rising = rising + ROUNDING_TOLERANCE * self.slope.abs();
+        let rising = if rising > 0.0 { rising.max(MIN_SQUARABLE_SLOPE) } else { rising };
+        let curvature = curvature + 4.0 * ROUNDING_TOLERANCE * bent;
         if value < 0.0 {
             let opens = first_root(value, rising, curvature);
             return opens.map_or(EnvelopeBound::Never, |time| EnvelopeBound::OpenFrom(from + time));
@@ -180,14 +180,14 @@ impl SlowEnvelope {
         mut inside: bool,
         limit: f64,
     ) -> Option<f64> {
-        const STEPS: usize = 40;
+        const MAX_STEPS: usize = 40;
         // At larger angles one leap more, with an evaluation, is worth its cost.
-        const LARGEST_ANGLE: f64 = 1e6;
-        for _ in 0..STEPS {
+        const MAX_LEAP_RADIANS: f64 = 1e6;
+        for _ in 0..MAX_STEPS {
             if self.parabola(here.elapsed) + self.amplitude < 0.0 {
                 inside = true;
                 let opens = here.elapsed + self.opens_after(here.elapsed)?;
-                if (opens - here.elapsed) * self.omega > LARGEST_ANGLE {
+                if (opens - here.elapsed) * self.omega > MAX_LEAP_RADIANS {
                     return None;
                 }
                 if opens > here.elapsed + look.length {
@@ -201,7 +201,7 @@ impl SlowEnvelope {
             let (value, rate) = self.value_and_rate(&next);
             if value >= 0.0 {
                 if inside {
-                    if look.decay < SHORT_LIVED {
+                    if look.decay < NEGLIGIBLE_DECAY {
                         // The cubic would follow its slope, of which nothing is left at the root.
                         here.lasting = 0.0;
                     }

@@ -9,16 +9,17 @@
 //! chord to r, or the tangent there.
 //!
 //! Near the double zero at the start E does not help. There h itself is concave as long as F is
-//! negative; or, up to z = [`SEPARATION_INTERVAL`](crate::flow::steps::SEPARATION_INTERVAL) decay
-//! times, q0 (exp(-z) - 1 + z) >= [`GRIP`] q0 z^2/2 outweighs the force, if GRIP q0 rate^2 exceeds
-//! the largest force. What neither serves is left to [`crate::crossing::piecewise`].
+//! negative; or, up to z = [`SEPARATION_DECAY_TIMES`](crate::flow::steps::SEPARATION_DECAY_TIMES)
+//! decay times, q0 (exp(-z) - 1 + z) >= [`MIN_SLIDER_RETURN`] q0 z^2/2 outweighs the force, if
+//! MIN_SLIDER_RETURN q0 rate^2 exceeds the largest force. What neither serves is left to
+//! [`crate::crossing::piecewise`].
 
-use crate::crossing::allowances::STRETCHES;
+use crate::crossing::allowances::TANGENT_STRETCHES;
 use crate::crossing::slack;
 use crate::flow::Point;
 use crate::flow::constants::Constants;
 use crate::flow::no_contact::NoContact;
-use crate::flow::steps::{GRIP, SINKING, Steps, Turning};
+use crate::flow::steps::{FORCE_FACTOR, MIN_SLIDER_RETURN, Steps, Turning};
 use crate::numeric::real::Real;
 use std::borrow::Borrow;
 use std::f64::consts::TAU;
@@ -80,7 +81,7 @@ impl<T: Real> TangentBound<T> {
     #[inline(always)]
     pub fn new(flight: &EndedFlight<T>) -> Self {
         /// Eight roundings of terms that are counted twice.
-        const ROOM: f64 = 16.0 * f64::EPSILON;
+        const ROUNDING_TOLERANCE: f64 = 16.0 * f64::EPSILON;
         let EndedFlight { b, a_over_omega, a_over_omega2, slack, .. } = *flight;
         let ([sin, cos], [y, q]) = (flight.sin_cos, flight.begin);
         let [elapsed, last_q, spring] = flight.root;
@@ -91,7 +92,7 @@ impl<T: Real> TangentBound<T> {
         let terms = speeds.times_plus(elapsed, turn);
         Self {
             offset: (a_over_omega2.times_plus(cos, q) - at_start)
-                + terms.times_plus(terms.same(ROOM), slack),
+                + terms.times_plus(terms.same(ROUNDING_TOLERANCE), slack),
             slope,
             curvature: b,
             amplitude: a_over_omega2,
@@ -147,7 +148,7 @@ pub fn stays_below<C: Borrow<Constants<f64>>>(
     // The stretch of negative force that the flight begins in, or the first one after that.
     let late = flight.angle.radians > TAU - angle;
     let mut begins = (angle - flight.angle.radians) / omega + if late { period } else { 0.0 };
-    for _ in 0..STRETCHES {
+    for _ in 0..TANGENT_STRETCHES {
         let ends = begins + length;
         if ends >= root.elapsed {
             return true;
@@ -177,7 +178,8 @@ fn off_the_surface<C: Borrow<Constants<f64>>>(
     let interval = &steps.separation_interval;
     let negative_until = steps.turning.negative_until(entry.radians);
     let concave_until = (negative_until.unwrap_or(entry.radians) - entry.radians) / omega;
-    let sinks = (a + b.max(0.0)) * SINKING < flight.entry.q * (rate * rate) * GRIP;
+    let sinks =
+        (a + b.max(0.0)) * FORCE_FACTOR < flight.entry.q * (rate * rate) * MIN_SLIDER_RETURN;
     if sinks && interval.length > concave_until {
         let turned = [
             entry.sin * interval.cos + entry.cos * interval.sin,
@@ -251,7 +253,7 @@ mod tests {
     /// All places where the guard's closed form rises to zero within six forcing periods, in
     /// flights that begin with a separation; with how many such places there were before.
     fn for_each_rise(mut check: impl FnMut(&NoContact<f64>, &Steps, &Point<f64>, usize)) {
-        const LOOKS: u32 = 32; // in a period
+        const PLACES_PER_PERIOD: u32 = 32;
         let models = [(0.02, 0.7, 0.02), (0.05, 1.4, 0.05), (0.3, 2.0, 0.03), (0.2, 0.4, 0.1)];
         for (xi, omega, b) in models {
             let parameters = Parameters { xi, omega, b, ..Parameters::default() };
@@ -269,7 +271,8 @@ mod tests {
                 if parameters.a * angle.cos + b >= q * constants.rate.powi(2) {
                     continue;
                 }
-                let places = (1..6 * LOOKS).map(|i| TAU / omega * f64::from(i) / f64::from(LOOKS));
+                let places = (1..6 * PLACES_PER_PERIOD)
+                    .map(|i| TAU / omega * f64::from(i) / f64::from(PLACES_PER_PERIOD));
                 let places: Vec<f64> = places.collect();
                 let rises =
                     places.windows(2).filter(|pair| guard(pair[0]) < 0.0 && guard(pair[1]) >= 0.0);

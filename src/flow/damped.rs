@@ -64,18 +64,18 @@ pub struct Rotation<T> {
     pub turn: Circular<T>,
 }
 
-/// |1 - xi^2| below which the series may serve.
-const NEAR_CRITICAL: f64 = 0.5;
+/// The largest |1 - xi^2| at which the series may serve.
+const MAX_SERIES_DISCRIMINANT: f64 = 0.5;
 
 impl<T: Number> Damping<T> {
     /// Picks the form for this damping ratio.
     #[must_use]
     pub fn new(xi: T) -> Self {
         let discriminant = (T::one() - xi) * (T::one() + xi);
-        if discriminant > T::exact(NEAR_CRITICAL) {
+        if discriminant > T::exact(MAX_SERIES_DISCRIMINANT) {
             let (nu, nu_low) = T::damped_frequency(xi);
             Self::Under { xi, nu, nu_low }
-        } else if discriminant.abs() <= T::exact(NEAR_CRITICAL) {
+        } else if discriminant.abs() <= T::exact(MAX_SERIES_DISCRIMINANT) {
             Self::NearCritical { xi, discriminant }
         } else {
             let root = (-discriminant).sqrt();

@@ -167,7 +167,7 @@ pub struct Response<T> {
 
 /// |P|^2 below which the divided difference is the better form. The plain one loses 1/|P|, twice at
 /// this border; the divided difference loses nothing near omega = 1, and 35 eps at omega = 10.
-const RESONANCE: f64 = 0.25;
+const MAX_RESONANT_SQUARE: f64 = 0.25;
 
 impl<T: Number> Forced<T> {
     /// Picks the form for this damping and frequency.
@@ -178,7 +178,7 @@ impl<T: Number> Forced<T> {
         let stiffness = (one - omega) * (one + omega);
         let damping = two_xi * omega;
         let square = stiffness * stiffness + damping * damping;
-        if square < T::exact(RESONANCE) {
+        if square < T::exact(MAX_RESONANT_SQUARE) {
             let nu = ((one - xi) * (one + xi)).sqrt();
             let delta = (omega - one) + xi * xi / (one + nu);
             return Self::Resonant {

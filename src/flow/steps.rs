@@ -123,42 +123,42 @@ impl Turning {
 
 /// The length of a certificate's pieces, measured against the faster of forcing and free
 /// oscillation, radians: the interpolant's error is 2^8/2822400 = 1e-4 of the amplitude.
-pub const PIECE: f64 = 2.0;
+pub const PIECE_RADIANS: f64 = 2.0;
 
 /// The length of a guess's steps: the cubic between two places errs by 0.5^4/384 = 2e-4 of the
 /// amplitude.
-const LOOK: f64 = 0.5;
+const GUESS_STEP_RADIANS: f64 = 0.5;
 
 /// The longest step of a contact's guess: the free oscillation sets it, unless the forced one is so
 /// strong and so fast that the cubic between two places would err by more than a thousandth of the
 /// corridor.
 fn contact_look(parameters: &Parameters) -> f64 {
-    const RIPPLE: f64 = 1e-3;
+    const GUESS_TOLERANCE: f64 = 1e-3;
     let Parameters { a, xi, omega, .. } = *parameters;
     let amplitude = Steady::new(a, xi, omega).amplitude;
-    LOOK.min((384.0 * RIPPLE / amplitude).sqrt().sqrt() / omega)
+    GUESS_STEP_RADIANS.min((384.0 * GUESS_TOLERANCE / amplitude).sqrt().sqrt() / omega)
 }
 
 /// Decay times up to which an exponential that pulls the guard inwards stays in one piece: its
 /// eighth derivative helps, and at twelve its third derivative begins to lift the coefficients.
-pub const PULLING: f64 = 10.0;
+pub const MAX_PULLING_DECAY_TIMES: f64 = 10.0;
 
 /// Decay times after which a flight has got off the surface for certain, where its spring was
-/// stronger than any force ([`GRIP`]).
-pub const SEPARATION_INTERVAL: f64 = 2.0;
+/// stronger than any force ([`MIN_SLIDER_RETURN`]).
+pub const SEPARATION_DECAY_TIMES: f64 = 2.0;
 
-/// How much of q0 z^2/2 the slider's return q0 (exp(-z) - 1 + z) comes to at z =
-/// [`SEPARATION_INTERVAL`], and more before: their quotient only falls.
-pub const GRIP: f64 = 0.5676;
+/// The share of q0 z^2/2 to which the slider's return q0 (exp(-z) - 1 + z) comes at z =
+/// [`SEPARATION_DECAY_TIMES`]; before it is larger, because the quotient of the two only falls.
+pub const MIN_SLIDER_RETURN: f64 = 0.5676;
 
 /// Factor on the largest force, by which a flight is shown to sink away from the slider. The
 /// solver bounds the force by its amplitudes, so that this margin costs no proof; lanes have a
-/// smaller one ([`LANE_SINKING`](crate::crossing::allowances::LANE_SINKING)).
-pub const SINKING: f64 = 1.0 + 1e-9;
+/// smaller one ([`LANE_FORCE_MARGIN`](crate::crossing::allowances::LANE_FORCE_MARGIN)).
+pub const FORCE_FACTOR: f64 = 1.0 + 1e-9;
 
 /// Decay times up to which an exponential that pushes the guard outwards stays in one piece:
 /// its eighth derivative then costs 0.02 of its own size.
-pub const PUSHING: f64 = 4.0;
+pub const MAX_PUSHING_DECAY_TIMES: f64 = 4.0;
 
 /// The steps of a model.
 #[derive(Clone, Copy, Debug)]
@@ -199,15 +199,15 @@ impl Steps {
             _ => (1.0, 1.0),
         };
         Self {
-            piece: free_step(PIECE / omega),
-            pulling: free_step(0.9 * PULLING / rate),
-            separation_interval: free_step(SEPARATION_INTERVAL / rate),
-            pushing: free_step(0.9 * PUSHING / rate),
-            look: free_step(LOOK / omega),
-            contact_piece: ContactStep::new(PIECE / fastest, omega, damping),
-            quick_look: ContactStep::new(LOOK / quickest, omega, damping),
+            piece: free_step(PIECE_RADIANS / omega),
+            pulling: free_step(0.9 * MAX_PULLING_DECAY_TIMES / rate),
+            separation_interval: free_step(SEPARATION_DECAY_TIMES / rate),
+            pushing: free_step(0.9 * MAX_PUSHING_DECAY_TIMES / rate),
+            look: free_step(GUESS_STEP_RADIANS / omega),
+            contact_piece: ContactStep::new(PIECE_RADIANS / fastest, omega, damping),
+            quick_look: ContactStep::new(GUESS_STEP_RADIANS / quickest, omega, damping),
             contact_look: ContactStep::new(contact_look(parameters), omega, damping),
-            slow_look: ContactStep::new(LOOK / slowest, omega, damping),
+            slow_look: ContactStep::new(GUESS_STEP_RADIANS / slowest, omega, damping),
             turning: Turning::new(parameters),
         }
     }
@@ -222,8 +222,8 @@ mod tests {
     fn the_grip_is_least_at_parting() {
         let share = |z: f64| decay(z).remainder / (0.5 * z * z);
         let shares: Vec<f64> =
-            (1..=1000).map(|k| share(SEPARATION_INTERVAL * f64::from(k) / 1000.0)).collect();
+            (1..=1000).map(|k| share(SEPARATION_DECAY_TIMES * f64::from(k) / 1000.0)).collect();
         assert!(shares.windows(2).all(|pair| pair[1] < pair[0]));
-        assert!(shares[999] > GRIP && shares[999] - GRIP < 1e-4);
+        assert!(shares[999] > MIN_SLIDER_RETURN && shares[999] - MIN_SLIDER_RETURN < 1e-4);
     }
 }

@@ -1,7 +1,7 @@
 //! The proof that a guard stays inside its corridor in a piece: [`crate::crossing::certificate`].
 
 use super::wide::{Mask, Wide};
-use crate::crossing::certificate::{MIDDLE, coefficients};
+use crate::crossing::certificate::{REMAINDER_DIVISOR, coefficients};
 use crate::numeric::real::Real;
 use pulp::Simd;
 
@@ -30,7 +30,7 @@ impl<S: Simd> LanePiece<S> {
     pub fn stays_between(&self, low: Wide<S>, high: Wide<S>, slack: Wide<S>) -> Mask<S> {
         let square = self.length * self.length;
         let fourth = square * square;
-        let lift = self.eighth * (fourth * fourth) * (1.0 / MIDDLE);
+        let lift = self.eighth * (fourth * fourth) * (1.0 / REMAINDER_DIVISOR);
         let ([[a, h], [b, g], [c, f], [d, e]], middle) =
             coefficients(&self.left, &self.right, self.length);
         let inner = [

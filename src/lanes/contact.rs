@@ -5,7 +5,7 @@ use super::contact_constants::Forms;
 use super::contact_steps::{LaneParts, each};
 use super::forcing::Angle;
 use super::root::{Fineness, LanePhase, LaneRoot, find};
-use super::series::LATER;
+use super::series::LATER_ORDERS;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::contact_parts::ContactParts;
@@ -84,10 +84,10 @@ impl<S: Simd> LanePhase<S> for Leaving<'_, '_, S> {
     }
 
     #[inline(always)]
-    fn later(&self, at: &Evaluated<S>) -> [Wide<S>; LATER] {
+    fn later(&self, at: &Evaluated<S>) -> [Wide<S>; LATER_ORDERS] {
         let Shape { two_xi, omega2, .. } = *self.contact.shape;
         let mut higher = ContactOrders::new([omega2, two_xi], [at.force[0], at.force[1]], at.f);
-        [(); LATER].map(|()| higher.step())
+        [(); LATER_ORDERS].map(|()| higher.step())
     }
 
     #[inline(always)]

@@ -12,7 +12,9 @@ use super::guess::zero_between;
 use super::root::Fineness;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
-use crate::crossing::allowances::{GUESS_STEPS, LANE_FINE_PIECES, PIECES, REST, SLACK};
+use crate::crossing::allowances::{
+    CONTACT_PIECES, GUESS_STEPS, LANE_FINE_PIECES, MAX_LAST_STEP_RATIO, SLACK,
+};
 use crate::numeric::real::Real;
 use pulp::Simd;
 
@@ -77,7 +79,7 @@ impl<S: Simd> LaneContact<'_, S> {
         let mut eighth = here.eighth(self.shape) + forced_eighth;
         let slack = self.slack(&here, terms);
         let (mut steps, pieces) = match fineness {
-            Fineness::Usual => (ContactSteps::of_pieces(self.shape, self.forms), PIECES),
+            Fineness::Usual => (ContactSteps::of_pieces(self.shape, self.forms), CONTACT_PIECES),
             Fineness::Finer => (ContactSteps::of_guess(self.shape, self.forms), LANE_FINE_PIECES),
         };
         let mut left = first;
@@ -89,7 +91,7 @@ impl<S: Simd> LaneContact<'_, S> {
         let (mut open, mut proved) = (!none, !none);
         for _ in 0..pieces {
             let step = steps.now.length;
-            let is_last = rest.less(step * REST);
+            let is_last = rest.less(step * MAX_LAST_STEP_RATIO);
             if self.forms == Forms::Any {
                 let shrinking = here.eighth_of_exponentials(self.shape) + forced_eighth;
                 eighth = over.choose(shrinking, eighth);

@@ -6,7 +6,7 @@ use crate::crossing::allowances::STEP_ROUNDINGS;
 use crate::flow::constants::Constants;
 use crate::flow::damped::Damping;
 use crate::flow::forcing::Forced;
-use crate::flow::steps::{ContactStep, PIECE};
+use crate::flow::steps::{ContactStep, PIECE_RADIANS};
 use pulp::Simd;
 
 /// Which closed forms the contacts of a vector have: what no lane needs is not asked for.
@@ -28,11 +28,11 @@ impl Forms {
 
 /// A step of a guess, radians of the faster of forcing and free oscillation: the cubic between two
 /// places errs by 0.8^4/384 = 1.1e-3 of the amplitude, which the series corrects.
-const CONTACT_LOOK: f64 = 0.8;
+const GUESS_STEP_RADIANS: f64 = 0.8;
 
 /// The first step is at least this much of all others: each doubling doubles what it has rounded
 /// off.
-const SHORTEST: f64 = 1.0 / 256.0;
+const MIN_FIRST_STEP_SHARE: f64 = 1.0 / 256.0;
 
 /// The steps of a contact.
 struct ContactPace {
@@ -47,7 +47,7 @@ impl ContactPace {
         let Damping::Over { fast, slow, .. } = *damping else {
             return Self { full: omega.max(1.0), early: 1.0 };
         };
-        let full = omega.max(slow).max(fast * SHORTEST);
+        let full = omega.max(slow).max(fast * MIN_FIRST_STEP_SHARE);
         let mut early = 1.0;
         while early * fast > full {
             early *= 0.5;
@@ -72,8 +72,8 @@ impl Shape<f64> {
         let Constants { a, b, omega, damping, steady, forced_eighth, .. } = *constants;
         let pace = ContactPace::new(omega, &damping);
         let step = |radians: f64| contact_step(radians / pace.full, omega, &damping);
-        let full = [CONTACT_LOOK, PIECE].map(step);
-        let first = [CONTACT_LOOK * pace.early, PIECE * pace.early];
+        let full = [GUESS_STEP_RADIANS, PIECE_RADIANS].map(step);
+        let first = [GUESS_STEP_RADIANS * pace.early, PIECE_RADIANS * pace.early];
         let early = if pace.early < 1.0 { first.map(step) } else { full };
         let ([contact_look, piece], [early_contact_look, early_piece]) = (full, early);
         // Clearly above critical damping the exponentials come from the whole force at the start,

@@ -10,7 +10,7 @@ use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// The size of m = (1 - xi^2) d^2 up to which the series serves near critical damping.
-const SERIES: f64 = 0.5;
+const MAX_SERIES_ARGUMENT: f64 = 0.5;
 
 impl<S: Simd> Free<Wide<S>> {
     /// The free oscillation after `d`.
@@ -20,7 +20,7 @@ impl<S: Simd> Free<Wide<S>> {
             return Self::rotation(shape, d);
         }
         let m = shape.discriminant * d * d;
-        let series = shape.near_critical.above(0.0) & m.magnitude().below(SERIES);
+        let series = shape.near_critical.above(0.0) & m.magnitude().below(MAX_SERIES_ARGUMENT);
         let over = shape.spread.above(0.0) & !series;
         let turns = !(series | over);
         let mut free = if turns.any() { Self::rotation(shape, d) } else { Self::nothing(d) };

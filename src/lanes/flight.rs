@@ -14,14 +14,16 @@ use super::forcing::Angle;
 use super::functions::shrink;
 use super::guess::LaneEnvelope;
 use super::root::{Fineness, LanePhase, LaneRoot, find};
-use super::series::LATER;
+use super::series::LATER_ORDERS;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
-use crate::crossing::allowances::{LANE_SINKING, LANE_TIE, LONGEST_ANGLE, SLACK, STRETCHES};
+use crate::crossing::allowances::{
+    LANE_FORCE_MARGIN, LANE_TIE_TOLERANCE, MAX_WHOLE_PHASE_RADIANS, SLACK, TANGENT_STRETCHES,
+};
 use crate::crossing::tangents::{EndedFlight, Tangent, TangentBound};
 use crate::flow::forcing::{Harmonic, Push};
 use crate::flow::no_contact::{Flying, PushedOrders};
-use crate::flow::steps::{GRIP, PULLING, SEPARATION_INTERVAL};
+use crate::flow::steps::{MAX_PULLING_DECAY_TIMES, MIN_SLIDER_RETURN, SEPARATION_DECAY_TIMES};
 use crate::numeric::real::Real;
 use crate::numeric::remainders::short_decay;
 use crate::numeric::series::REACH;
@@ -67,7 +69,7 @@ pub struct Impact<S: Simd> {
 }
 
 /// Decay times after which an exponential is less than 1e-19 of what it was.
-const DEAD: f64 = 45.0;
+const NEGLIGIBLE_DECAY_TIMES: f64 = 45.0;
 impl<S: Simd> LanePhase<S> for Flight<'_, S> {
     type At = Aloft<S>;
 
@@ -96,18 +98,19 @@ impl<S: Simd> LanePhase<S> for Flight<'_, S> {
     }
 
     #[inline(always)]
-    fn later(&self, at: &Aloft<S>) -> [Wide<S>; LATER] {
+    fn later(&self, at: &Aloft<S>) -> [Wide<S>; LATER_ORDERS] {
         let Shape { b, omega2, rate, .. } = *self.shape;
         let [total, next, _] = at.force;
         let mut higher = PushedOrders::new([omega2, rate], at.q, [total - b, next]);
-        [(); LATER].map(|()| higher.step())
+        [(); LATER_ORDERS].map(|()| higher.step())
     }
 
     #[inline(always)]
     fn is_short(&self, d: Wide<S>, step: Wide<S>) -> Mask<S> {
         let Shape { pace, rate, .. } = *self.shape;
         let step = step.magnitude();
-        (step * pace).below(REACH) & ((step * rate).below(REACH) | (rate * (d - step)).above(DEAD))
+        (step * pace).below(REACH)
+            & ((step * rate).below(REACH) | (rate * (d - step)).above(NEGLIGIBLE_DECAY_TIMES))
     }
 }
 
@@ -128,8 +131,8 @@ impl<S: Simd> Flight<'_, S> {
         let (y, q) = (at.y + b.times_plus(step, push.impulse), at.q + lost);
         let f = two_xi * slope;
         let largest = (two_xi * y).magnitude().larger(q.magnitude());
-        let clear = (largest * LANE_TIE).less(f)
-            & (largest.larger(y.same(1.0)) * LANE_TIE).less((f - 1.0).magnitude());
+        let clear = (largest * LANE_TIE_TOLERANCE).less(f)
+            & (largest.larger(y.same(1.0)) * LANE_TIE_TOLERANCE).less((f - 1.0).magnitude());
         let root = elapsed + step;
         let certified = match fineness {
             Fineness::Usual => self.stays_below(root, q, fineness),
@@ -243,7 +246,8 @@ impl<S: Simd> Flight<'_, S> {
             to_root: everywhere,
         };
         let terms = (a + b.magnitude()) * root * root + self.q * (rate * root + 1.0);
-        let short = (root * rate).below(PULLING) & (root * omega).below(LONGEST_ANGLE);
+        let short = (root * rate).below(MAX_PULLING_DECAY_TIMES)
+            & (root * omega).below(MAX_WHOLE_PHASE_RADIANS);
         let lowest = zero.same(f64::NEG_INFINITY);
         short & piece.stays_between(lowest, zero, terms * SLACK)
     }
@@ -258,7 +262,7 @@ impl<S: Simd> Flight<'_, S> {
         let bound = self.bound(root, q);
 
         let concave_at_first = !angle.less(turning) & !(-turning + TAU).less(angle);
-        let settled = rate.same(SEPARATION_INTERVAL) / rate;
+        let settled = rate.same(SEPARATION_DECAY_TIMES) / rate;
         let concave_until = ((-turning + TAU) - angle) / omega;
         let Shape { settling_sin, settling_cos, .. } = *self.shape;
         let settled_sin = sin.times_plus(settling_cos, cos * settling_sin);
@@ -266,8 +270,8 @@ impl<S: Simd> Flight<'_, S> {
         // The largest force until then: at either end, unless a crest lies between.
         let no_crest = settled.times_plus(omega, angle).below(TAU);
         let crest = no_crest.choose(cos.larger(settled_cos), cos.same(1.0));
-        let strongest = a.times_plus(crest, b) + (a + b.magnitude()) * LANE_SINKING;
-        let sinks = strongest.less(self.q * rate * rate * GRIP);
+        let strongest = a.times_plus(crest, b) + (a + b.magnitude()) * LANE_FORCE_MARGIN;
+        let sinks = strongest.less(self.q * rate * rate * MIN_SLIDER_RETURN);
         let by_sinking = sinks & !(concave_at_first & settled.less(concave_until));
         let start = by_sinking.choose(settled, concave_until);
         let start_sin = by_sinking.choose(settled_sin, -turning_sin);
@@ -281,7 +285,7 @@ impl<S: Simd> Flight<'_, S> {
         let period = omega.same(TAU) / omega;
         let length = (-turning + std::f64::consts::PI) * 2.0 / omega;
         let mut open = proved;
-        for _ in 0..STRETCHES {
+        for _ in 0..TANGENT_STRETCHES {
             let ends = begins + length;
             // The last stretch rises to the root, and what begins after the root does not count.
             open = open & ends.less(root);

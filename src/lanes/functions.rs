@@ -2,7 +2,7 @@
 //! ([`crate::numeric::remainders`]).
 //!
 //! The argument is reduced by Cody and Waite's method with fused products and a tail of its own
-//! (two words of pi/2: up to [`LARGEST_ARGUMENT`] the third would be 1e-28); the kernels are those
+//! (two words of pi/2: up to [`MAX_ARGUMENT`] the third would be 1e-28); the kernels are those
 //! of fdlibm. Errors are below one unit in the last place.
 
 use super::wide::{Mask, Wide};
@@ -14,7 +14,7 @@ use pulp::Simd;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, LN_2, LOG2_E};
 
 /// Arguments of sine and cosine up to this size are accepted.
-pub const LARGEST_ARGUMENT: f64 = 1e5;
+pub const MAX_ARGUMENT: f64 = 1e5;
 
 /// What one word leaves of pi/2.
 const FRAC_PI_2_LOW: f64 = 6.123_233_995_736_766e-17;
@@ -68,21 +68,21 @@ pub fn sin_cos<S: Simd>(x: Wide<S>) -> (Wide<S>, Wide<S>) {
 /// exp(-z) for z >= 0; zero below the normal numbers.
 #[inline(always)]
 fn exp_of_minus<S: Simd>(z: Wide<S>) -> Wide<S> {
-    const LARGEST: f64 = 708.0;
-    let normal = z.below(LARGEST);
+    const MAX_EXPONENT: f64 = 708.0;
+    let normal = z.below(MAX_EXPONENT);
     let z = normal.choose(z, z.same(0.0));
     let rounded = z.times_plus(z.same(-LOG2_E), z.same(ROUNDER));
     let power = rounded - ROUNDER;
     let r = power.times_from(z.same(LN_2_LOW), power.times_from(z.same(LN_2), -z));
     let s = r * r;
-    let even = polynomial(s, EVEN);
-    let odd = polynomial(s, ODD);
+    let even = polynomial(s, EVEN_COEFFICIENTS);
+    let odd = polynomial(s, ODD_COEFFICIENTS);
     let exp = (r + s * r.times_plus(odd, even)) + 1.0;
     normal.choose(exp * rounded.power_of_two(), z.same(0.0))
 }
 
 /// 1/2!, 1/4!, ..
-const EVEN: [f64; 7] = [
+const EVEN_COEFFICIENTS: [f64; 7] = [
     0.5,
     4.166_666_666_666_666_4e-2,
     1.388_888_888_888_888_9e-3,
@@ -93,7 +93,7 @@ const EVEN: [f64; 7] = [
 ];
 
 /// 1/3!, 1/5!, ..
-const ODD: [f64; 7] = [
+const ODD_COEFFICIENTS: [f64; 7] = [
     1.666_666_666_666_666_6e-1,
     8.333_333_333_333_333e-3,
     1.984_126_984_126_984_1e-4,
@@ -104,7 +104,7 @@ const ODD: [f64; 7] = [
 ];
 
 /// sin x - x over x^3, in powers of x^2.
-const SINE: [f64; 9] = [
+const SINE_COEFFICIENTS: [f64; 9] = [
     -1.666_666_666_666_666_6e-1,
     8.333_333_333_333_333e-3,
     -1.984_126_984_126_984_1e-4,
@@ -117,7 +117,7 @@ const SINE: [f64; 9] = [
 ];
 
 /// cos x - 1 over x^2, in powers of x^2.
-const COSINE: [f64; 9] = [
+const COSINE_COEFFICIENTS: [f64; 9] = [
     -0.5,
     4.166_666_666_666_666_4e-2,
     -1.388_888_888_888_888_9e-3,
@@ -132,7 +132,10 @@ const COSINE: [f64; 9] = [
 /// cos x - 1 and (sin x)/x - 1 of x^2 up to 1, of either sign; beyond nothing is promised.
 #[inline(always)]
 pub fn cosines<S: Simd>(square: Wide<S>) -> (Wide<S>, Wide<S>) {
-    (square * polynomial(square, COSINE), square * polynomial(square, SINE))
+    (
+        square * polynomial(square, COSINE_COEFFICIENTS),
+        square * polynomial(square, SINE_COEFFICIENTS),
+    )
 }
 
 /// Circular functions of `x` up to 1; beyond nothing is promised.
@@ -153,7 +156,7 @@ pub fn turn<S: Simd>(x: Wide<S>, correction: Wide<S>) -> Circular<Wide<S>> {
     let mut sin_minus_x = sin - x;
     if short.any() {
         let square = x * x;
-        sin_minus_x = short.choose(x * square * polynomial(square, SINE), sin_minus_x);
+        sin_minus_x = short.choose(x * square * polynomial(square, SINE_COEFFICIENTS), sin_minus_x);
     }
     Circular { sin, cos_minus_1, sin_minus_x }.corrected(correction)
 }
@@ -182,8 +185,8 @@ pub fn shrink<S: Simd>(z: Wide<S>) -> Decay<Wide<S>> {
     }
     if short.any() {
         let square = z * z;
-        let even = polynomial(square, EVEN);
-        let odd = polynomial(square, ODD);
+        let even = polynomial(square, EVEN_COEFFICIENTS);
+        let odd = polynomial(square, ODD_COEFFICIENTS);
         let remainder = square * z.times_from(odd, even);
         let minus_1 = remainder - z;
         all.exp = short.choose(minus_1 + 1.0, all.exp);

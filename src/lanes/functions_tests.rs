@@ -1,7 +1,7 @@
 //! The vectors' functions against the library's.
 
 use super::super::instructions::{Instructions, Permit};
-use super::super::wide::{LaneValues, WIDEST};
+use super::super::wide::{LaneValues, MAX_LANES};
 use super::*;
 use crate::numeric::real::Real;
 use crate::numeric::remainders::{Circular, circular, circular_of, decay};
@@ -45,7 +45,7 @@ impl WithSimd for All<'_> {
 }
 
 fn computed(permit: Permit, x: &LaneValues, rate: f64) -> [LaneValues; 11] {
-    let mut out = [[0.0; WIDEST]; 11];
+    let mut out = [[0.0; MAX_LANES]; 11];
     let all = All { x, rate, out: &mut out };
     match permit {
         #[cfg(target_arch = "x86_64")]
@@ -63,7 +63,7 @@ fn close(a: f64, b: f64, ulps: f64, size: f64) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-fn agree(x: [f64; WIDEST], rate: f64) -> Result<(), TestCaseError> {
+fn agree(x: [f64; MAX_LANES], rate: f64) -> Result<(), TestCaseError> {
     let mut before: Option<[LaneValues; 11]> = None;
     for permit in Instructions::available().into_iter().filter_map(Instructions::permit) {
         let lanes = permit.width();
@@ -137,15 +137,15 @@ proptest! {
 /// Two sides that round in opposite directions.
 #[test]
 fn a_remainder_at_the_edge_of_its_roundings() -> Result<(), TestCaseError> {
-    agree([-0.054_616_129_814_834_87; WIDEST], 0.1)
+    agree([-0.054_616_129_814_834_87; MAX_LANES], 0.1)
 }
 
 #[test]
 fn sines_next_to_multiples_of_a_quarter_turn() -> Result<(), TestCaseError> {
     for k in [1, 2, 3, 7, 100, 62_831] {
         let x = f64::from(k) * FRAC_PI_2;
-        agree([x; WIDEST], 1.0)?;
-        agree([x.next_up(); WIDEST], 1.0)?;
+        agree([x; MAX_LANES], 1.0)?;
+        agree([x.next_up(); MAX_LANES], 1.0)?;
     }
     Ok(())
 }

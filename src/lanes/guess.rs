@@ -1,7 +1,7 @@
 //! Guesses of roots outside contact: the slow part of a guard and its harmonic, looked at in
 //! steps ([`crate::crossing::slow_envelope`]).
 
-use super::functions::{LARGEST_ARGUMENT, sin_cos};
+use super::functions::{MAX_ARGUMENT, sin_cos};
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::allowances::GUESS_STEPS;
@@ -73,7 +73,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
                 risen.choose(here.elapsed, chord.4),
             );
             found = found | risen;
-            open = open & !risen & (next.elapsed * omega).below(LARGEST_ARGUMENT);
+            open = open & !risen & (next.elapsed * omega).below(MAX_ARGUMENT);
             if !open.any() {
                 break;
             }
@@ -119,7 +119,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
         let above = falling.choose(root - rising, value * -2.0);
         let time = above / falling.choose(self.curvature, rising + root);
         // A NaN is no place further on.
-        let further = closed & look.less(time) & (time * omega).below(LARGEST_ARGUMENT);
+        let further = closed & look.less(time) & (time * omega).below(MAX_ARGUMENT);
         let opens = further.choose(here.elapsed + time, here.elapsed);
         let (sin, cos) = sin_cos(omega * opens);
         let moved = self.place(

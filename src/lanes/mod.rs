@@ -42,4 +42,4 @@ pub(crate) use batch::{Batch, Begin, LaneTask, PhaseEnds};
 pub use instructions::Instructions;
 pub(crate) use instructions::Permit;
 pub(crate) use shape::Shape;
-pub(crate) use wide::{LaneValues, WIDEST};
+pub(crate) use wide::{LaneValues, MAX_LANES};

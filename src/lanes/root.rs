@@ -1,8 +1,8 @@
 //! From a guess to the root of a guard: one evaluation mostly, and the guard's series from there.
 
-use super::series::LATER;
+use super::series::LATER_ORDERS;
 use super::wide::{Mask, Wide};
-use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL};
+use crate::crossing::allowances::{GUESS_EVALUATIONS, MAX_ROOT_STEP, RESIDUAL_TOLERANCE};
 use crate::numeric::real::Real;
 use crate::numeric::series::{Series, TERMS};
 use pulp::Simd;
@@ -19,7 +19,7 @@ pub trait LanePhase<S: Simd> {
     fn excess(&self, at: &Self::At) -> [Wide<S>; 4];
 
     /// The guard's derivatives of orders four and on.
-    fn later(&self, at: &Self::At) -> [Wide<S>; LATER];
+    fn later(&self, at: &Self::At) -> [Wide<S>; LATER_ORDERS];
 
     /// The lanes in which a step from an evaluation at `d` is so short that the guard's series
     /// loses nothing.
@@ -52,8 +52,8 @@ pub struct LaneRoot<S: Simd, A> {
     pub found: Mask<S>,
 }
 
-/// What may be left of an excess that is zero itself.
-const TINY: f64 = 1e-300;
+/// The largest excess that may be left where an excess is zero itself.
+const ABSOLUTE_TOLERANCE: f64 = 1e-300;
 
 /// Follows guesses.
 #[inline(always)]
@@ -73,11 +73,13 @@ pub fn find<S: Simd, P: LanePhase<S>>(
         let next = elapsed + step;
         alive = alive & zero.less(next);
         // Next to a crest that misses, Newton's method may stop anywhere.
-        let settled = cubic(excess, step).magnitude().less(excess[0].magnitude() * RESIDUAL + TINY);
+        let settled = cubic(excess, step)
+            .magnitude()
+            .less(excess[0].magnitude() * RESIDUAL_TOLERANCE + ABSOLUTE_TOLERANCE);
         // A step that is long against the root's own time would show the evaluation's rounding.
-        let near = step.magnitude().less(next * LONGEST_STEP);
+        let near = step.magnitude().less(next * MAX_ROOT_STEP);
         let short = phase.is_short(elapsed, step) & settled & near;
-        if attempt == ATTEMPTS || !(alive & !short).any() {
+        if attempt == GUESS_EVALUATIONS || !(alive & !short).any() {
             let series = Series::of_orders(excess, phase.later(&at));
             let (step, slope, polished) = series.polished(step);
             return LaneRoot { at, elapsed, series, step, slope, found: alive & short & polished };

@@ -1,7 +1,7 @@
 //! What the lanes need of the parameters: of one model, and of as many as there are lanes.
 
 use super::wide::{LaneValues, Wide};
-use crate::crossing::allowances::SHORT_LIVED;
+use crate::crossing::allowances::NEGLIGIBLE_DECAY;
 use crate::flow::constants::Constants;
 use crate::flow::steps::Steps;
 use crate::model::Model;
@@ -179,7 +179,7 @@ shape! {
 
 /// A step of a guess outside contact, radians of the forcing: the cubic between two places errs by
 /// 1/384 of the amplitude, which the series puts right.
-const LOOK: f64 = 1.0;
+const GUESS_STEP_RADIANS: f64 = 1.0;
 
 impl Shape<f64> {
     /// The constants of a model; `None` without forcing or where the force never changes sign to
@@ -197,8 +197,8 @@ impl Shape<f64> {
         }
         let Steps { turning, separation_interval: interval, .. } = *model.steps();
         let (halfway_sin, halfway_cos) = libm::sincos(0.5 * (turning.angle + std::f64::consts::PI));
-        let (look_sin, look_cos) = libm::sincos(LOOK);
-        let look = LOOK / omega;
+        let (look_sin, look_cos) = libm::sincos(GUESS_STEP_RADIANS);
+        let look = GUESS_STEP_RADIANS / omega;
         let look_decay = libm::exp(-rate * look);
         let pace = omega.max(1.0);
         let phi = model.phi();
@@ -226,7 +226,7 @@ impl Shape<f64> {
             look,
             look_sin,
             look_cos,
-            look_decay: if look_decay < SHORT_LIVED { 0.0 } else { look_decay },
+            look_decay: if look_decay < NEGLIGIBLE_DECAY { 0.0 } else { look_decay },
             ..Self::of_contact(model.constants())
         })
     }

@@ -7,7 +7,7 @@ use super::forcing::Angle;
 use super::functions::shrink;
 use super::guess::LaneEnvelope;
 use super::root::{LanePhase, LaneRoot, find};
-use super::series::LATER;
+use super::series::LATER_ORDERS;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::progression::stops_once;
@@ -110,10 +110,10 @@ impl<S: Simd> LanePhase<S> for Slip<'_, S> {
     }
 
     #[inline(always)]
-    fn later(&self, at: &Sliding<S>) -> [Wide<S>; LATER] {
+    fn later(&self, at: &Sliding<S>) -> [Wide<S>; LATER_ORDERS] {
         let Shape { omega2, rate, .. } = *self.shape;
         let mut higher = PushedOrders::new([omega2, rate], at.lag, at.force);
-        [(); LATER].map(|()| higher.step())
+        [(); LATER_ORDERS].map(|()| higher.step())
     }
 
     #[inline(always)]

@@ -9,10 +9,10 @@ use pulp::bytemuck::cast_slice_mut;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// The number of lanes of the widest instruction set.
-pub const WIDEST: usize = 8;
+pub const MAX_LANES: usize = 8;
 
 /// A value of each lane in memory.
-pub type LaneValues = [f64; WIDEST];
+pub type LaneValues = [f64; MAX_LANES];
 
 /// One f64 per lane.
 #[derive(Clone, Copy, Debug)]
@@ -85,10 +85,10 @@ impl<S: Simd> Wide<S> {
     /// 2^n of a sum n + [`crate::numeric::two_word::ROUNDER`], for the exponents of normal numbers.
     #[inline(always)]
     pub fn power_of_two(self) -> Self {
-        const BIAS: u64 = 1023;
+        const EXPONENT_BIAS: u64 = 1023;
         let mut value = [self.value];
         for word in cast_slice_mut::<S::f64s, u64>(&mut value) {
-            *word = word.wrapping_add(BIAS) << 52;
+            *word = word.wrapping_add(EXPONENT_BIAS) << 52;
         }
         Self { value: value[0], ..self }
     }

@@ -65,9 +65,9 @@ impl<S: Simd> Words<S> {
     /// Whole turns and the rest in `[0, 2 pi)`.
     #[inline(always)]
     pub fn wrapped(self) -> (Wide<S>, Self) {
-        const PER_TURN: f64 = 1.0 / std::f64::consts::TAU;
+        const TURNS_PER_RADIAN: f64 = 1.0 / std::f64::consts::TAU;
         let rounder = self.high.same(ROUNDER);
-        let nearest = self.high.times_plus(self.high.same(PER_TURN), rounder) - ROUNDER;
+        let nearest = self.high.times_plus(self.high.same(TURNS_PER_RADIAN), rounder) - ROUNDER;
         let zero = self.high.same(0.0);
         let rest = self.plus(Self::turns(-nearest));
         let negative = rest.high.less(zero);

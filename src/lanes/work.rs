@@ -48,7 +48,7 @@ struct LoadedLanes<'a, S: Simd> {
 }
 
 /// Longer phases are left to the scalar solver, whose reduction of the angle knows no bound.
-const LONGEST: f64 = 1e5;
+const MAX_PHASE_RADIANS: f64 = 1e5;
 
 impl<'a, S: Simd> LoadedLanes<'a, S> {
     #[inline(always)]
@@ -131,7 +131,7 @@ impl<'a, S: Simd> LoadedLanes<'a, S> {
         let omega = self.shape.omega;
         let elapsed = Words::sum(evaluated, step);
         let (cycles, angle) = self.angle().plus(elapsed.times(omega)).wrapped();
-        let proved = proved & (elapsed.high * self.shape.pace).below(LONGEST);
+        let proved = proved & (elapsed.high * self.shape.pace).below(MAX_PHASE_RADIANS);
         proved.number().store(&mut end.proved);
         angle.high.store(&mut end.angle);
         angle.low.store(&mut end.angle_low);
@@ -146,7 +146,7 @@ impl<'a, S: Simd> LoadedLanes<'a, S> {
         let change = due.plus(Words { high: -high, low: -low });
         let cycles = self.load(&self.begin.due_cycles);
         let elapsed = Words::turns(cycles).plus(change).over(self.shape.omega);
-        let near = (elapsed.high * self.shape.pace).below(LONGEST);
+        let near = (elapsed.high * self.shape.pace).below(MAX_PHASE_RADIANS);
         near.number().store(&mut end.proved);
         elapsed
     }

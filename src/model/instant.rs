@@ -90,10 +90,10 @@ impl Instant {
     #[inline]
     pub(crate) fn since_roughly(&self, earlier: &Self, omega: f64) -> (f64, f64) {
         /// The whole and the angles round a few times.
-        const ROOM: f64 = 16.0 * f64::EPSILON;
+        const ROUNDING_TOLERANCE: f64 = 16.0 * f64::EPSILON;
         let cycles = to_f64(self.cycle.0 - earlier.cycle.0) * TWO_PI.high;
         let radians = cycles + (self.angle.high - earlier.angle.high);
-        let room = ROOM * (cycles.abs() + TWO_PI.high);
+        let room = ROUNDING_TOLERANCE * (cycles.abs() + TWO_PI.high);
         ((radians - room) / omega, (radians + room) / omega)
     }
 
@@ -113,11 +113,11 @@ impl Instant {
         omega: f64,
         phi: TwoWord,
     ) -> (Self, EntryAngle<f64>) {
-        /// Up to here the angle's second word is a first-order correction of its sine.
-        const FAR: f64 = 1e3;
+        /// The largest angle whose second word is a first-order correction of its sine.
+        const MAX_CORRECTED_RADIANS: f64 = 1e3;
         let angle = self.angle.plus_product(elapsed, omega);
         let instant = Self::wrapped(self.cycle.0, angle);
-        let near = if angle.high < FAR { angle } else { instant.angle };
+        let near = if angle.high < MAX_CORRECTED_RADIANS { angle } else { instant.angle };
         let (sin, cos) = sin_cos(with_phase(near, phi));
         (instant, EntryAngle { radians: instant.radians(phi), sin, cos })
     }

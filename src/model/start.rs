@@ -33,8 +33,8 @@ pub struct Start {
     pub phase: Option<Phase>,
 }
 
-/// How far a stated phase may move what was given.
-const PROJECTION: f64 = 1e-4;
+/// The largest distance by which a stated phase may move what was given.
+const MAX_PROJECTION: f64 = 1e-4;
 
 impl Model {
     /// Checks a start and decides its phase.
@@ -101,7 +101,8 @@ impl Model {
         };
         let (state, mode) = match phase {
             Phase::NoContact => {
-                let near = (given.p - (q + g)).abs() <= PROJECTION && force.abs() <= PROJECTION;
+                let near =
+                    (given.p - (q + g)).abs() <= MAX_PROJECTION && force.abs() <= MAX_PROJECTION;
                 if !near {
                     return self.apart(given, instant);
                 }
@@ -146,14 +147,15 @@ impl Model {
 
 fn near(phase: Phase, name: &'static str, from: f64, to: f64) -> Result<(), InputError> {
     // Written so that a NaN is refused.
-    if (from - to).abs() <= PROJECTION {
+    if (from - to).abs() <= MAX_PROJECTION {
         Ok(())
     } else {
         Err(InputError::FarFromPhase { phase, name, from, to })
     }
 }
 
-const SIZE: &str = "-1e9 to 1e9";
+/// The sizes of a state's entries that are accepted, as errors say them.
+const ACCEPTED_SIZES: &str = "-1e9 to 1e9";
 
 fn check(start: &Start) -> Result<(), InputError> {
     within("tau", start.tau, -1e15, 1e15, "-1e15 <= tau <= 1e15")?;
@@ -168,11 +170,11 @@ fn check(start: &Start) -> Result<(), InputError> {
     }
     let q = start.q.unwrap_or(0.0);
     check_size(&State { p: start.p, y: start.y, q })?;
-    within("v", start.v, -1e9, 1e9, SIZE)
+    within("v", start.v, -1e9, 1e9, ACCEPTED_SIZES)
 }
 
 fn check_size(state: &State) -> Result<(), InputError> {
-    within("p", state.p, -1e9, 1e9, SIZE)?;
-    within("y", state.y, -1e9, 1e9, SIZE)?;
-    within("q", state.q, -1e9, 1e9, SIZE)
+    within("p", state.p, -1e9, 1e9, ACCEPTED_SIZES)?;
+    within("y", state.y, -1e9, 1e9, ACCEPTED_SIZES)?;
+    within("q", state.q, -1e9, 1e9, ACCEPTED_SIZES)
 }

@@ -59,18 +59,18 @@ pub(crate) fn wrap(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
 #[inline]
 fn less_turns(rest: TwoWord, whole: f64) -> TwoWord {
     /// The size up to which the products with the parts of 2 pi are exact.
-    const FEW: f64 = (1 << 20) as f64;
+    const MAX_EXACT_TURNS: f64 = (1 << 20) as f64;
     /// 2 pi in parts of 33 bits, and the rest.
-    const FIRST: f64 = cut(TWO_PI.high);
-    const SECOND: f64 = cut((TWO_PI.high - FIRST) + TWO_PI.low);
-    const THIRD: f64 = ((TWO_PI.high - FIRST) - SECOND) + TWO_PI.low;
-    if !(1.0..FEW).contains(&whole) {
+    const TWO_PI_HIGH: f64 = cut(TWO_PI.high);
+    const TWO_PI_MIDDLE: f64 = cut((TWO_PI.high - TWO_PI_HIGH) + TWO_PI.low);
+    const TWO_PI_LOW: f64 = ((TWO_PI.high - TWO_PI_HIGH) - TWO_PI_MIDDLE) + TWO_PI.low;
+    if !(1.0..MAX_EXACT_TURNS).contains(&whole) {
         return rest.minus(TWO_PI.times(whole));
     }
     // The first difference is exact: its digits are those of `rest`, whose unit is 2^-50 at least,
     // and no more than a turn is left.
-    let sum = TwoWord::sum(rest.high - whole * FIRST, -(whole * SECOND));
-    TwoWord::sum(sum.high, sum.low + (rest.low - whole * THIRD))
+    let sum = TwoWord::sum(rest.high - whole * TWO_PI_HIGH, -(whole * TWO_PI_MIDDLE));
+    TwoWord::sum(sum.high, sum.low + (rest.low - whole * TWO_PI_LOW))
 }
 
 /// Takes whole turns off again, because a count of more than 2^53 turns is off by some.
@@ -84,8 +84,8 @@ fn wrap_again(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
 /// library for any that a run meets.
 #[inline]
 fn add_floor(turns: i128, x: f64) -> (i128, f64) {
-    const SMALL: f64 = (1_u64 << 62) as f64;
-    if x.abs() < SMALL {
+    const MAX_CAST_SIZE: f64 = (1_u64 << 62) as f64;
+    if x.abs() < MAX_CAST_SIZE {
         let towards_zero = x as i64;
         let whole = towards_zero - i64::from(towards_zero as f64 > x);
         (turns + i128::from(whole), whole as f64)
@@ -148,7 +148,7 @@ mod tests {
     use proptest::prelude::*;
 
     /// Sines computed with 60 digits (mpmath) at awkward arguments.
-    const KNOWN: [(f64, f64); 3] = [
+    const KNOWN_SINES: [(f64, f64); 3] = [
         (1e15, 0.858_272_793_170_235_835_52),
         (1e21, -0.667_120_177_071_804_847),
         (-1e15, -0.858_272_793_170_235_835_52),
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn sines_of_large_angles() {
-        for (angle, sine) in &KNOWN {
+        for (angle, sine) in &KNOWN_SINES {
             let (_, rest) = reduce(TwoWord::new(*angle));
             approx::assert_abs_diff_eq!(rest.value().sin(), *sine, epsilon = 4.0 * f64::EPSILON);
         }

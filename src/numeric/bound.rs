@@ -36,10 +36,10 @@ pub trait Bound:
 
     /// More than [`Bound::UNDERFLOW`] where it need not be sharp: sums and products of it are no
     /// subnormal numbers, with which processors are slow.
-    const LOST: Self;
+    const COARSE_UNDERFLOW: Self;
 
     /// A bound of the error where the last word of a number underflows.
-    const LAST_WORD: Self;
+    const LAST_WORD_UNDERFLOW: Self;
 
     /// The number with this f64 value.
     fn of(value: f64) -> Self;
@@ -86,8 +86,8 @@ impl Bound for f64 {
     const ZERO: Self = 0.0;
     const INFINITY: Self = Self::INFINITY;
     const UNDERFLOW: Self = Self::from_bits(64);
-    const LOST: Self = 1e-300;
-    const LAST_WORD: Self = 1e-280;
+    const COARSE_UNDERFLOW: Self = 1e-300;
+    const LAST_WORD_UNDERFLOW: Self = 1e-280;
 
     #[inline]
     fn of(value: f64) -> Self {
@@ -224,8 +224,9 @@ impl Add for ScaledF64 {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
-        /// Beyond this difference of exponents the smaller one is below rounding.
-        const APART: i64 = 64;
+        /// The largest difference of exponents at which the smaller number is above the rounding of
+        /// the larger.
+        const MAX_EXPONENT_GAP: i64 = 64;
         if !(self.is_ordinary() && other.is_ordinary()) {
             if self.mantissa == 0.0 {
                 return other;
@@ -238,7 +239,7 @@ impl Add for ScaledF64 {
         let (large, small) =
             if self.exponent >= other.exponent { (self, other) } else { (other, self) };
         let apart = large.exponent.saturating_sub(small.exponent);
-        if apart > APART {
+        if apart > MAX_EXPONENT_GAP {
             return large;
         }
         let share = f64::from_bits(((1023 - apart) as u64) << 52);
@@ -325,8 +326,8 @@ impl Bound for ScaledF64 {
     const ZERO: Self = Self { mantissa: 0.0, exponent: 0 };
     const INFINITY: Self = Self { mantissa: f64::INFINITY, exponent: 0 };
     const UNDERFLOW: Self = Self::ZERO;
-    const LOST: Self = Self::ZERO;
-    const LAST_WORD: Self = Self::ZERO;
+    const COARSE_UNDERFLOW: Self = Self::ZERO;
+    const LAST_WORD_UNDERFLOW: Self = Self::ZERO;
 
     #[inline]
     fn of(value: f64) -> Self {
@@ -365,18 +366,18 @@ impl Bound for ScaledF64 {
 
     fn exp(exponent: f64) -> Self {
         /// Beyond it an f64 does not tell one power of two from the next.
-        const LARGEST: f64 = 1e15;
+        const MAX_EXPONENT: f64 = 1e15;
         let powers = (exponent / std::f64::consts::LN_2).round();
-        if exponent < -LARGEST {
+        if exponent < -MAX_EXPONENT {
             return Self::ZERO;
         }
-        if powers.abs() > LARGEST || exponent.is_nan() {
+        if powers.abs() > MAX_EXPONENT || exponent.is_nan() {
             return Self { mantissa: exponent, exponent: 0 };
         }
         // The logarithm of two in two words.
-        const HIGH: f64 = 0.693_147_180_369_123_8;
-        const LOW: f64 = 1.908_214_929_270_587_7e-10;
-        let rest = (exponent - powers * HIGH) - powers * LOW;
+        const LN_2_HIGH: f64 = 0.693_147_180_369_123_8;
+        const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+        let rest = (exponent - powers * LN_2_HIGH) - powers * LN_2_LOW;
         Self::new(libm::exp(rest), powers as i64)
     }
 

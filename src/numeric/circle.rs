@@ -12,11 +12,11 @@ use crate::numeric::two_word::{ROUNDER, TWO_PI, TwoWord, cut};
 const PARTS: usize = 64;
 
 /// The size up to which the part's number times the part's first word is exact.
-const LARGEST: f64 = 6e4;
+const MAX_TABLE_ANGLE: f64 = 6e4;
 
 /// 2 pi/64 in three words, of which the first has 33 bits.
-const FIRST: f64 = cut(TWO_PI.high / PARTS as f64);
-const SECOND: f64 = (TWO_PI.high / PARTS as f64 - FIRST) + TWO_PI.low / PARTS as f64;
+const PART_HIGH: f64 = cut(TWO_PI.high / PARTS as f64);
+const PART_LOW: f64 = (TWO_PI.high / PARTS as f64 - PART_HIGH) + TWO_PI.low / PARTS as f64;
 
 /// Sine and cosine of a part's end.
 #[derive(Clone, Copy)]
@@ -25,23 +25,23 @@ struct PartEnd {
     cos: TwoWord,
 }
 
-static ENDS: [PartEnd; PARTS] = ends();
+static PART_ENDS: [PartEnd; PARTS] = ends();
 
 /// Sine and cosine of `x`, radians.
 #[inline]
 #[must_use]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     // Written so that a NaN goes to the library.
-    if x.abs() < LARGEST { by_table(x) } else { libm::sincos(x) }
+    if x.abs() < MAX_TABLE_ANGLE { by_table(x) } else { libm::sincos(x) }
 }
 
 #[inline]
 fn by_table(x: f64) -> (f64, f64) {
     let rounded = x * (PARTS as f64 / TWO_PI.high) + ROUNDER;
-    let PartEnd { sin, cos } = ENDS[rounded.to_bits() as usize % PARTS];
+    let PartEnd { sin, cos } = PART_ENDS[rounded.to_bits() as usize % PARTS];
     let parts = rounded - ROUNDER;
-    let near = x - parts * FIRST;
-    let second = parts * SECOND;
+    let near = x - parts * PART_HIGH;
+    let second = parts * PART_LOW;
     let r = near - second;
     let low = (near - r) - second;
     let square = r * r;
@@ -58,19 +58,19 @@ fn by_table(x: f64) -> (f64, f64) {
 
 /// The table, from the series at the first eighth of the turn.
 const fn ends() -> [PartEnd; PARTS] {
-    const QUARTER: usize = PARTS / 4;
+    const QUARTER_PARTS: usize = PARTS / 4;
     let mut table = [PartEnd { sin: TwoWord::ZERO, cos: TwoWord::ZERO }; PARTS];
     let mut k = 0;
     while k < PARTS {
-        let within = k % QUARTER;
-        let mirrored = 2 * within > QUARTER;
-        let steps = if mirrored { QUARTER - within } else { within };
+        let within = k % QUARTER_PARTS;
+        let mirrored = 2 * within > QUARTER_PARTS;
+        let steps = if mirrored { QUARTER_PARTS - within } else { within };
         let (mut sin, mut cos) = taylor(TWO_PI.times(steps as f64 / PARTS as f64));
         if mirrored {
             (sin, cos) = (cos, sin);
         }
         let mut quarter = 0;
-        while quarter < k / QUARTER {
+        while quarter < k / QUARTER_PARTS {
             (sin, cos) = (cos, TwoWord { high: -sin.high, low: -sin.low });
             quarter += 1;
         }
@@ -127,12 +127,12 @@ mod tests {
     const CORRECTION: f64 = 4.0 * 0.051 * 0.5 * f64::EPSILON;
 
     /// The library's error is below 0.8 units in the last place, ours below half a unit and that.
-    const ROOM: f64 = 1.3 * f64::EPSILON;
+    const ROUNDING_TOLERANCE: f64 = 1.3 * f64::EPSILON;
 
     fn agrees(x: f64) -> Result<(), TestCaseError> {
         let ((sin, cos), (s, c)) = (sin_cos(x), libm::sincos(x));
         // Next to a zero the reduction leaves 2^-90 of the angle.
-        let room = |value: f64| ROOM * value.abs() + CORRECTION + 1e-22 * x.abs();
+        let room = |value: f64| ROUNDING_TOLERANCE * value.abs() + CORRECTION + 1e-22 * x.abs();
         prop_assert!((sin - s).abs() <= room(s), "sin {x}: {sin} {s}");
         prop_assert!((cos - c).abs() <= room(c), "cos {x}: {cos} {c}");
         Ok(())

@@ -31,7 +31,7 @@ impl DoubleDouble {
 
     /// The largest argument of sine and cosine, 2^50: up to it a quotient by a quarter turn is good
     /// to an eighth of one. Beyond it both are NaN.
-    pub const LARGEST_ANGLE: f64 = 1_125_899_906_842_624.0;
+    pub const MAX_ANGLE: f64 = 1_125_899_906_842_624.0;
 
     /// The sum of two words in any order.
     #[must_use]
@@ -158,7 +158,7 @@ impl Number for DoubleDouble {
 
     fn sin_cos(self) -> (Self, Self) {
         // Written so that a NaN stays one.
-        if self.0.hi().abs() <= Self::LARGEST_ANGLE {
+        if self.0.hi().abs() <= Self::MAX_ANGLE {
             return sin_cos(self);
         }
         (Self::exact(f64::NAN), Self::exact(f64::NAN))
@@ -168,11 +168,11 @@ impl Number for DoubleDouble {
         /// The parts of a logarithm of two by multiples of which `xprec` reduces an argument, and
         /// the distance from a tie of two multiples within which it refuses one.
         const PARTS: f64 = 128.0 / std::f64::consts::LN_2;
-        const TIE: f64 = 1e-6;
+        const TIE_DISTANCE: f64 = 1e-6;
         /// 0.36 of such a part.
         const STEP: f64 = 1.0 / 512.0;
         let share = (self.0.hi() * PARTS).fract().abs();
-        if (share - 0.5).abs() > TIE {
+        if (share - 0.5).abs() > TIE_DISTANCE {
             return Self(self.0.exp());
         }
         let step = Self::exact(STEP);

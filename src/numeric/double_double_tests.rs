@@ -53,13 +53,13 @@ fn units(found: DoubleDouble, expected: Words) -> f64 {
 }
 
 /// The library's own bounds: 3 a sum, 4 a product, 6 a quotient; a series adds a handful of them.
-const ELEMENTARY: f64 = 8.0;
+const ELEMENTARY_UNITS: f64 = 8.0;
 
 #[test]
 fn exponential_is_good_to_the_last_digits() {
     for (x, expected) in EXPONENTIALS {
         let error = units(DoubleDouble::exact(x).exp(), expected);
-        assert!(error <= ELEMENTARY, "exp({x}): {error} units");
+        assert!(error <= ELEMENTARY_UNITS, "exp({x}): {error} units");
     }
 }
 
@@ -68,7 +68,7 @@ fn sine_and_cosine_are_good_to_the_last_digits_up_to_2_to_the_50() {
     for (x, sine, cosine) in SINES {
         let (sin, cos) = DoubleDouble::exact(x).sin_cos();
         let errors = [units(sin, sine), units(cos, cosine)];
-        assert!(errors.iter().all(|e| *e <= ELEMENTARY), "angle {x}: {errors:?} units");
+        assert!(errors.iter().all(|e| *e <= ELEMENTARY_UNITS), "angle {x}: {errors:?} units");
     }
 }
 
@@ -76,7 +76,7 @@ fn sine_and_cosine_are_good_to_the_last_digits_up_to_2_to_the_50() {
 fn the_second_word_of_a_large_angle_counts() {
     let ((high, low), sine) = TWO_WORD_SINE;
     let error = units(DoubleDouble::new(high, low).sin_cos().0, sine);
-    assert!(error <= ELEMENTARY, "{error} units");
+    assert!(error <= ELEMENTARY_UNITS, "{error} units");
 }
 
 #[test]
@@ -84,11 +84,11 @@ fn square_root_is_good_to_the_last_digits() {
     for (xi, expected) in DAMPED_FREQUENCIES {
         let (nu, lost) = DoubleDouble::damped_frequency(DoubleDouble::exact(xi));
         assert!(
-            lost.to_f64().abs() <= ELEMENTARY * DoubleDouble::UNIT * expected.0,
+            lost.to_f64().abs() <= ELEMENTARY_UNITS * DoubleDouble::UNIT * expected.0,
             "xi = {xi}: {lost:?}"
         );
         let error = units(nu, expected);
-        assert!(error <= ELEMENTARY, "xi = {xi}: {error} units");
+        assert!(error <= ELEMENTARY_UNITS, "xi = {xi}: {error} units");
     }
 }
 
@@ -138,7 +138,7 @@ fn wrapped(x: f64) -> u64 {
 
 #[test]
 fn an_angle_beyond_the_reduction_is_no_number() {
-    for angle in [1.01 * DoubleDouble::LARGEST_ANGLE, f64::NAN, f64::NEG_INFINITY] {
+    for angle in [1.01 * DoubleDouble::MAX_ANGLE, f64::NAN, f64::NEG_INFINITY] {
         let (sin, cos) = DoubleDouble::exact(angle).sin_cos();
         assert!(sin.to_f64().is_nan() && cos.to_f64().is_nan());
     }

@@ -11,15 +11,15 @@ use crate::numeric::two_word::{ROUNDER, TwoWord, cut};
 const PARTS: usize = 64;
 
 /// The size up to which the result and all its parts are normal numbers.
-const LARGEST: f64 = 700.0;
+const MAX_TABLE_ARGUMENT: f64 = 700.0;
 
 /// ln 2 (relative error 1e-33).
 pub(crate) const LN_2: TwoWord =
     TwoWord { high: std::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
 
 /// ln 2/64 in two words, of which the first has 33 bits.
-const FIRST: f64 = cut(LN_2.high / PARTS as f64);
-const SECOND: f64 = (LN_2.high / PARTS as f64 - FIRST) + LN_2.low / PARTS as f64;
+const PART_HIGH: f64 = cut(LN_2.high / PARTS as f64);
+const PART_LOW: f64 = (LN_2.high / PARTS as f64 - PART_HIGH) + LN_2.low / PARTS as f64;
 
 static POWERS: [TwoWord; PARTS] = powers();
 
@@ -28,7 +28,7 @@ static POWERS: [TwoWord; PARTS] = powers();
 #[must_use]
 pub fn exp(x: f64) -> f64 {
     // Written so that a NaN goes to the library.
-    if x.abs() < LARGEST { by_table(x) } else { libm::exp(x) }
+    if x.abs() < MAX_TABLE_ARGUMENT { by_table(x) } else { libm::exp(x) }
 }
 
 #[inline]
@@ -39,7 +39,7 @@ fn by_table(x: f64) -> f64 {
     let power = POWERS[number as usize % PARTS];
     let doublings = number.div_euclid(PARTS as i32);
     let scale = f64::from_bits(((1023 + doublings) as u64) << 52);
-    let r = (x - parts * FIRST) - parts * SECOND;
+    let r = (x - parts * PART_HIGH) - parts * PART_LOW;
     let square = r * r;
     // exp(r) - 1 for |r| <= 0.0055: the next term is 3e-20.
     let high = 1.0 / 24.0 + r * (1.0 / 120.0) + square * (1.0 / 720.0);

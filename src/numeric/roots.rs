@@ -1,7 +1,7 @@
 //! Roots of parabolas and cubics, as guesses and proofs of a crossing need them.
 
 /// Squares below this have lost digits to underflow.
-pub const EXACT_SQUARE: f64 = 1e-290;
+pub const MIN_EXACT_SQUARE: f64 = 1e-290;
 
 /// The smallest r > 0 with excess + slope r + bend r^2/2 = 0, for excess <= 0.
 pub fn safe_step(excess: f64, slope: f64, bend: f64) -> f64 {
@@ -17,7 +17,7 @@ pub fn safe_step(excess: f64, slope: f64, bend: f64) -> f64 {
 /// The first t > 0 with value + rising t + curvature t^2/2 = 0, for value < 0.
 pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
     let discriminant = rising * rising - 2.0 * curvature * value;
-    if discriminant.abs() < EXACT_SQUARE && curvature > 0.0 {
+    if discriminant.abs() < MIN_EXACT_SQUARE && curvature > 0.0 {
         return first_root_without_squares(value, rising, curvature);
     }
     if discriminant < 0.0 {
@@ -87,12 +87,12 @@ impl CubicPolynomial {
     /// that the guard is almost straight. What is left is the third power of 0.02, and is put right
     /// with the series' own remainder.
     pub fn near_zero(&self) -> Option<f64> {
-        const STRAIGHT: f64 = 0.02;
+        const MAX_BEND: f64 = 0.02;
         let inverse = 1.0 / self.slope;
         let newton = -self.value * inverse;
         let (b, c) = (0.5 * self.bend * inverse, self.third * inverse * (1.0 / 6.0));
         let (first, second) = (b * newton, c * newton * newton);
-        if !(first.abs() < STRAIGHT && second.abs() < STRAIGHT * STRAIGHT) {
+        if !(first.abs() < MAX_BEND && second.abs() < MAX_BEND * MAX_BEND) {
             return None;
         }
         Some(newton * (1.0 - first + 2.0 * first * first - second))
@@ -102,10 +102,10 @@ impl CubicPolynomial {
     /// graze it only halves at first.
     #[cold]
     pub fn zero(&self) -> f64 {
-        const STEPS: usize = 40;
+        const MAX_STEPS: usize = 40;
         let Self { value, slope, bend, third } = *self;
         let mut step = -value / slope;
-        for _ in 0..STEPS {
+        for _ in 0..MAX_STEPS {
             let change = self.at(step) / (slope + step * (bend + step * 0.5 * third));
             step -= change;
             if change.abs() <= 1e-6 * step.abs() || change.is_nan() {

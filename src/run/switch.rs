@@ -73,19 +73,19 @@ enum SearchEnd {
 
 /// The forcing angle by which a phase is cut that has no horizon: in two words nothing is known of
 /// the angle much later, and squares of times would overflow.
-const LARGEST_ANGLE: f64 = 1e30;
+const MAX_PHASE_RADIANS: f64 = 1e30;
 
-/// How far a search looks beyond its horizon, radians of the forcing.
-const BEYOND: f64 = 0.1;
+/// The forcing angle by which a search looks beyond its horizon, radians.
+const LOOK_AHEAD_RADIANS: f64 = 0.1;
 
-/// How far beyond it a switch next to it is looked for again, radians of the forcing: guesses see
-/// nothing of a horizon as far away, and the work that it takes stays small.
-const FURTHER: f64 = 256.0;
+/// The forcing angle beyond the horizon up to which a switch next to it is looked for again,
+/// radians: guesses see nothing of a horizon as far away, and the work that it takes stays small.
+const SECOND_LOOK_RADIANS: f64 = 256.0;
 
 /// How the phase that follows begins, by the phase that ends.
 trait Landing: Guarded {
-    /// What it means for this phase that it has no end.
-    const NONE: Endless;
+    /// The reason for which a phase of this kind has no end.
+    const NO_END: Endless;
 
     /// State and mode of the next phase, with what is known imposed.
     fn land(&self, root: &Root) -> (State, ModeEntry);
@@ -130,8 +130,8 @@ fn pass_by<P: Landing>(
     let instant = &begun.entry.instant;
     // The horizon in two words is computed only where it matters. It is looked beyond by more than
     // guesses err, so that a switch next to it is found as without it; its instant decides.
-    let beyond = BEYOND / omega;
-    let (certain, limit) = horizon.map_or((f64::INFINITY, LARGEST_ANGLE / omega), |h| {
+    let beyond = LOOK_AHEAD_RADIANS / omega;
+    let (certain, limit) = horizon.map_or((f64::INFINITY, MAX_PHASE_RADIANS / omega), |h| {
         let (certain, limit) = h.since_roughly(instant, omega);
         (certain - beyond, limit + beyond)
     });
@@ -190,7 +190,7 @@ fn pass_late<P: Landing>(
     counters: &mut Counters,
 ) -> PhaseEnd {
     let (omega, instant) = (model.parameters().omega, &begun.entry.instant);
-    let left = || horizon.map_or(LARGEST_ANGLE / omega, |h| h.since(instant, omega).value());
+    let left = || horizon.map_or(MAX_PHASE_RADIANS / omega, |h| h.since(instant, omega).value());
     let ended = |end, duration| PhaseEnd { end, duration: TwoWord::new(duration) };
     let found = match found {
         SearchEnd::Stage(from) => phase.in_stages(model, (begun, next), (from, limit), counters),
@@ -199,7 +199,7 @@ fn pass_late<P: Landing>(
     match found {
         SearchEnd::At(elapsed) => {
             let elapsed = horizon.map_or(elapsed, |_| {
-                let limit = limit + FURTHER / omega;
+                let limit = limit + SECOND_LOOK_RADIANS / omega;
                 found_later(phase, model, (begun, next), limit, counters).unwrap_or(elapsed)
             });
             if horizon.is_some_and(|it| next.entry.instant > *it) {
@@ -208,7 +208,7 @@ fn pass_late<P: Landing>(
             counters.switches += 1;
             PhaseEnd { end: End::Switch, duration: elapsed }
         }
-        SearchEnd::Never if left() > 0.0 => ended(End::Endless(P::NONE), f64::INFINITY),
+        SearchEnd::Never if left() > 0.0 => ended(End::Endless(P::NO_END), f64::INFINITY),
         SearchEnd::Undecided(elapsed) if elapsed < left() => ended(End::Undecidable, elapsed),
         // A horizon that is past leaves a phase of no length.
         _ => ended(End::Horizon, left().max(0.0)),
@@ -317,7 +317,7 @@ fn guess(model: &Model, entry: &Entry, angle: EntryAngle<f64>) -> Option<f64> {
 }
 
 impl Landing for NoContact<f64, &Constants<f64>> {
-    const NONE: Endless = Endless::NeverReturns;
+    const NO_END: Endless = Endless::NeverReturns;
 
     #[inline]
     fn land(&self, root: &Root) -> (State, ModeEntry) {
@@ -336,7 +336,7 @@ impl Landing for NoContact<f64, &Constants<f64>> {
 }
 
 impl Landing for Contact<f64, &Constants<f64>> {
-    const NONE: Endless = Endless::RestsForEver;
+    const NO_END: Endless = Endless::RestsForEver;
 
     #[inline]
     fn land(&self, root: &Root) -> (State, ModeEntry) {
@@ -367,7 +367,7 @@ impl Landing for Contact<f64, &Constants<f64>> {
 }
 
 impl Landing for Progression<f64, &Constants<f64>> {
-    const NONE: Endless = Endless::NeverStops;
+    const NO_END: Endless = Endless::NeverStops;
 
     #[inline]
     fn land(&self, root: &Root) -> (State, ModeEntry) {

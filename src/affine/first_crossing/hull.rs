@@ -2,7 +2,7 @@
 //! lies above it, in any arithmetic: the theorem and the interpolant are those of
 //! [`crate::crossing::certificate`].
 
-use crate::crossing::certificate::{MIDDLE, in_order, interpolant};
+use crate::crossing::certificate::{REMAINDER_DIVISOR, in_order, interpolant};
 use crate::numeric::number::{Bound, Number};
 use crate::numeric::real::Real;
 use smallvec::SmallVec;
@@ -51,7 +51,7 @@ impl<T: Number> Lengths<T> {
             seventh: length / T::exact(7.0),
             sixth: length / T::exact(6.0),
             fifth: length / T::exact(5.0),
-            middle: power / T::exact(MIDDLE),
+            middle: power / T::exact(REMAINDER_DIVISOR),
         }
     }
 }

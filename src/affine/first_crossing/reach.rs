@@ -14,7 +14,7 @@ use crate::affine::guards::point::{Ends, GuardedPoint, GuardedSegment};
 use crate::affine::guards::row::{ModalRow, RowPart};
 use crate::affine::guards::track::{Track, outward};
 use crate::affine::model::system::LARGEST_DIMENSION;
-use crate::crossing::certificate::MIDDLE;
+use crate::crossing::certificate::REMAINDER_DIVISOR;
 use crate::numeric::number::{Bound, Number};
 
 /// The share of a guard's size that the remainder of a piece may have.
@@ -177,7 +177,7 @@ fn enclose<T: Number>(
             break;
         }
         if rest < best * MAX_REST_RATIO {
-            let root = (-value * (MAX_REMAINDER * MIDDLE) / rest).approximate_root(8);
+            let root = (-value * (MAX_REMAINDER * REMAINDER_DIVISOR) / rest).approximate_root(8);
             let length = root.to_f64().min(longest);
             if length > reach.length {
                 best = rest;
@@ -294,7 +294,8 @@ fn length_after<B: Bound>(lead: B, zeros: usize, eighth: B) -> f64 {
     }
     // The interpolant takes at most seven derivatives of the guard.
     let zeros = zeros.min(7);
-    let power = lead.abs() * (MAX_REMAINDER * f64::inverse_factorial(zeros) * MIDDLE) / eighth;
+    let power =
+        lead.abs() * (MAX_REMAINDER * f64::inverse_factorial(zeros) * REMAINDER_DIVISOR) / eighth;
     power.approximate_root(8 - zeros).to_f64()
 }
 
@@ -308,7 +309,7 @@ fn length<B: Bound>(orders: &[B; 4], eighth: B, zeros: usize, size: impl Fn() ->
     if !eighth.is_finite() {
         return 0.0;
     }
-    let room = B::of(MAX_REMAINDER * MIDDLE) / eighth;
+    let room = B::of(MAX_REMAINDER * REMAINDER_DIVISOR) / eighth;
     let [value, slope, bend, _] = orders.map(Bound::abs);
     let smallest = size() * MIN_RELATIVE_SIZE;
     let by_value = if zeros > 0 { smallest } else { value.max(smallest) };

@@ -195,7 +195,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     #[inline]
     pub(super) fn errors(&self, n: usize, at: &GuardedPoint<T>) -> [f64; 2] {
         let norms = &at.norms[..self.flow.blocks.len()];
-        let lost = f64::LOST * (1.0 + norms.iter().map(|it| it.to_f64()).sum::<f64>());
+        let lost = f64::COARSE_UNDERFLOW * (1.0 + norms.iter().map(|it| it.to_f64()).sum::<f64>());
         [at.slack[n].to_f64(), lost]
     }
 }

@@ -40,7 +40,7 @@ impl<T: Number> Ball<T> {
 
     /// The result of an operation on middles, with the rounding that this made.
     fn computed(middle: T, radius: T::Bound) -> Self {
-        let rounding = T::unit() * 2.0 * middle.bound().abs() + T::Bound::LAST_WORD;
+        let rounding = T::unit() * 2.0 * middle.bound().abs() + T::Bound::LAST_WORD_UNDERFLOW;
         Self { middle, radius: (radius + rounding) * OUTWARD_FACTOR }
     }
 
@@ -97,7 +97,8 @@ impl<T: Number> Ball<T> {
 
     /// The number times a power of two.
     pub fn scaled(self, exponent: i64) -> Self {
-        let radius = (self.radius.scaled(exponent) + T::Bound::LAST_WORD) * OUTWARD_FACTOR;
+        let radius =
+            (self.radius.scaled(exponent) + T::Bound::LAST_WORD_UNDERFLOW) * OUTWARD_FACTOR;
         let radius = if self.is_zero() { T::Bound::ZERO } else { radius };
         Self { middle: self.middle.scaled(exponent), radius }
     }

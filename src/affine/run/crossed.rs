@@ -100,7 +100,7 @@ impl<T: Number> Run<'_, T> {
             // The guard differs from zero by its computed value and by the rounding error of that.
             slack: (point.slack[first] - inherited).max(T::Bound::ZERO)
                 + point.orders[first][0].bound().abs()
-                + T::Bound::LAST_WORD,
+                + T::Bound::LAST_WORD_UNDERFLOW,
             roundings,
             phase,
             zeros: segment.zeros_by_series(first, point.time.to_f64()),

@@ -346,7 +346,7 @@ pub(super) fn roundings<T: Number>(
     std::array::from_fn(|n| {
         // Sums of zeros stay zero.
         let is_there = before[n] > 0.0 || now[n] > 0.0;
-        let lost = if is_there { T::Bound::LAST_WORD } else { T::Bound::ZERO };
+        let lost = if is_there { T::Bound::LAST_WORD_UNDERFLOW } else { T::Bound::ZERO };
         margin * now[n] + off[n] + lost + T::Bound::UNDERFLOW * before[n]
     })
 }

@@ -274,7 +274,7 @@ impl<T: Number> Run<'_, T> {
                 + jump(n) * apart
                 + limit.jump_errors[n] * jumps
                 + rounding
-                + T::Bound::LAST_WORD * f64::from(u8::from(size > 0.0));
+                + T::Bound::LAST_WORD_UNDERFLOW * f64::from(u8::from(size > 0.0));
         }
         // The forcing's phase is computed from the time, and the entry that is 1 has no error.
         let computed = self.solver.phase().unwrap_or(dimension - 1)..dimension;

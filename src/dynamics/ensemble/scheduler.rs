@@ -7,7 +7,7 @@
 use super::cursor::Cursor;
 use super::slot::Slot;
 use super::{Done, Member, Tally, Watcher};
-use crate::lanes::{Batch, LaneTask, Permit, WIDEST};
+use crate::lanes::{Batch, LaneTask, MAX_LANES, Permit};
 use crate::model::Model;
 
 /// The motions of one thread.
@@ -92,7 +92,7 @@ impl<'a, W: Watcher> LaneScheduler<'a, W> {
         let waiting = &mut self.waiting[task as usize];
         let rest = waiting.len().saturating_sub(self.permit.width());
         let taken = waiting.len() - rest;
-        let mut places = [0; WIDEST];
+        let mut places = [0; MAX_LANES];
         places[..taken].copy_from_slice(&waiting[rest..]);
         waiting.truncate(rest);
         let places = &places[..taken];

@@ -1,25 +1,25 @@
 //! Roots, the exponential, sine and cosine of wide numbers.
 
 use super::limbs::{add_into, quotient_by_word, subtract_from, times_word};
-use super::{Kind, MOST, Wide};
+use super::{Kind, MAX_WORDS, Wide};
 use crate::numeric::number::Number;
 use std::sync::OnceLock;
 
 /// The words of a constant: those of a number, and as many below it.
-const CONSTANT: usize = 2 * MOST;
+const CONSTANT_WORDS: usize = 2 * MAX_WORDS;
 
 /// The largest exponent of an argument of sine, cosine and the exponential: whole turns and powers
 /// of two are counted in 64 bits.
-const LARGEST_EXPONENT: i64 = 61;
+const MAX_EXPONENT: i64 = 61;
 
 /// The number of bits to which an f64 begins an iteration.
 const FIRST_BITS: usize = 48;
 
 /// The sum of 1/((2 k + 1) n^(2 k + 1)) as a fraction, with alternating signs or without: the
 /// inverse (hyperbolic) tangent of 1/n.
-fn inverse_tangent(n: u64, alternates: bool) -> [u64; CONSTANT] {
-    let mut power = [0; CONSTANT];
-    // 2^(64 CONSTANT) - 1 for one: the words below are far beyond those that are used.
+fn inverse_tangent(n: u64, alternates: bool) -> [u64; CONSTANT_WORDS] {
+    let mut power = [0; CONSTANT_WORDS];
+    // 2^(64 CONSTANT_WORDS) - 1 for one: the words below are far beyond those that are used.
     power.fill(u64::MAX);
     quotient_by_word(&mut power, n);
     let mut sum = power;
@@ -39,8 +39,8 @@ fn inverse_tangent(n: u64, alternates: bool) -> [u64; CONSTANT] {
 }
 
 /// A quarter of pi as a fraction, by Machin's formula.
-fn quarter_pi() -> &'static [u64; CONSTANT] {
-    static WORDS: OnceLock<[u64; CONSTANT]> = OnceLock::new();
+fn quarter_pi() -> &'static [u64; CONSTANT_WORDS] {
+    static WORDS: OnceLock<[u64; CONSTANT_WORDS]> = OnceLock::new();
     WORDS.get_or_init(|| {
         let mut sum = inverse_tangent(5, true);
         times_word(&mut sum, 4);
@@ -51,8 +51,8 @@ fn quarter_pi() -> &'static [u64; CONSTANT] {
 
 /// The natural logarithm of two as a fraction:
 /// 18 artanh(1/26) - 2 artanh(1/4801) + 8 artanh(1/8749).
-fn logarithm_of_two() -> &'static [u64; CONSTANT] {
-    static WORDS: OnceLock<[u64; CONSTANT]> = OnceLock::new();
+fn logarithm_of_two() -> &'static [u64; CONSTANT_WORDS] {
+    static WORDS: OnceLock<[u64; CONSTANT_WORDS]> = OnceLock::new();
     WORDS.get_or_init(|| {
         let [mut sum, mut less, mut more] = [26, 4801, 8749].map(|it| inverse_tangent(it, false));
         times_word(&mut sum, 18);
@@ -69,8 +69,8 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
     const HALVINGS: i64 = (BITS.isqrt() / 2) as i64;
 
     /// A constant in two parts, of which multiples of the first are exact.
-    fn split(words: &[u64; CONSTANT], exponent: i64) -> [Self; 2] {
-        let below = CONSTANT - (WORDS - 1);
+    fn split(words: &[u64; CONSTANT_WORDS], exponent: i64) -> [Self; 2] {
+        let below = CONSTANT_WORDS - (WORDS - 1);
         let high = Self::constant(&words[below..], exponent);
         let low = exponent - 64 * (WORDS as i64 - 1);
         [high, Self::constant(&words[below - WORDS..below], low)]
@@ -127,7 +127,7 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
         match self.kind {
             Kind::Zero => return Self::one(),
             Kind::Unknown => return self,
-            Kind::Ordinary if self.exponent > LARGEST_EXPONENT => {
+            Kind::Ordinary if self.exponent > MAX_EXPONENT => {
                 return if self.is_negative { Self::ZERO } else { Self::UNKNOWN };
             }
             Kind::Ordinary => {}
@@ -147,7 +147,7 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
     }
 
     pub(super) fn sine_and_cosine(self) -> (Self, Self) {
-        if self.kind == Kind::Unknown || self.exponent > LARGEST_EXPONENT {
+        if self.kind == Kind::Unknown || self.exponent > MAX_EXPONENT {
             return (Self::UNKNOWN, Self::UNKNOWN);
         }
         let (rest, quarter, _) = self.reduced(Self::split(quarter_pi(), 1));

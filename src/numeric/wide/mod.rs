@@ -20,7 +20,7 @@ use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// The largest number of words of a number.
-const MOST: usize = 54;
+const MAX_WORDS: usize = 54;
 
 /// A number of `WORDS` words, of which the arithmetic declares `BITS` bits.
 #[derive(Clone, Copy)]
@@ -86,7 +86,7 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
 
     /// A fraction of constant words, lowest first, times a power of two.
     fn constant(words: &[u64], exponent: i64) -> Self {
-        let mut copy = [0; MOST + 2];
+        let mut copy = [0; MAX_WORDS + 2];
         copy[..words.len()].copy_from_slice(words);
         Self::rounded(false, exponent, &mut copy[..words.len()])
     }
@@ -96,7 +96,7 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
         if self.kind != Kind::Ordinary {
             return self;
         }
-        let mut words = [0; MOST + 1];
+        let mut words = [0; MAX_WORDS + 1];
         words[1..=WORDS].copy_from_slice(&self.words);
         quotient_by_word(&mut words[..=WORDS], divisor);
         Self::rounded(self.is_negative, self.exponent, &mut words[..=WORDS])
@@ -114,7 +114,7 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
             return *large;
         }
         // One word below both for what is shifted out of the small one, one above for a carry.
-        let (mut sum, mut other) = ([0; MOST + 2], [0; MOST + 2]);
+        let (mut sum, mut other) = ([0; MAX_WORDS + 2], [0; MAX_WORDS + 2]);
         let (sum, other) = (&mut sum[..WORDS + 2], &mut other[..WORDS + 2]);
         sum[1..=WORDS].copy_from_slice(&large.words);
         other[1..=WORDS].copy_from_slice(&small.words);
@@ -210,7 +210,7 @@ impl<const WORDS: usize, const BITS: usize> Mul for Wide<WORDS, BITS> {
             (Kind::Zero, _) | (_, Kind::Zero) => return Self::ZERO,
             _ => {}
         }
-        let mut product = [0; MOST + 2];
+        let mut product = [0; MAX_WORDS + 2];
         let product = &mut product[..WORDS + 2];
         limbs::high_product(&self.words, &other.words, product);
         let is_negative = self.is_negative != other.is_negative;
