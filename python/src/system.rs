@@ -8,7 +8,7 @@ use crate::rows::{Numbers, Rows};
 use crate::section::Section;
 use crate::stream::Stream;
 use percuss::SystemError;
-use percuss::affine::{BITS, LONGEST, SystemFile};
+use percuss::affine::{PRECISION_BITS, MAX_HORIZON, SystemFile};
 use percuss_validation::returns::{CountedReturns, MAX_RETURNS, Strobes, Uncounted};
 use percuss_validation::systems::{SYSTEMS, named};
 use pyo3::prelude::{PyRef, PyResult, Python, pyclass, pyfunction, pymethods};
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The most bits that a run may take.
-const MAX_BITS: u32 = BITS[BITS.len() - 1];
+const MAX_BITS: u32 = PRECISION_BITS[PRECISION_BITS.len() - 1];
 
 /// The most significant digits that may be asked for.
 const MAX_DIGITS: usize = 300;
@@ -70,14 +70,14 @@ impl System {
             return Err(value(format!("digits = {digits} is not accepted: 1 to {MAX_DIGITS} are")));
         }
         let bits = max_bits.unwrap_or(MAX_BITS);
-        if !(BITS[0]..=MAX_BITS).contains(&bits) {
-            let [least, most] = [BITS[0], MAX_BITS];
+        if !(PRECISION_BITS[0]..=MAX_BITS).contains(&bits) {
+            let [least, most] = [PRECISION_BITS[0], MAX_BITS];
             return Err(value(format!("max_bits = {bits} is not accepted: {least} to {most} are")));
         }
         let direction = if backward { -1.0 } else { 1.0 };
         let ahead = |until: f64| direction * (until - start);
         let until = match until {
-            None => start + direction * LONGEST * system.time_scale,
+            None => start + direction * MAX_HORIZON * system.time_scale,
             Some(until) if until.is_finite() && ahead(until) >= 0.0 => until,
             Some(until) => {
                 let side = if backward { "before" } else { "after" };
@@ -131,7 +131,7 @@ impl System {
             )));
         }
         let last = until.or_else(|| strobes.and_then(Strobes::last));
-        let horizon = last.unwrap_or(first_row + LONGEST * system.time_scale);
+        let horizon = last.unwrap_or(first_row + MAX_HORIZON * system.time_scale);
         Ok(Returning { counted, horizon, is_timed: until.is_some() })
     }
 }

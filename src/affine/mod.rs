@@ -32,7 +32,7 @@ pub use continuation::{
     BifurcationCurve, BifurcationPoint, CurveEnding, ReturnBifurcation, ReturnBranch, ReturnFamily,
     ReturnPlane,
 };
-pub use events::{BITS, LONGEST};
+pub use events::{MAX_HORIZON, PRECISION_BITS};
 pub use gradient::derivative::{Gradient, NoGradient};
 pub use gradient::walk::Walk;
 pub use guards::track::SearchWork;
@@ -48,7 +48,7 @@ pub use model::system::{
 pub use model::tangent::{Name, Tangent};
 pub use returns::diagram::{LeftOut, ReturnDiagram, ReturnDiagramStep, ValueError};
 pub use returns::exponents::Exponents;
-pub use returns::map::{SectionMap, USUAL_LONGEST};
+pub use returns::map::{DEFAULT_MAX_RETURN_TIME, SectionMap};
 pub use returns::orbit::{NoOrbit, Orbit};
 pub use returns::passage::Passage;
 pub use returns::section::{Guard, Section};

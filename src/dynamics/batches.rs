@@ -5,10 +5,11 @@
 //!
 //! The scatter of batch means gives the error of their mean if batches are longer than the motion
 //! remembers. In chaos a batch of one forcing period is not, and errors from 32 of them were 1.4
-//! times too small. So a batch has at least [`LEAST_LENGTH`] periods wherever the run has that many
-//! times [`LEAST_COUNT`], and the error has Student's factor for the few batches that are left.
-//! Over a thousand runs each of four chaotic motions the exponent then scatters by at most 1.15
-//! times its error from 32 periods on; a shorter run has an error that is of the right order only.
+//! times too small. So a batch has at least [`MIN_BATCH_PERIODS`] periods wherever the run has that
+//! many times [`MIN_BATCHES`], and the error has Student's factor for the few batches that are
+//! left. Over a thousand runs each of four chaotic motions the exponent then scatters by at most
+//! 1.15 times its error from 32 periods on; a shorter run has an error that is of the right order
+//! only.
 //!
 //! # A run that changes
 //!
@@ -20,18 +21,18 @@
 
 use crate::numeric::two_word::TwoWord;
 
-/// Most batches of a run.
-pub const BATCHES: u64 = 32;
+/// The largest number of batches of a run.
+pub const MAX_BATCHES: u64 = 32;
 /// Least number of forcing periods of a batch, where a run has enough of them.
-pub const LEAST_LENGTH: u64 = 8;
+pub const MIN_BATCH_PERIODS: u64 = 8;
 /// Least number of batches, where a run has as many forcing periods.
-pub const LEAST_COUNT: u64 = 4;
+pub const MIN_BATCHES: u64 = 4;
 /// Least number of batches that can show a change: the orders of fewer are too few.
-pub const LEAST_FOR_CHANGE: usize = 16;
+pub const MIN_BATCHES_FOR_CHANGE: usize = 16;
 /// Random orders that a run's own order is compared with.
 pub const REORDERINGS: u32 = 199;
-/// A change of the mean that is no larger, beside 1 + |mean|, is a motion that has settled.
-const SETTLED: f64 = 1e-6;
+/// The largest change of the mean, beside 1 + |mean|, of a motion that has settled.
+const CHANGE_TOLERANCE: f64 = 1e-6;
 
 /// Whether the means over the batches of a run scatter about one value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +58,7 @@ impl Batches {
     #[must_use]
     pub fn of(periods: u64) -> Self {
         let periods = periods.max(1);
-        let count = (periods / LEAST_LENGTH).clamp(LEAST_COUNT, BATCHES).min(periods);
+        let count = (periods / MIN_BATCH_PERIODS).clamp(MIN_BATCHES, MAX_BATCHES).min(periods);
         Self { periods, count }
     }
 
@@ -100,7 +101,7 @@ impl Batches {
     /// Whether some quantities, given by their batch means, scatter about one value each; the
     /// latest change where they do not.
     pub(crate) fn stationarity(self, quantities: &[Vec<f64>]) -> Stationarity {
-        if (self.count as usize) < LEAST_FOR_CHANGE {
+        if (self.count as usize) < MIN_BATCHES_FOR_CHANGE {
             return Stationarity::Unknown;
         }
         let latest = quantities.iter().filter_map(|means| change(means)).max();
@@ -131,7 +132,7 @@ fn change(means: &[f64]) -> Option<usize> {
     let (batches, between) = largest_split(means)?;
     let count = means.len() as f64;
     let mean = means.iter().sum::<f64>() / count;
-    if between.sqrt() <= SETTLED * (1.0 + mean.abs()) {
+    if between.sqrt() <= CHANGE_TOLERANCE * (1.0 + mean.abs()) {
         return None;
     }
     let mut order = means.to_vec();
@@ -235,7 +236,7 @@ mod tests {
     /// How often the batches of 1000 runs with a step of this many scatters at this share of the
     /// run are told.
     fn told(chance: &mut Chance, step: f64, share: f64) -> f64 {
-        let count = BATCHES as usize;
+        let count = MAX_BATCHES as usize;
         let told = (0..1000).filter(|_| {
             let mut draws = chance.normals(count);
             let from = (share * count as f64) as usize;

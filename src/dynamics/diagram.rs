@@ -4,9 +4,9 @@
 //! ([`Follow::Carry`]); Fig. 10b starts every value from the same state ([`Follow::Reset`]) and
 //! jumps wherever that state changes basins.
 //!
-//! A motion escapes whose state passes [`FARTHEST`] at a strobe, or is proved to pass it sooner or
-//! later: the mass never returns, or the slider never stops. Its strobes are no part of a diagram,
-//! and no value starts from where it went.
+//! A motion escapes whose state passes [`ESCAPE_DISTANCE`] at a strobe, or is proved to pass it
+//! sooner or later: the mass never returns, or the slider never stops. Its strobes are no part of a
+//! diagram, and no value starts from where it went.
 
 use super::batches::Batches;
 use super::ensemble::{self, Member};
@@ -75,10 +75,10 @@ pub struct DiagramStep {
 }
 
 /// A state farther away than this in p, y or q has escaped: starts are accepted up to there.
-pub const FARTHEST: f64 = 1e9;
+pub const ESCAPE_DISTANCE: f64 = 1e9;
 
 /// Values that are looked at in one go: their models and strobes are held in memory meanwhile.
-const BLOCK: usize = 1024;
+const BLOCK_VALUES: usize = 1024;
 
 impl Diagram {
     /// The parameter's value at a step.
@@ -97,7 +97,7 @@ impl Diagram {
         match self.follow {
             Follow::Reset => {
                 let mut done = Vec::with_capacity(steps.len());
-                for block in steps.chunks(BLOCK) {
+                for block in steps.chunks(BLOCK_VALUES) {
                     done.extend(self.reset(block, &seen)?);
                 }
                 Ok(done)
@@ -202,5 +202,5 @@ fn value(from: f64, to: f64, steps: u32, step: u32) -> f64 {
 
 /// Whether a state has gone farther than any start.
 fn is_far(strobe: &Entry) -> bool {
-    strobe.point().iter().any(|x| x.is_nan() || x.abs() > FARTHEST)
+    strobe.point().iter().any(|x| x.is_nan() || x.abs() > ESCAPE_DISTANCE)
 }

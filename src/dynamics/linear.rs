@@ -157,13 +157,13 @@ fn quasi_triangular(mut m: Jacobian) -> [ReIm; 3] {
     reflect(&mut m, hessenberg);
     // Convergence is quadratic; three or four steps do. One in ten is of an odd shift, which breaks
     // cycles.
-    const STEPS: usize = 60;
-    for step in 1..=STEPS {
+    const MAX_STEPS: usize = 60;
+    for step in 1..=MAX_STEPS {
         let small = |k: usize| {
             let near = m[k][k].abs() + m[k - 1][k - 1].abs();
             m[k][k - 1].abs() <= f64::EPSILON * if near == 0.0 { 1.0 } else { near }
         };
-        if small(2) || step == STEPS {
+        if small(2) || step == MAX_STEPS {
             let [a, b] = block(&m, 0);
             return [a, b, [m[2][2], 0.0]];
         }

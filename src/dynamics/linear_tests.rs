@@ -13,7 +13,7 @@ fn similar(base: &Jacobian, inside: &Jacobian) -> Jacobian {
     product(&product(base, inside), &inverse)
 }
 
-const BASE: Jacobian = [[1.0, 0.5, -0.25], [0.25, 2.0, 0.5], [-0.5, 0.75, 1.5]];
+const BASIS: Jacobian = [[1.0, 0.5, -0.25], [0.25, 2.0, 0.5], [-0.5, 0.75, 1.5]];
 
 proptest! {
     #[test]
@@ -27,7 +27,7 @@ proptest! {
         } else {
             ([[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]], vec![[a, 0.0], [b, 0.0], [c, 0.0]])
         };
-        let matrix = similar(&BASE, &inside);
+        let matrix = similar(&BASIS, &inside);
         // Sum, sum of pairs and product are continuous in the matrix also where eigenvalues meet.
         let found = eigenvalues(&matrix);
         for at in [[1.0, 0.0], [-1.0, 0.0], [0.5, 1.0]] {
@@ -60,7 +60,7 @@ proptest! {
 fn a_zero_beside_large_and_small_ones() {
     for values in [[7.0, -0.3, 0.0], [1e8, 1e-3, 0.0], [2.0, 0.0, 0.0], [0.0; 3]] {
         let [a, b, c] = values;
-        let found = eigenvalues(&similar(&BASE, &[[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]]));
+        let found = eigenvalues(&similar(&BASIS, &[[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]]));
         for (found, planted) in found.iter().zip(values) {
             // A few eps of the largest entry.
             assert!((found[0] - planted).abs() <= 32.0 * f64::EPSILON * a, "{found:?} {planted}");

@@ -28,7 +28,7 @@ use crate::run::variation::{IDENTITY, Matrix, P, Q, V, Y, product};
 use crate::state::State;
 
 /// The derivative of a state on the slider, where q moves with p.
-const TOGETHER: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
+const SLIDER_DERIVATIVE: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
 
 /// The strobe map at one forcing angle.
 #[derive(Clone, Copy, Debug)]
@@ -125,7 +125,7 @@ impl Passage {
     pub fn free_jacobian(&self) -> Jacobian {
         match self.phases.first() {
             Some(Phase::Contact | Phase::Progression) => {
-                linear::product(&self.jacobian(), &TOGETHER)
+                linear::product(&self.jacobian(), &SLIDER_DERIVATIVE)
             }
             _ => self.jacobian(),
         }

@@ -11,8 +11,9 @@ use crate::model::entry::Motion;
 use crate::run::trajectory::Segment;
 use crate::run::variation::{Matrix, P, Q, Y};
 
-/// A contact is passed in pieces in which its slowest part shrinks by at most exp(-LONGEST_DECAY).
-const LONGEST_DECAY: f64 = 300.0;
+/// A contact is passed in pieces in which its slowest part shrinks by at most
+/// exp(-MAX_DECAY_TIMES).
+const MAX_DECAY_TIMES: f64 = 300.0;
 
 /// Errors of (p, y, q), and the areas dp^dy, dp^dq and dy^dq of a pair of them.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +28,9 @@ pub(super) struct TangentVector {
     slowest: f64,
 }
 
-/// dp = dq, the area of one dp ^ dy.
-const ON_SLIDER: [f64; 3] = [1.0, 0.0, -1.0];
+/// The areas dp ^ dy, dp ^ dq and dy ^ dq of a motion on the slider, where dp = dq and one dp ^ dy
+/// is left.
+const SLIDER_AREA: [f64; 3] = [1.0, 0.0, -1.0];
 
 impl TangentVector {
     /// Errors as a separation leaves them: with dp = dq.
@@ -38,7 +40,7 @@ impl TangentVector {
         Self {
             // No direction that the motion could have a reason to prefer.
             direction: [0.6, 0.52, 0.6],
-            area: ON_SLIDER,
+            area: SLIDER_AREA,
             length: 0.0,
             size: 0.0,
             two_xi: 2.0 * xi,
@@ -55,7 +57,7 @@ impl TangentVector {
                 self.area = wedge(&variation, self.area);
             }
             Motion::Contact(_) => {
-                let pieces = (elapsed * self.slowest / LONGEST_DECAY).ceil().max(1.0);
+                let pieces = (elapsed * self.slowest / MAX_DECAY_TIMES).ceil().max(1.0);
                 let variation = segment.variation(elapsed / pieces);
                 for _ in 0..pieces as u64 {
                     self.turn(&variation);
@@ -81,7 +83,7 @@ impl TangentVector {
         self.stay_on_slider();
         let [area, ..] = wedge(&saltation, self.area);
         self.size += libm::log(area.abs());
-        self.area = ON_SLIDER;
+        self.area = SLIDER_AREA;
     }
 
     fn turn(&mut self, derivative: &Matrix) {
@@ -105,12 +107,12 @@ impl TangentVector {
 
 /// The areas dp^dy, dp^dq, dy^dq after a derivative.
 fn wedge(derivative: &Matrix, area: [f64; 3]) -> [f64; 3] {
-    const PAIRS: [(usize, usize); 3] = [(P, Y), (P, Q), (Y, Q)];
-    PAIRS.map(|(i, j)| {
+    const COORDINATE_PAIRS: [(usize, usize); 3] = [(P, Y), (P, Q), (Y, Q)];
+    COORDINATE_PAIRS.map(|(i, j)| {
         let minor = |(k, l): (usize, usize)| {
             derivative[i][k] * derivative[j][l] - derivative[i][l] * derivative[j][k]
         };
-        PAIRS.into_iter().zip(area).map(|(columns, size)| minor(columns) * size).sum()
+        COORDINATE_PAIRS.into_iter().zip(area).map(|(columns, size)| minor(columns) * size).sum()
     })
 }
 

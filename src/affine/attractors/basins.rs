@@ -10,7 +10,7 @@ use crate::affine::returns::walk::Return;
 use crate::affine::run::place::Place;
 use crate::affine::solver::Solver;
 use crate::dynamics::attractor::catalog::Catalog;
-use crate::dynamics::attractor::thresholds::LATTICE;
+use crate::dynamics::attractor::thresholds::LATTICE_SIDE;
 use crate::dynamics::attractor::unresolved::{described, examples};
 use crate::dynamics::attractor::{Label, SearchLimits, grid};
 use crate::dynamics::parallel;
@@ -178,7 +178,7 @@ impl SectionMap<'_, f64> {
     ) -> Result<ReturnBasins, SystemError> {
         let at = PlaneStart::of(self.solver(), start, &plane.axes)?;
         let mut catalog = Catalog::new(SectionMotions::of(self), limits.into());
-        let lattice = Plane { columns: LATTICE, rows: LATTICE, ..*plane };
+        let lattice = Plane { columns: LATTICE_SIDE, rows: LATTICE_SIDE, ..*plane };
         catalog.label_all(&lattice.starts(&at)?, &|_| ());
         let starts = plane.starts(&at)?;
         let labels = catalog.label_all(&starts, seen);

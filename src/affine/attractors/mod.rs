@@ -6,9 +6,9 @@
 //! - **Periodic**: returns repeat, Newton's method confirms the orbit, its multipliers are inside
 //!   the unit circle, and there is a neighbourhood from which all sampled points return closer
 //!   (`trap_search.rs`): evidence, not proof.
-//! - **Chaotic**: the largest exponent is above zero by more than [`ERRORS`] standard errors over a
-//!   long run that met no orbit. Another motion is on the same attractor when 48 returns in a row
-//!   lie in the cells of that run (`cells.rs`).
+//! - **Chaotic**: the largest exponent is above zero by more than [`MIN_STANDARD_ERRORS`] standard
+//! errors over a long run that met no orbit. Another motion is on the same attractor when 48
+//! returns in a row lie in the cells of that run (`cells.rs`).
 //! - **Quasi-periodic**: neither, with a largest exponent below 1e-3. In the oscillator every
 //!   contact contracts areas; in other systems there may be such motions.
 //! - **Equilibrium**: the motion does not return to the section within the longest time.
@@ -56,7 +56,7 @@ pub struct ReturnAttractor {
 }
 
 /// Returns that are kept of an attractor that is no orbit.
-pub const POINTS: usize = crate::dynamics::attractor::POINTS;
+pub const MAX_POINTS: usize = crate::dynamics::attractor::MAX_POINTS;
 
 impl ReturnAttractor {
     /// An attractor that is a stable orbit, told from its smallest first state on.
@@ -80,7 +80,7 @@ impl ReturnAttractor {
         Self {
             kind,
             orbit: None,
-            points: run[run.len().saturating_sub(POINTS)..].to_vec(),
+            points: run[run.len().saturating_sub(MAX_POINTS)..].to_vec(),
             lyapunov_per_return: exponent,
             lyapunov_error: error,
             drift_per_return: means.drift.clone(),

@@ -12,7 +12,9 @@ use crate::affine::run::place::Place;
 use crate::dynamics::attractor::coordinates::Coordinates;
 use crate::dynamics::attractor::motions::Motions;
 use crate::dynamics::linear::modulus;
-use crate::dynamics::orbit::scan::{Rank, SAME, SETTLING, WATCHED, are_one};
+use crate::dynamics::orbit::scan::{
+    ORBIT_TOLERANCE, Rank, SETTLING_PERIODS, WATCHED_PERIODS, are_one,
+};
 use crate::dynamics::parallel;
 
 impl SectionMap<'_, f64> {
@@ -68,7 +70,7 @@ impl SectionMotions<'_> {
             return Vec::new();
         }
         let Ok(first) = self.after(start, 1) else { return Vec::new() };
-        let Ok(settled) = self.after(&first, SETTLING) else { return vec![first] };
+        let Ok(settled) = self.after(&first, SETTLING_PERIODS) else { return vec![first] };
         let closest = self.closest(&settled, period);
         [Some(first), Some(settled), closest].into_iter().flatten().collect()
     }
@@ -77,7 +79,7 @@ impl SectionMotions<'_> {
     fn closest(&self, settled: &Place<f64>, period: u32) -> Option<Place<f64>> {
         let next = |place: &Place<f64>| self.after(place, 1).ok();
         let places = std::iter::successors(Some(settled.clone()), next);
-        let places: Vec<_> = places.take((WATCHED + u64::from(period)) as usize).collect();
+        let places: Vec<_> = places.take((WATCHED_PERIODS + u64::from(period)) as usize).collect();
         let later = places.iter().skip(period as usize);
         let apart = |a: &Place<f64>, b: &Place<f64>| self.apart(&self.spot_of(a), &self.spot_of(b));
         let pairs = places.iter().zip(later).map(|(a, b)| (apart(a, b), a));
@@ -99,7 +101,7 @@ impl SectionMotions<'_> {
             spots.collect::<Vec<_>>()
         });
         let size = |it: &Spot| it.at.iter().fold(0.0_f64, |most, it| it.abs().max(most));
-        are_one(&one, &other, |a, b| self.apart(a, b) <= SAME * (1.0 + size(a)))
+        are_one(&one, &other, |a, b| self.apart(a, b) <= ORBIT_TOLERANCE * (1.0 + size(a)))
     }
 }
 

@@ -19,10 +19,10 @@ use crate::numeric::wide::{Bits212, Bits424, Bits848, Bits1696, Bits3392};
 use std::sync::OnceLock;
 
 /// The bits of the arithmetics, one after the other.
-pub const BITS: [u32; 6] = [106, 212, 424, 848, 1696, 3392];
+pub const PRECISION_BITS: [u32; 6] = [106, 212, 424, 848, 1696, 3392];
 
 /// The most bits of an arithmetic.
-pub(super) const MAX_BITS: u32 = BITS[5];
+pub(super) const MAX_BITS: u32 = PRECISION_BITS[5];
 
 /// A system with a solver in each arithmetic, which is prepared when a run needs it.
 pub struct ProvedSolver {
@@ -281,7 +281,7 @@ impl<'a> Escalating<'a> {
     }
 
     fn may_go_on(&self) -> bool {
-        BITS.get(self.level + 1).is_some_and(|bits| *bits <= self.request.most_bits)
+        PRECISION_BITS.get(self.level + 1).is_some_and(|bits| *bits <= self.request.most_bits)
     }
 
     /// Keeps the ending at which these bits are left undecided, if it is later than that of fewer.
@@ -350,6 +350,6 @@ impl<'a> Running<'a, Proved> for Escalating<'a> {
     }
 
     fn bits(&self) -> u32 {
-        BITS[self.level]
+        PRECISION_BITS[self.level]
     }
 }

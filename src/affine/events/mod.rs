@@ -24,13 +24,13 @@ mod steps;
 
 pub use answer::Answer;
 pub use cause::Cause;
-pub use escalation::BITS;
+pub use escalation::PRECISION_BITS;
 pub use event::{Ending, Event, Kind};
 pub use gradient::Gradient;
 pub use iterators::{Events, Samples};
 pub use length::Run;
 pub use proved::Proved;
-pub use steps::LONGEST;
+pub use steps::MAX_HORIZON;
 
 use crate::affine::model::error::SystemError;
 use crate::affine::model::system::{StartPoint, System};

@@ -14,7 +14,7 @@ use crate::affine::solver::event::{Ending, Event, What};
 use crate::numeric::number::Number;
 
 /// The horizon of a run that ends with a number of events, in the system's units of time.
-pub const LONGEST: f64 = 1e9;
+pub const MAX_HORIZON: f64 = 1e9;
 
 /// A run with the samples that are asked for.
 pub(super) struct Steps<'a, T: Number> {
@@ -90,7 +90,7 @@ fn end<T: Number>(request: &Request, system: &System, backward: bool) -> T {
     let direction = if backward { -1.0 } else { 1.0 };
     match request.horizon {
         Horizon::At(time) => T::exact(time),
-        Horizon::Far => T::exact(start.to_f64() + direction * LONGEST * system.time_scale),
+        Horizon::Far => T::exact(start.to_f64() + direction * MAX_HORIZON * system.time_scale),
         Horizon::Units(count) => start + T::exact(direction * count) * unit::<T>(system),
     }
 }

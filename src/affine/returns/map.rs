@@ -7,12 +7,12 @@ use crate::affine::model::error::SystemError;
 use crate::affine::model::system::{Forcing, System};
 use crate::affine::run::place::Place;
 use crate::affine::solver::Solver;
-use crate::dynamics::diagram::FARTHEST;
+use crate::dynamics::diagram::ESCAPE_DISTANCE;
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::number::Number;
 
 /// The longest time of a return that is waited for, in the system's units of time.
-pub const USUAL_LONGEST: f64 = 1000.0;
+pub const DEFAULT_MAX_RETURN_TIME: f64 = 1000.0;
 
 /// The return map of a section of a system.
 pub struct SectionMap<'a, T: Number> {
@@ -39,7 +39,7 @@ impl<'a, T: Number> SectionMap<'a, T> {
             Returning::Events(_) => 0.0,
         };
         let period = system.forcing.as_ref().map(|it| strobes(it, angle));
-        let longest = T::exact(USUAL_LONGEST * system.time_scale);
+        let longest = T::exact(DEFAULT_MAX_RETURN_TIME * system.time_scale);
         let drifts = system.drifts();
         Ok(Self { solver, section: resolved, longest, period, drifts })
     }
@@ -77,11 +77,11 @@ impl<'a, T: Number> SectionMap<'a, T> {
     }
 
     /// Whether a motion has escaped that returns with these states: one that is no drift is no
-    /// number, or is larger than [`FARTHEST`] of its scales. A drift of an orbit grows for ever.
+    /// number, or is larger than [`ESCAPE_DISTANCE`] of its scales. A drift of an orbit grows for ever.
     pub(in crate::affine) fn has_escaped(&self, state: &[T]) -> bool {
         let states = state.iter().map(|it| it.to_f64()).zip(&self.system().scales);
         let mut counted = states.enumerate().filter(|(n, _)| !self.is_drift(*n));
-        counted.any(|(_, (state, scale))| state.is_nan() || state.abs() > FARTHEST * scale)
+        counted.any(|(_, (state, scale))| state.is_nan() || state.abs() > ESCAPE_DISTANCE * scale)
     }
 
     /// The [drifts](System::drifts) of a state, in their order.

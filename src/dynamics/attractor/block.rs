@@ -10,13 +10,13 @@ use super::known::Label;
 use super::limits::SearchLimits;
 use super::strobe_catalog::AttractorCatalog;
 use super::strobes::{Known, StrobeCoordinates};
-use super::thresholds::LATTICE;
+use super::thresholds::LATTICE_SIDE;
 use crate::dynamics::strobe::StrobeMap;
 use std::ops::Range;
 
 /// A block has as many whole rows as hold this number of starts: enough to make the search for
 /// attractors that precedes each block a small part of the work, which is 256 starts.
-const STARTS: u32 = 1 << 16;
+const MIN_BLOCK_STARTS: u32 = 1 << 16;
 
 /// Labels the starts of a grid, block by block.
 #[derive(Clone, Debug)]
@@ -56,7 +56,7 @@ impl Grid {
     }
 
     fn rows_of_block(&self) -> u32 {
-        STARTS.div_ceil(self.columns.max(1))
+        MIN_BLOCK_STARTS.div_ceil(self.columns.max(1))
     }
 }
 
@@ -65,7 +65,7 @@ impl BlockLabeller {
     #[must_use]
     pub fn new(map: &StrobeMap, grid: &Grid, limits: impl Into<SearchLimits>) -> Self {
         let mut shared = AttractorCatalog::new(*map, limits);
-        let lattice = Grid { columns: LATTICE, rows: LATTICE, ..*grid };
+        let lattice = Grid { columns: LATTICE_SIDE, rows: LATTICE_SIDE, ..*grid };
         shared.label_all(&lattice.starts(), &|_| {});
         Self { grid: *grid, shared }
     }

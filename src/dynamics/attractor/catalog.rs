@@ -5,7 +5,7 @@ use super::known::{KnownAttractor, Label};
 use super::limits::SearchLimits;
 use super::motions::{Motions, StopOf};
 use super::search::{AttractorSearch, Settled};
-use super::thresholds::{BLOCK, EXTENSIONS, LARGEST_BATCH};
+use super::thresholds::{BLOCK_STARTS, EXTENSIONS, MAX_BATCH_STARTS};
 use crate::dynamics::parallel;
 
 /// The attractors of a return map that have been met, in the order in which they were.
@@ -45,7 +45,7 @@ impl<M: Motions> Catalog<M> {
     pub fn label_all(&mut self, starts: &[M::Start], seen: &(dyn Fn(u64) + Sync)) -> Vec<Label> {
         let mut labels = vec![Label::Unresolved; starts.len()];
         let mut open = Vec::new();
-        for (block, first) in starts.chunks(BLOCK).zip((0..).step_by(BLOCK)) {
+        for (block, first) in starts.chunks(BLOCK_STARTS).zip((0..).step_by(BLOCK_STARTS)) {
             let mut begun = Vec::new();
             let places = parallel::map(block, |start| self.motions.begin(start));
             for (n, place) in (first..).zip(places) {
@@ -77,7 +77,7 @@ impl<M: Motions> Catalog<M> {
                 labels[*index] = self.adopted(outcome);
             }
             seen(open.len() as u64);
-            batch = (2 * batch).min(LARGEST_BATCH);
+            batch = (2 * batch).min(MAX_BATCH_STARTS);
             open = rest;
             if self.known.len() > before {
                 batch = 1;

@@ -1,7 +1,7 @@
 //! The small cells that a long run on an attractor which is no orbit has visited.
 
 use super::coordinates::Coordinates;
-use super::thresholds::PER_EXTENT;
+use super::thresholds::CELLS_PER_EXTENT;
 use std::borrow::Borrow;
 use std::collections::HashSet;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -67,7 +67,7 @@ impl<C: Coordinates> CellSet<C> {
             high - low
         };
         let largest = (0..dimension).map(extent).fold(f64::MIN_POSITIVE, f64::max);
-        let width = largest / PER_EXTENT;
+        let width = largest / CELLS_PER_EXTENT;
         Self { width, visited: spots.iter().map(|it| coordinates.cell(it, width)).collect() }
     }
 

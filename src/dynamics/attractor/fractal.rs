@@ -211,9 +211,10 @@ fn slope(scales: &[Scale], saturated: f64) -> Option<(f64, f64)> {
 
 /// An evenly spread sequence in the window (Roberts' generalised golden ratio, 2018).
 fn spread(index: u64, window: &Window) -> [f64; 2] {
-    const PLASTIC: f64 = 1.324_717_957_244_746;
+    /// The real root of x^3 = x + 1.
+    const PLASTIC_NUMBER: f64 = 1.324_717_957_244_746;
     let part = |step: f64| (0.5 + index as f64 * step).fract();
-    let [p, y] = [part(1.0 / PLASTIC), part(1.0 / (PLASTIC * PLASTIC))];
+    let [p, y] = [part(1.0 / PLASTIC_NUMBER), part(1.0 / (PLASTIC_NUMBER * PLASTIC_NUMBER))];
     let at = |[from, to]: [f64; 2], share: f64| from + share * (to - from);
     [at(window.p, p), at(window.y, y)]
 }
@@ -223,10 +224,10 @@ mod tests {
     use super::*;
     use crate::dynamics::attractor::Grid;
 
-    const UNIT: Window = Window { p: [0.0, 1.0], y: [0.0, 1.0] };
+    const UNIT_WINDOW: Window = Window { p: [0.0, 1.0], y: [0.0, 1.0] };
 
     fn of_grid(side: u32, label: impl Fn(StrobePoint) -> Label) -> Basins {
-        let grid = Grid { window: UNIT, columns: side, rows: side, q: 0.0 };
+        let grid = Grid { window: UNIT_WINDOW, columns: side, rows: side, q: 0.0 };
         let labels = grid.starts().into_iter().map(label).collect();
         Basins { grid, attractors: Vec::new(), labels }
     }
@@ -251,9 +252,10 @@ mod tests {
 
     #[test]
     fn a_smooth_boundary_has_exponent_one() {
-        for found in
-            [uncertainty_of(smooth, &UNIT, 0.0, 4..=11, 40_000), uncertainty(&of_grid(512, smooth))]
-        {
+        for found in [
+            uncertainty_of(smooth, &UNIT_WINDOW, 0.0, 4..=11, 40_000),
+            uncertainty(&of_grid(512, smooth)),
+        ] {
             assert!((found.exponent - 1.0).abs() <= 4.0 * found.error.max(0.01), "{found:?}");
             assert!(!found.is_fractal(4.0));
         }
@@ -265,7 +267,7 @@ mod tests {
     #[test]
     fn a_cantor_sets_exponent_is_its_codimension() {
         let expected = 1.0 - 2.0_f64.ln() / 3.0_f64.ln();
-        let found = uncertainty_of(cantor, &UNIT, 0.0, 4..=24, 4000);
+        let found = uncertainty_of(cantor, &UNIT_WINDOW, 0.0, 4..=24, 4000);
         assert!((found.exponent - expected).abs() <= 4.0 * found.error, "{expected} {found:?}");
         assert!(found.error < 0.03 && found.is_fractal(4.0), "{found:?}");
         assert!((found.dimension() - (2.0 - expected)).abs() <= 4.0 * found.error);

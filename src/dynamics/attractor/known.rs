@@ -2,7 +2,7 @@
 
 use super::cells::CellSet;
 use super::coordinates::Coordinates;
-use super::thresholds::SAME;
+use super::thresholds::MIN_COMMON_SHARE;
 use super::trap::Trap;
 use std::borrow::Borrow;
 
@@ -77,7 +77,7 @@ pub(crate) enum Evidence<C: Coordinates> {
 
 /// States of rest that differ by less, beside 1 and their size, are one: so much is left of what
 /// decays while a return is waited for.
-const RESTS_TOGETHER: f64 = 1e-3;
+const EQUILIBRIUM_TOLERANCE: f64 = 1e-3;
 
 impl<C: Coordinates> KnownAttractor<C> {
     pub fn new(attractor: C::Attractor, evidence: Evidence<C>) -> Self {
@@ -93,7 +93,8 @@ impl<C: Coordinates> KnownAttractor<C> {
                 self.is_orbit(coordinates, other.period(), its())
             }
             (Evidence::Cells(cells), Evidence::Cells(others)) => {
-                cells.share(coordinates, its()) > SAME || others.share(coordinates, mine()) > SAME
+                cells.share(coordinates, its()) > MIN_COMMON_SHARE
+                    || others.share(coordinates, mine()) > MIN_COMMON_SHARE
             }
             (Evidence::Rest, Evidence::Rest) => {
                 C::points(&other.attractor).iter().any(|it| self.rests_at(coordinates, it))
@@ -104,7 +105,9 @@ impl<C: Coordinates> KnownAttractor<C> {
 
     /// Whether a long run has gone where the motion that led here was before it settled.
     pub fn is_led_to_by(&self, coordinates: &C, run: &[C::Spot]) -> bool {
-        self.transient.as_ref().is_some_and(|cells| cells.share(coordinates, run.iter()) > SAME)
+        self.transient
+            .as_ref()
+            .is_some_and(|cells| cells.share(coordinates, run.iter()) > MIN_COMMON_SHARE)
     }
 
     /// Whether the attractor is an orbit of this period through these spots.
@@ -125,7 +128,7 @@ impl<C: Coordinates> KnownAttractor<C> {
         let spot = coordinates.spot(point);
         let mut own = coordinates.spots(&self.attractor);
         matches!(self.evidence, Evidence::Rest)
-            && own.any(|it| coordinates.are_near(&it, &spot, RESTS_TOGETHER))
+            && own.any(|it| coordinates.are_near(&it, &spot, EQUILIBRIUM_TOLERANCE))
     }
 
     /// The orbit's period in returns; one where the attractor is no orbit.

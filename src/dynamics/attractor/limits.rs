@@ -3,7 +3,7 @@
 use crate::dynamics::orbit::LARGEST_PERIOD;
 
 /// The longest period that is looked for where no other is asked for.
-pub const MAX_PERIOD: u32 = 1024;
+pub const DEFAULT_MAX_PERIOD: u32 = 1024;
 
 /// The limits of a search for attractors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,9 +16,9 @@ pub struct SearchLimits {
 }
 
 impl From<u64> for SearchLimits {
-    /// A transient, with orbits of up to [`MAX_PERIOD`].
+    /// A transient, with orbits of up to [`DEFAULT_MAX_PERIOD`].
     fn from(transient: u64) -> Self {
-        Self { transient, max_period: MAX_PERIOD }
+        Self { transient, max_period: DEFAULT_MAX_PERIOD }
     }
 }
 

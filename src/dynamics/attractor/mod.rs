@@ -3,9 +3,10 @@
 //! - **Periodic**: strobes repeat, Newton's method confirms the orbit ([`Orbit::find`]), its
 //!   multipliers are inside the unit circle, and there is a neighbourhood from which all sampled
 //!   points return closer: evidence, not proof (`trap_search.rs`).
-//! - **Chaotic**: the largest exponent is above zero by more than [`ERRORS`] standard errors over a
-//!   run of 2^17 strobes that met no orbit. Another motion is on the same attractor when 48 strobes
-//!   in a row lie in the cells of that run (`cells.rs`); so its bands are one attractor.
+//! - **Chaotic**: the largest exponent is above zero by more than [`MIN_STANDARD_ERRORS`] standard
+//! errors over a run of 2^17 strobes that met no orbit. Another motion is on the same attractor
+//! when 48 strobes in a row lie in the cells of that run (`cells.rs`); so its bands are one
+//! attractor.
 //! - **Quasi-periodic**: neither, with a largest exponent and a contraction below 1e-3.
 //! - **Escaping**: a phase that provably never ends: the mass never returns or the slider never
 //!   stops.
@@ -46,7 +47,7 @@ pub use fractal::{
 };
 pub use grid::{Basins, Grid, Window};
 pub use known::Label;
-pub use limits::{MAX_PERIOD, SearchLimits};
+pub use limits::{DEFAULT_MAX_PERIOD, SearchLimits};
 pub use strobe_catalog::{AttractorCatalog, UnresolvedStart};
 
 use super::orbit::Orbit;
@@ -59,7 +60,7 @@ use std::fmt;
 use std::str::FromStr;
 
 /// Standard errors by which a positive exponent must differ from zero.
-pub const ERRORS: f64 = 4.0;
+pub const MIN_STANDARD_ERRORS: f64 = 4.0;
 
 /// The kinds of attractors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -120,7 +121,7 @@ pub struct Attractor {
     pub kind: AttractorKind,
     /// The orbit, where it is one; its strobes begin at the smallest p.
     pub orbit: Option<Orbit>,
-    /// Successive strobes: all of an orbit, the last [`POINTS`] of the reference run otherwise.
+    /// Successive strobes: all of an orbit, the last [`MAX_POINTS`] of the reference run otherwise.
     pub points: Vec<StrobePoint>,
     /// Mean drift per forcing period.
     pub drift_per_period: f64,
@@ -134,17 +135,17 @@ pub struct Attractor {
 
 /// Forcing periods that a motion is solved ahead, at least, so that an escape shows early: it is
 /// proved where the drift away exceeds the oscillation, which a slow drift takes so long to do.
-const AHEAD: u64 = 1 << 14;
+const MIN_PERIODS_AHEAD: u64 = 1 << 14;
 
 /// The instant up to which a motion is solved of which so many strobes after `from` are looked at.
 ///
 /// Without it a contact of millions of periods would be solved whole for every start.
 fn horizon(from: &Instant, strobes: u64) -> Instant {
-    from.after_periods(strobes.max(AHEAD), 1)
+    from.after_periods(strobes.max(MIN_PERIODS_AHEAD), 1)
 }
 
 /// Strobes that are kept of an attractor that is no orbit.
-pub const POINTS: usize = 4096;
+pub const MAX_POINTS: usize = 4096;
 
 impl Attractor {
     /// An attractor that is a stable orbit, told from its smallest p on.
@@ -171,7 +172,7 @@ impl Attractor {
         Self {
             kind,
             orbit: None,
-            points: run[run.len().saturating_sub(POINTS)..].to_vec(),
+            points: run[run.len().saturating_sub(MAX_POINTS)..].to_vec(),
             drift_per_period: first(&means.drift),
             drift_standard_error: first(&means.drift_error),
             lyapunov_per_period,

@@ -7,11 +7,12 @@ use super::limits::SearchLimits;
 use super::motions::{Motions, RunMeans, SpotOf, Stop, StopOf};
 use super::recognition::Recognizer;
 use super::thresholds::{
-    CLOSE, DECISION, GLANCE, LATE_LOOKS, MOST_ATTRACTORS, NEUTRAL, OUTLASTING, PAIRS, REFERENCE,
-    SHORT, TURNS_INTO_TRAP,
+    DECISION_RETURNS, FIRST_LOOK_RETURNS, LATE_LOOKS, MAX_ATTRACTORS, MAX_ENDING_RETURNS,
+    MAX_FIRST_PERIOD, MAX_TURNS_INTO_TRAP, MIN_PAIRS, NEUTRAL_TOLERANCE, REFERENCE_RETURNS,
+    REPEAT_TOLERANCE,
 };
 use super::trap_search::traps;
-use super::{AttractorKind, ERRORS, POINTS};
+use super::{AttractorKind, MAX_POINTS, MIN_STANDARD_ERRORS};
 
 /// The outcome of a search for the attractor of a motion.
 pub(crate) enum Settled<C: Coordinates> {
@@ -70,15 +71,15 @@ impl<M: Motions> AttractorSearch<'_, M> {
     }
 
     fn looked_at(&self, from: &M::Place, last: bool) -> Found<M, Settled<M::Coordinates>> {
-        let short = self.limits.max_period.min(SHORT);
+        let short = self.limits.max_period.min(MAX_FIRST_PERIOD);
         if let Some(orbit) = self.orbit_from(from, short)? {
             return Ok(Some(orbit));
         }
-        let Some(means) = self.motions.means(from, GLANCE) else { return Ok(None) };
+        let Some(means) = self.motions.means(from, FIRST_LOOK_RETURNS) else { return Ok(None) };
         let [exponent, error] = means.largest_exponent;
         // What clearly contracts is an orbit on the way, or a long one.
-        let full = self.known.len() >= MOST_ATTRACTORS;
-        match (exponent < -ERRORS * error.max(NEUTRAL), full) {
+        let full = self.known.len() >= MAX_ATTRACTORS;
+        match (exponent < -MIN_STANDARD_ERRORS * error.max(NEUTRAL_TOLERANCE), full) {
             (true, _) if last => self.orbit_from(from, self.limits.max_period),
             (false, false) => self.reference(from),
             _ => Ok(None),
@@ -100,7 +101,7 @@ impl<M: Motions> AttractorSearch<'_, M> {
     fn late_orbit(&self, from: &M::Place) -> Found<M, Settled<M::Coordinates>> {
         let mut settled = from.clone();
         for _ in 0..LATE_LOOKS {
-            settled = self.motions.after(&settled, DECISION)?;
+            settled = self.motions.after(&settled, DECISION_RETURNS)?;
             let orbit = self.orbit_from(&settled, self.limits.max_period)?;
             if orbit.is_some() {
                 return Ok(orbit);
@@ -118,12 +119,13 @@ impl<M: Motions> AttractorSearch<'_, M> {
         let period = places.len() as u64;
         let own: Vec<_> = places.iter().map(|it| motions.spot_of(it)).collect();
         if self.known.iter().any(|it| it.is_orbit(coordinates, period, own.iter())) {
-            let place = self.arrival(last, self.known, TURNS_INTO_TRAP * period)?;
+            let place = self.arrival(last, self.known, MAX_TURNS_INTO_TRAP * period)?;
             return Ok(place.map(|it| Settled::Label(Label::Attractor(it))));
         }
         let evidence = Evidence::Traps(traps(motions, &places));
         let new = KnownAttractor::new(motions.periodic(orbit, &places), evidence);
-        let arrives = self.arrival(last, std::slice::from_ref(&new), TURNS_INTO_TRAP * period)?;
+        let arrives =
+            self.arrival(last, std::slice::from_ref(&new), MAX_TURNS_INTO_TRAP * period)?;
         Ok(arrives.map(|_| Settled::New(Box::new(new))))
     }
 
@@ -148,9 +150,9 @@ impl<M: Motions> AttractorSearch<'_, M> {
         let (motions, coordinates) = (self.motions, self.motions.coordinates());
         let longest = self.limits.max_period as usize;
         let mut recognizer = Recognizer::new(coordinates, self.known);
-        let (mut points, mut spots) = (Vec::new(), Vec::with_capacity(REFERENCE as usize));
-        let last = motions.follow(from, REFERENCE, &mut |n, point, spot| {
-            if n + POINTS as u64 >= REFERENCE {
+        let (mut points, mut spots) = (Vec::new(), Vec::with_capacity(REFERENCE_RETURNS as usize));
+        let last = motions.follow(from, REFERENCE_RETURNS, &mut |n, point, spot| {
+            if n + MAX_POINTS as u64 >= REFERENCE_RETURNS {
                 points.push(point.clone());
             }
             spots.push(spot.clone());
@@ -161,10 +163,10 @@ impl<M: Motions> AttractorSearch<'_, M> {
             return Ok(Some(orbit.after(coordinates, &spots)));
         }
         if self.known.iter().any(|it| it.is_led_to_by(coordinates, &spots)) {
-            let place = self.arrival(&last, self.known, OUTLASTING)?;
+            let place = self.arrival(&last, self.known, MAX_ENDING_RETURNS)?;
             return Ok(place.map(|it| Settled::Label(Label::Attractor(it))));
         }
-        let means = motions.means(&last, DECISION).unwrap_or(RunMeans::UNKNOWN);
+        let means = motions.means(&last, DECISION_RETURNS).unwrap_or(RunMeans::UNKNOWN);
         let kind = kind_of(&means, repeats(coordinates, &spots, longest).is_some());
         if kind == AttractorKind::Unidentified
             && let Some(settled) = self.late_orbit(&last)?
@@ -179,9 +181,9 @@ impl<M: Motions> AttractorSearch<'_, M> {
 /// The kind of the attractor of a motion that is on no orbit known as stable, by its exponents.
 fn kind_of(means: &RunMeans, repeats: bool) -> AttractorKind {
     let [exponent, error] = means.largest_exponent;
-    if exponent > ERRORS * error && exponent > NEUTRAL {
+    if exponent > MIN_STANDARD_ERRORS * error && exponent > NEUTRAL_TOLERANCE {
         AttractorKind::Chaotic
-    } else if exponent.abs().max(means.contraction.abs()) <= NEUTRAL && !repeats {
+    } else if exponent.abs().max(means.contraction.abs()) <= NEUTRAL_TOLERANCE && !repeats {
         AttractorKind::QuasiPeriodic
     } else {
         AttractorKind::Unidentified
@@ -195,9 +197,10 @@ pub(crate) fn repeats<C: Coordinates>(
     longest: usize,
 ) -> Option<u32> {
     let repeats = |period: usize| {
-        let pairs = period.max(PAIRS);
+        let pairs = period.max(MIN_PAIRS);
         let end = spots.len();
-        let is_near = |n: usize| coordinates.are_near(&spots[n - period], &spots[n], CLOSE);
+        let is_near =
+            |n: usize| coordinates.are_near(&spots[n - period], &spots[n], REPEAT_TOLERANCE);
         end >= period + pairs && (end - pairs..end).all(is_near)
     };
     (1..=longest).find(|period| repeats(*period)).and_then(|period| u32::try_from(period).ok())

@@ -29,8 +29,8 @@ pub(super) struct StrobeCoordinates;
 /// What is known of an attractor of the strobe map.
 pub(super) type Known = KnownAttractor<StrobeCoordinates>;
 
-/// p = q + g to within this share of its terms: some roundings.
-const ON_SLIDER: f64 = 1e-12;
+/// The largest share of its terms by which p and q + g differ on the slider: some roundings.
+const SLIDER_TOLERANCE: f64 = 1e-12;
 
 impl Coordinates for StrobeCoordinates {
     type Point = StrobePoint;
@@ -58,7 +58,7 @@ impl Coordinates for StrobeCoordinates {
     }
 
     fn lies_on(&self, slider: &Option<f64>, [p, _, q]: &StrobePoint) -> bool {
-        slider.is_none_or(|g| (p - q - g).abs() <= ON_SLIDER * p.abs().max(q.abs()).max(g))
+        slider.is_none_or(|g| (p - q - g).abs() <= SLIDER_TOLERANCE * p.abs().max(q.abs()).max(g))
     }
 
     fn are_on_one_piece(&self, _: &StrobePoint, _: &StrobePoint) -> bool {

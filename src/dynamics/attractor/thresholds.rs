@@ -3,57 +3,60 @@
 
 /// Attractors are first looked for from a grid of so many by so many starts, whatever grid is asked
 /// for: so they do not depend on it.
-pub(crate) const LATTICE: u32 = 16;
+pub(crate) const LATTICE_SIDE: u32 = 16;
 /// Starts looked at in one go: what is kept of each until then is ten times its label.
-pub(crate) const BLOCK: usize = 1 << 14;
-/// Most starts that are settled between two looks at what has been found.
-pub(crate) const LARGEST_BATCH: usize = 64;
+pub(crate) const BLOCK_STARTS: usize = 1 << 14;
+/// The largest number of starts that are settled between two looks at what has been found.
+pub(crate) const MAX_BATCH_STARTS: usize = 64;
 /// The number of times that a transient is doubled before a start is given up.
 pub(crate) const EXTENSIONS: u32 = 3;
 
 /// The longest period that is looked for at once: a longer one only where a motion has nearly no
 /// other place to go, so that ordinary starts do not pay for it.
-pub(crate) const SHORT: u32 = 128;
+pub(crate) const MAX_FIRST_PERIOD: u32 = 128;
 /// Returns that repeat this closely (relative to their size) are handed to Newton's method.
-pub(crate) const CLOSE: f64 = 1e-3;
+pub(crate) const REPEAT_TOLERANCE: f64 = 1e-3;
 /// The least number of pairs of returns that must repeat.
-pub(crate) const PAIRS: usize = 8;
+pub(crate) const MIN_PAIRS: usize = 8;
 /// Turns within which a motion must enter a trap of the orbit that it seems to follow: one that
 /// loses 1 % of its distance a turn loses 1e-8 of it in so many.
-pub(crate) const TURNS_INTO_TRAP: u64 = 2000;
-/// Returns of the first look at the exponents, and of the one that decides.
-pub(crate) const GLANCE: u64 = 512;
-pub(crate) const DECISION: u64 = 1 << 14;
-/// The number of times that a motion of no kind is looked at again, [`DECISION`] later each time.
+pub(crate) const MAX_TURNS_INTO_TRAP: u64 = 2000;
+/// Returns of the first look at the exponents.
+pub(crate) const FIRST_LOOK_RETURNS: u64 = 512;
+/// Returns of the look at the exponents that decides.
+pub(crate) const DECISION_RETURNS: u64 = 1 << 14;
+/// The number of times that a motion of no kind is looked at again, [`DECISION_RETURNS`] later each
+/// time.
 pub(crate) const LATE_LOOKS: u32 = 8;
 /// Returns after which chaos that is known to end has to have ended.
-pub(crate) const OUTLASTING: u64 = 8 * REFERENCE;
+pub(crate) const MAX_ENDING_RETURNS: u64 = 8 * REFERENCE_RETURNS;
 /// A largest exponent, and a contraction, that are no larger are taken for zero.
-pub(crate) const NEUTRAL: f64 = 1e-3;
+pub(crate) const NEUTRAL_TOLERANCE: f64 = 1e-3;
 /// With this number of attractors known, only orbits are added: nearly without damping every start
 /// has its own invariant curve.
-pub(crate) const MOST_ATTRACTORS: usize = 64;
-/// Starts that were not recognised of which so many are described.
-pub(crate) const EXAMPLES: usize = 3;
+pub(crate) const MAX_ATTRACTORS: usize = 64;
+/// The largest number of starts described among those that were not recognised.
+pub(crate) const MAX_EXAMPLES: usize = 3;
 /// Returns over which the exponent of a described start is taken.
 pub(crate) const EXAMPLE_RETURNS: u64 = 1 << 12;
 
 /// Cells along the largest extent. An attractor of dimension 1.3 then fills about
-/// [`PER_EXTENT`]^1.3 = 1400 of them, each visited many times by a run of [`REFERENCE`] returns.
-pub(crate) const PER_EXTENT: f64 = 256.0;
+/// [`CELLS_PER_EXTENT`]^1.3 = 1400 of them, each visited many times by a run of
+/// [`REFERENCE_RETURNS`] returns.
+pub(crate) const CELLS_PER_EXTENT: f64 = 256.0;
 /// Returns of the run that fills the cells.
-pub(crate) const REFERENCE: u64 = 1 << 17;
+pub(crate) const REFERENCE_RETURNS: u64 = 1 << 17;
 /// A motion is on the attractor when so many returns in a row lie in its cells.
 pub(crate) const RECURRENCES: u32 = 48;
 /// Two runs are on one attractor when this share of one lies in the cells of the other.
-pub(crate) const SAME: f64 = 0.5;
+pub(crate) const MIN_COMMON_SHARE: f64 = 0.5;
 
 /// A motion that has entered a trap is taken for one that leads to the trap's orbit after so many
 /// successive turns around the orbit, each of which brings it closer to the orbit.
 pub(crate) const CLOSER_TURNS: u32 = 3;
 /// Radii of traps that are tried, largest first: how far one may reach in any direction. In a
 /// larger one the net would be too coarse for a tongue of another basin.
-pub(crate) const LARGEST_RADIUS: f64 = 0.25;
+pub(crate) const MAX_RADIUS: f64 = 0.25;
 /// The largest number of times that the radius of a trap is halved.
 pub(crate) const RADIUS_HALVINGS: i32 = 28;
 /// Points of a trap's net on each of its shells, in three dimensions.
@@ -61,16 +64,16 @@ pub(crate) const DIRECTIONS: u32 = 48;
 /// The shells, as shares of the radius: a corner of the map inside must not stay unseen.
 pub(crate) const SHELLS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
 /// The number of points of an orbit, roughly, that get a trap at most.
-pub(crate) const TRAPS: usize = 12;
+pub(crate) const MAX_TRAPS: usize = 12;
 /// A motion is at rest on an orbit when the square of its distance is so small a share of the
 /// trap's radius.
-pub(crate) const AT_REST: f64 = 1e-12;
+pub(crate) const REST_TOLERANCE: f64 = 1e-12;
 /// Turns over which is measured how far rounding moves a motion on the orbit. Of an orbit of
 /// hundreds of periods that can be 1e-11, which in a trap of 1e-9 next to a graze is more than that
 /// share.
-pub(crate) const RESTING_TURNS: u64 = 8;
+pub(crate) const REST_TURNS: u64 = 8;
 /// Multiples of that distance that a motion may be away and still at rest.
-pub(crate) const RESTING: f64 = 4.0;
+pub(crate) const REST_FACTOR: f64 = 4.0;
 /// The sum of a trap's metric is doubled in length so often: multipliers up to 1 - 1e-8 are summed
 /// up.
 pub(crate) const DOUBLINGS: usize = 32;

@@ -1,7 +1,7 @@
 //! Neighbourhoods of a stable orbit that nothing leaves, and how far in them a motion is.
 
 use super::coordinates::Coordinates;
-use super::thresholds::AT_REST;
+use super::thresholds::REST_TOLERANCE;
 
 /// An ellipsoid about one point of an orbit.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl<C: Coordinates> Trap<C> {
     /// Whether a motion at this [`Self::size`] is at rest on the orbit: it need not come closer
     /// still, or cannot for rounding.
     pub fn is_at_rest(&self, size: f64) -> bool {
-        size < AT_REST || size.sqrt() * self.radius <= self.rest
+        size < REST_TOLERANCE || size.sqrt() * self.radius <= self.rest
     }
 
     /// The square of the distance in units of the radius, outside too.

@@ -12,14 +12,14 @@
 use super::coordinates::Coordinates;
 use super::motions::{Motions, Turn};
 use super::thresholds::{
-    DOUBLINGS, LARGEST_RADIUS, RADIUS_HALVINGS, RESTING, RESTING_TURNS, SHELLS, TRAPS,
+    DOUBLINGS, MAX_RADIUS, MAX_TRAPS, RADIUS_HALVINGS, REST_FACTOR, REST_TURNS, SHELLS,
 };
 use super::trap::Trap;
 use crate::dynamics::linear::product;
 
 /// Traps about some places of a stable orbit; none where no net comes back.
 pub(crate) fn traps<M: Motions>(motions: &M, places: &[M::Place]) -> Vec<Trap<M::Coordinates>> {
-    let stride = places.len().div_ceil(TRAPS).max(1);
+    let stride = places.len().div_ceil(MAX_TRAPS).max(1);
     let around = |place: &M::Place| TrapSearch::at(motions, place, places.len() as u64)?.largest();
     places.iter().step_by(stride).filter_map(around).collect()
 }
@@ -51,7 +51,7 @@ impl<'a, M: Motions> TrapSearch<'a, M> {
     fn largest(&self) -> Option<Trap<M::Coordinates>> {
         let rest = self.rest();
         let attempt = |halving: i32| {
-            let radius = LARGEST_RADIUS * 0.5_f64.powi(halving);
+            let radius = MAX_RADIUS * 0.5_f64.powi(halving);
             let trap = Trap { radius, rest, ..self.unit.clone() };
             SHELLS.iter().all(|shell| self.comes_back(&trap, *shell)).then_some(trap)
         };
@@ -61,10 +61,10 @@ impl<'a, M: Motions> TrapSearch<'a, M> {
     /// The distance by which rounding may move a motion that begins at the place.
     fn rest(&self) -> f64 {
         let mut moved = 0.0_f64;
-        let followed = self.turns(self.place, RESTING_TURNS, &mut |spot| {
+        let followed = self.turns(self.place, REST_TURNS, &mut |spot| {
             moved = moved.max(self.unit.distance(self.motions.coordinates(), spot));
         });
-        if followed && moved.is_finite() { RESTING * moved.sqrt() } else { 0.0 }
+        if followed && moved.is_finite() { REST_FACTOR * moved.sqrt() } else { 0.0 }
     }
 
     /// Whether all points of a shell of the net are closer after a turn.

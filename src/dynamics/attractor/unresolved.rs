@@ -4,7 +4,7 @@ use super::known::Label;
 use super::limits::SearchLimits;
 use super::motions::{Motions, StopOf};
 use super::search::repeats;
-use super::thresholds::{EXAMPLE_RETURNS, EXAMPLES, EXTENSIONS};
+use super::thresholds::{EXAMPLE_RETURNS, EXTENSIONS, MAX_EXAMPLES};
 
 /// The motion of a start that was not recognised, after the last extension of its transient.
 pub(crate) struct UnresolvedMotion {
@@ -18,8 +18,8 @@ pub(crate) struct UnresolvedMotion {
 pub(crate) fn examples(labels: &[Label]) -> Vec<usize> {
     let labels = labels.iter().enumerate();
     let open: Vec<usize> = labels.filter(|it| *it.1 == Label::Unresolved).map(|it| it.0).collect();
-    let mut places: Vec<usize> = (0..EXAMPLES)
-        .filter_map(|k| open.get(k * open.len().saturating_sub(1) / (EXAMPLES - 1)))
+    let mut places: Vec<usize> = (0..MAX_EXAMPLES)
+        .filter_map(|k| open.get(k * open.len().saturating_sub(1) / (MAX_EXAMPLES - 1)))
         .copied()
         .collect();
     places.dedup();

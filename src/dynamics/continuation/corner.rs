@@ -8,12 +8,12 @@ use crate::dynamics::strobe::StrobePoint;
 /// Halvings of the distance to the corner.
 const HALVINGS: usize = 300;
 /// Distance at which a corner counts as reached: a few roundings of the strobes.
-const REACHED: f64 = 1e-15;
-/// How far beyond the corner its other side is looked at and entered, nearest first.
-const BEYOND: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
+const CORNER_TOLERANCE: f64 = 1e-15;
+/// Distances beyond the corner at which its other side is looked at and entered, nearest first.
+const PROBE_DISTANCES: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
 /// Relative error of a corner with which no nearer place beyond is looked for: a piece of the curve
 /// between two corners may be shorter than the step.
-const SHARP: f64 = 1e-12;
+const RELATIVE_ERROR_TOLERANCE: f64 = 1e-12;
 
 impl FamilyCurve {
     /// The corner between a point and a distance along its tangent at which the piece is another
@@ -28,13 +28,13 @@ impl FamilyCurve {
     ) -> Option<Corner<ContinuationPoint>> {
         let (before, rest) = self.approached(base, distance);
         let mut best: Option<Corner<_>> = None;
-        for step in BEYOND {
+        for step in PROBE_DISTANCES {
             let Some(beyond) = self.beyond(&before, step) else { continue };
             let error = rest * before.tangent.rate.abs() + self.seen_from(&beyond, step, &before);
             if best.as_ref().is_none_or(|it| error < it.error) {
                 best = Some(Corner { before: before.clone(), beyond: Some(beyond), error });
             }
-            if error <= SHARP * before.value.abs() {
+            if error <= RELATIVE_ERROR_TOLERANCE * before.value.abs() {
                 break;
             }
         }
@@ -51,7 +51,7 @@ impl FamilyCurve {
 
     /// The last orbit of a point's piece along the curve, and how much further the corner may be.
     fn approached(&self, base: &ContinuationPoint, distance: f64) -> (ContinuationPoint, f64) {
-        last_along(base, distance, REACHED, &|before, step| {
+        last_along(base, distance, CORNER_TOLERANCE, &|before, step| {
             self.corrected(before, step).filter(|it| it.is_on_piece_of(before))
         })
     }

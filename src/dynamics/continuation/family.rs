@@ -17,7 +17,7 @@ pub struct Family {
 
 /// Relative steps of the differences, longest first: the first balances truncation and rounding,
 /// the others are for neighbourhoods of a corner.
-const STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
+const DIFFERENCE_STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
 
 impl Family {
     /// The family of `parameter`, the others being fixed, on the section through `instant` (of
@@ -64,7 +64,7 @@ impl Family {
             Some((passage.point(), passage.phases == here.phases))
         };
         let mut fallback = [0.0; 3];
-        for step in STEPS.map(|relative| relative * value.abs().max(scale)) {
+        for step in DIFFERENCE_STEPS.map(|relative| relative * value.abs().max(scale)) {
             // What is representable.
             let (up, down) = ((value + step) - value, value - (value - step));
             let quotient = |a: StrobePoint, b: StrobePoint, span: f64| -> StrobePoint {
@@ -90,5 +90,5 @@ impl Family {
 
 /// A one-sided difference is of first order, and next to a graze of order one half.
 fn one_sided(value: f64, scale: f64) -> f64 {
-    1.01 * STEPS[2] * value.abs().max(scale)
+    1.01 * DIFFERENCE_STEPS[2] * value.abs().max(scale)
 }

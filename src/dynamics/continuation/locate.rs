@@ -15,7 +15,7 @@ const ITERATIONS: usize = 60;
 const RESOLUTION: f64 = 1e-15;
 /// Distances at which the test is sampled about its zero, in units of the bracket searched: at
 /// these its curvature is below rounding.
-const SPREAD: f64 = 1e-6;
+const SAMPLE_DISTANCE: f64 = 1e-6;
 
 /// The zero of `test` on a curve between `base` and a distance along its tangent, at which
 /// `corrected` has the curve's points.
@@ -56,7 +56,7 @@ pub(crate) fn zero_along<P: Clone>(
         }
     }
     let (at, point) = best;
-    let (slope, scatter) = scatter(at, SPREAD * distance, corrected, test)?;
+    let (slope, scatter) = scatter(at, SAMPLE_DISTANCE * distance, corrected, test)?;
     let bracket = if slope == 0.0 { distance.abs() } else { 3.0 * scatter / slope.abs() };
     Some(LocatedPoint { point, distance: at, bracket })
 }

@@ -5,18 +5,20 @@ use super::locate::{LocatedPoint, zero_along};
 use super::{BifurcationKind, BranchEnding};
 use crate::dynamics::linear::{ReIm, modulus};
 
-const FIRST: f64 = 1e-3;
-const LONGEST: f64 = 0.03;
+/// The first step along a branch, in units of arc length.
+const FIRST_STEP: f64 = 1e-3;
+/// The longest step along a branch, in units of arc length.
+const MAX_STEP: f64 = 0.03;
 /// A step this short that fails is held to be at a corner.
-const SHORTEST: f64 = 1e-6;
+const MIN_STEP: f64 = 1e-6;
 /// Steps of a branch before it is given up.
-const STEPS: usize = 20_000;
+const MAX_STEPS: usize = 20_000;
 /// Cosine of the largest turn of the tangent in a step.
-const TURN: f64 = 0.95;
+const MIN_TURN_COSINE: f64 = 0.95;
 /// The largest relative change of what the multipliers are measured by in a step.
-const CHANGE: f64 = 0.3;
+const MAX_MULTIPLIER_CHANGE: f64 = 0.3;
 /// Distances about the end of a doubled branch in which the flip of the half is looked for.
-const AROUND: [f64; 8] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
+const FLIP_DISTANCES: [f64; 8] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 
 /// An orbit on a curve, and the curve's direction there.
 pub(crate) trait OrbitPoint: Clone {
@@ -133,7 +135,7 @@ pub(crate) trait OrbitCurve {
     /// on beyond: as the same orbits, half a period later.
     fn halving(&self, point: &Self::Point, next: &Self::Point) -> Option<Noted<Self::Point>> {
         let single = self.half(point, next)?;
-        let located = AROUND.iter().find_map(|distance| {
+        let located = FLIP_DISTANCES.iter().find_map(|distance| {
             let start = self.corrected(&single, -distance)?;
             self.located(&start, 2.0 * distance, &OrbitPoint::flip)
         })?;
@@ -184,8 +186,8 @@ impl<C: OrbitCurve> Follower<'_, C> {
         if from == to {
             return BranchEnding::Reached;
         }
-        let mut step = FIRST;
-        for count in 0..STEPS {
+        let mut step = FIRST_STEP;
+        for count in 0..MAX_STEPS {
             let (next, ending) = match self.step(&point, &mut step) {
                 Ok(next) => next,
                 Err(ending) => return ending,
@@ -219,11 +221,11 @@ impl<C: OrbitCurve> Follower<'_, C> {
                         return Err(ending);
                     }
                     self.note_between(point, &next, distance);
-                    *step = (1.5 * distance).min(LONGEST);
+                    *step = (1.5 * distance).min(MAX_STEP);
                     return Ok((self.curve.refreshed(next), ending));
                 }
             }
-            let last = distance <= SHORTEST;
+            let last = distance <= MIN_STEP;
             if other_piece || last {
                 if let Some(corner) = self.curve.corner(point, distance, last) {
                     return self.turn(point, corner, step);
@@ -254,15 +256,15 @@ impl<C: OrbitCurve> Follower<'_, C> {
         let Some(beyond) = corner.beyond else {
             return Err(BranchEnding::Lost { value: corner.before.value() });
         };
-        *step = SHORTEST * 2.0;
+        *step = MIN_STEP * 2.0;
         let ending = (!self.is_inside(beyond.value())).then_some(self.left(beyond.value()));
         Ok((beyond, ending))
     }
 
     fn is_smooth(&self, point: &C::Point, next: &C::Point, distance: f64) -> bool {
         next.is_on_piece_of(point)
-            && self.curve.cosine(point, next) >= TURN
-            && (next.change_of_multipliers(point) <= CHANGE || distance <= SHORTEST)
+            && self.curve.cosine(point, next) >= MIN_TURN_COSINE
+            && (next.change_of_multipliers(point) <= MAX_MULTIPLIER_CHANGE || distance <= MIN_STEP)
     }
 
     /// A step that leaves the interval is cut at its end.

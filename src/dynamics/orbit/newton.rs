@@ -2,17 +2,17 @@
 //! the map.
 
 /// Steps before it is given up: near a fold they halve the distance at worst, 52 times.
-const STEPS: usize = 60;
+const MAX_STEPS: usize = 60;
 /// The shortest share of a step that is tried.
-const SHORTEST: f64 = 1.0 / 64.0;
+const MIN_STEP_SHARE: f64 = 1.0 / 64.0;
 /// Steps in a row that may lead away: beyond a corner of the map another derivative holds, and the
 /// way down may begin by a way up.
-const WILD: usize = 6;
+const MAX_RISING_STEPS: usize = 6;
 /// Steps without a better residual that end the polishing.
-const IDLE: usize = 3;
+const MAX_IDLE_STEPS: usize = 3;
 /// Orbits further apart than this are never taken for one: at a flip the residual of the doubled
 /// orbit is cubic in its width, and rounding hides (1e-15)^(1/3).
-const NEAR: f64 = 1e-4;
+const MAX_ORBIT_DISTANCE: f64 = 1e-4;
 
 /// Points that are to be an orbit of a map, each with its image.
 pub(crate) trait Shooting<M>: Clone {
@@ -44,7 +44,7 @@ pub(crate) fn solved<M, S: Shooting<M>>(map: &M, start: S) -> Result<S, Unsolved
     let mut best = start.clone();
     let mut shots = start;
     let mut wild = 0;
-    for _ in 0..STEPS {
+    for _ in 0..MAX_STEPS {
         if shots.residual() < best.residual() {
             best = shots.clone();
         }
@@ -53,7 +53,7 @@ pub(crate) fn solved<M, S: Shooting<M>>(map: &M, start: S) -> Result<S, Unsolved
         }
         let next = damped(map, &shots).or_else(|| {
             wild += 1;
-            shots.stepped(map, 1.0).filter(|_| wild <= WILD)
+            shots.stepped(map, 1.0).filter(|_| wild <= MAX_RISING_STEPS)
         });
         let Some(next) = next else {
             return Err(Unsolved { residual: best.residual(), still_falls: false });
@@ -74,7 +74,7 @@ pub(crate) struct Unsolved {
 
 /// The longest share of the step that comes closer.
 fn damped<M, S: Shooting<M>>(map: &M, shots: &S) -> Option<S> {
-    let halved = |share: &f64| Some(0.5 * share).filter(|it| *it >= SHORTEST);
+    let halved = |share: &f64| Some(0.5 * share).filter(|it| *it >= MIN_STEP_SHARE);
     let mut shares = std::iter::successors(Some(1.0), halved);
     shares.find_map(|share| {
         let limit = (1.0 - 0.1 * share) * shots.residual();
@@ -87,7 +87,7 @@ pub(crate) fn polished<M, S: Shooting<M>>(map: &M, start: S) -> S {
     let mut best = start.clone();
     let mut shots = start;
     let mut idle = 0;
-    while idle < IDLE && best.residual() > 0.0 {
+    while idle < MAX_IDLE_STEPS && best.residual() > 0.0 {
         let Some(next) = shots.stepped(map, 1.0) else { break };
         idle += 1;
         let is_better = next.residual() < best.residual();
@@ -111,11 +111,11 @@ pub(crate) fn least<M, S: Shooting<M>>(map: &M, orbit: S) -> S {
 /// The orbit of `count` points that cannot be told from this one.
 fn shortened<M, S: Shooting<M>>(map: &M, orbit: &S, count: usize) -> Option<S> {
     let first = orbit.first(map, count)?;
-    if orbit.apart(map, &first) > NEAR {
+    if orbit.apart(map, &first) > MAX_ORBIT_DISTANCE {
         return None;
     }
     let shorter = solved(map, first).ok()?;
-    if orbit.apart(map, &shorter) > NEAR {
+    if orbit.apart(map, &shorter) > MAX_ORBIT_DISTANCE {
         return None;
     }
     // Two that differ have something between them that does not close.

@@ -5,15 +5,15 @@ use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use std::cmp::Ordering;
 
 /// Starts along each side of the window, at most and at least.
-const SIDE: [u32; 2] = [12, 3];
+const SIDE_STARTS: [u32; 2] = [12, 3];
 /// Starts times period: beyond it there are fewer starts.
-const EFFORT: u32 = 10_000;
+const MAX_START_PERIODS: u32 = 10_000;
 /// Forcing periods after which a motion counts as settled.
-pub(crate) const SETTLING: u64 = 300;
+pub(crate) const SETTLING_PERIODS: u64 = 300;
 /// Forcing periods of settled motion that are searched for the closest return.
-pub(crate) const WATCHED: u64 = 60;
+pub(crate) const WATCHED_PERIODS: u64 = 60;
 /// Two orbits whose strobes are this close are one: they were found to their last digits.
-pub(crate) const SAME: f64 = 1e-9;
+pub(crate) const ORBIT_TOLERANCE: f64 = 1e-9;
 
 /// The orbits of `period` forcing periods, or of a divisor of it, that Newton's method reaches from
 /// a grid of starts, from where the motions from there settle, and from their closest returns.
@@ -73,8 +73,8 @@ fn rank(orbit: &Orbit) -> Rank {
 }
 
 fn side(period: u32) -> u32 {
-    let [most, least] = SIDE;
-    (EFFORT / period.max(1)).isqrt().clamp(least, most)
+    let [most, least] = SIDE_STARTS;
+    (MAX_START_PERIODS / period.max(1)).isqrt().clamp(least, most)
 }
 
 /// Cell centres of a window that holds the settled motion from rest with as much again around it,
@@ -82,7 +82,7 @@ fn side(period: u32) -> u32 {
 fn starts(map: &StrobeMap, side: u32) -> Vec<StrobePoint> {
     let mut window = [[-1.0_f64, 1.0_f64]; 2];
     if let Ok(rest) = map.entry([0.0; 3]) {
-        for strobe in map.strobes(rest, SETTLING).skip(SETTLING as usize / 2) {
+        for strobe in map.strobes(rest, SETTLING_PERIODS).skip(SETTLING_PERIODS as usize / 2) {
             for (range, x) in window.iter_mut().zip(strobe.point()) {
                 *range = [range[0].min(2.0 * x), range[1].max(2.0 * x)];
             }
@@ -101,8 +101,8 @@ fn starts(map: &StrobeMap, side: u32) -> Vec<StrobePoint> {
 /// The start, its settled motion, and where that comes closest to itself.
 fn guesses(map: &StrobeMap, start: StrobePoint, period: u32) -> Vec<StrobePoint> {
     let Ok(entry) = map.entry(start) else { return Vec::new() };
-    let watched = WATCHED + u64::from(period);
-    let settled = map.strobes(entry, SETTLING + watched).skip(SETTLING as usize);
+    let watched = WATCHED_PERIODS + u64::from(period);
+    let settled = map.strobes(entry, SETTLING_PERIODS + watched).skip(SETTLING_PERIODS as usize);
     let strobes: Vec<_> = settled.map(|strobe| strobe.point()).collect();
     let returns = strobes.iter().zip(strobes.iter().skip(period as usize));
     let closest = returns.min_by(|(a, b), (c, d)| apart(a, b).total_cmp(&apart(c, d)));
@@ -123,7 +123,9 @@ pub(crate) fn are_one<P>(one: &[P], other: &[P], is_near: impl Fn(&P, &P) -> boo
 }
 
 fn is_same(a: &Orbit, b: &Orbit) -> bool {
-    are_one(&a.points, &b.points, |a, b| apart(a, b) <= SAME * (1.0 + apart(a, &[0.0; 3])))
+    are_one(&a.points, &b.points, |a, b| {
+        apart(a, b) <= ORBIT_TOLERANCE * (1.0 + apart(a, &[0.0; 3]))
+    })
 }
 
 /// The orbit from its strobe of least p on: what is found does not depend on which start found it.

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use zip::ZipArchive;
 
 /// A positive exponent counts as chaos from so many standard errors on, as everywhere in percuss.
-const ERRORS: f64 = percuss::dynamics::attractor::ERRORS;
+const MIN_STANDARD_ERRORS: f64 = percuss::dynamics::attractor::MIN_STANDARD_ERRORS;
 /// A drift per period that is no larger is rounding: the slider does not move.
 const DRIFT_TOLERANCE: f64 = 1e-12;
 /// Strobes that are no farther apart are one point of an orbit.
@@ -185,9 +185,9 @@ fn regimes(sweep: &mut MergedSweep, drift: &[f64], periods: &[usize]) -> Result<
             // The mass never returns, or the slider never stops.
             0 | 1 => DriftRegime::Endless,
             _ if undecidable[at] != 0 => DriftRegime::Undecided,
-            _ if largest > ERRORS * error => DriftRegime::Chaotic,
+            _ if largest > MIN_STANDARD_ERRORS * error => DriftRegime::Chaotic,
             _ if drift[at] <= DRIFT_TOLERANCE => DriftRegime::Resting,
-            _ if largest > -ERRORS * error => DriftRegime::Undecided,
+            _ if largest > -MIN_STANDARD_ERRORS * error => DriftRegime::Undecided,
             _ => DriftRegime::Periodic(periods[at].min(MAX_PERIOD)),
         }
     };

@@ -2,7 +2,7 @@
 //! run, or to an event.
 
 use crate::typed::WrittenSection;
-use percuss::affine::{NoReturn, USUAL_LONGEST};
+use percuss::affine::{DEFAULT_MAX_RETURN_TIME, NoReturn};
 use percuss::{Ending, Kind, System, SystemError};
 use std::f64::consts::TAU;
 
@@ -204,7 +204,7 @@ impl WantedReturns<'_> {
             left_out: self.left_out * every,
             last: self.wanted.map(|wanted| (self.left_out + wanted) * every),
             every,
-            longest: self.longest.unwrap_or(USUAL_LONGEST * system.time_scale),
+            longest: self.longest.unwrap_or(DEFAULT_MAX_RETURN_TIME * system.time_scale),
         }
     }
 

@@ -22,7 +22,7 @@ use clap::{Args, ValueEnum};
 use percuss::System;
 use percuss::affine::Plane;
 use percuss::dynamics::attractor::{
-    Basins, Grid, MAX_PERIOD, SearchLimits, UnresolvedStart, Window,
+    Basins, DEFAULT_MAX_PERIOD, Grid, SearchLimits, UnresolvedStart, Window,
 };
 use percuss::dynamics::strobe::StrobeMap;
 use std::io::Write;
@@ -99,7 +99,7 @@ pub(super) struct GridFlags {
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_TRANSIENT_PERIODS), allow_hyphen_values = true)]
     pub(super) transient: u64,
     /// Longest period of an orbit that is looked for, in forcing periods or returns, 1 to 10000
-    #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true, default_value_t = MAX_PERIOD)]
+    #[arg(long, value_name = "K", value_parser = parse::period, allow_hyphen_values = true, default_value_t = DEFAULT_MAX_PERIOD)]
     max_period: u32,
 }
 

@@ -20,13 +20,13 @@ use super::{DONE, OUT_OF_BOUNDS, note};
 use crate::picture::MAX_STATES;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::BITS;
+use percuss::affine::PRECISION_BITS;
 use percuss::{Proved, Solver, System};
 use rows::{Limits, Rows};
 use std::path::PathBuf;
 
 /// The most bits that a run may take.
-const MAX_BITS: u32 = BITS[BITS.len() - 1];
+const MAX_BITS: u32 = PRECISION_BITS[PRECISION_BITS.len() - 1];
 
 /// The number of events after which a run is stopped, where neither --events nor --max-events is
 /// given.
@@ -63,7 +63,7 @@ pub(super) struct Arguments {
     max_events: Option<usize>,
     /// The most bits that a run may take: it begins with 106 and takes twice as many where these
     /// do not decide or have too few digits [default: 3392]
-    #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(u64::from(BITS[0]), u64::from(MAX_BITS)), allow_hyphen_values = true)]
+    #[arg(long, value_name = "B", value_parser = parse::whole::<u32>(u64::from(PRECISION_BITS[0]), u64::from(MAX_BITS)), allow_hyphen_values = true)]
     max_bits: Option<u32>,
     /// Runs back in time
     #[arg(long)]

@@ -16,7 +16,9 @@ use crate::case::Problem;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
 use percuss::Segment;
-use percuss::dynamics::batches::{BATCHES, Batches, LEAST_COUNT, LEAST_LENGTH, Stationarity};
+use percuss::dynamics::batches::{
+    Batches, MAX_BATCHES, MIN_BATCH_PERIODS, MIN_BATCHES, Stationarity,
+};
 use percuss::dynamics::lyapunov::Spectrum;
 use serde::Serialize;
 
@@ -136,7 +138,7 @@ const fn stationary(stationarity: Stationarity) -> Option<bool> {
 /// run is too short for errors that hold.
 fn tell_errors(transient: u64, periods: u64, stationarity: Stationarity) {
     if let Stationarity::ChangesAfter(after) = stationarity {
-        let settled = rounded_up(transient + after + periods / BATCHES);
+        let settled = rounded_up(transient + after + periods / MAX_BATCHES);
         note(&format!(
             "the motion changes on the way: the means of its batches differ before and after \
              {after} of {periods} forcing periods; --transient {settled} leaves that out"
@@ -151,7 +153,7 @@ fn tell_errors(transient: u64, periods: u64, stationarity: Stationarity) {
 
 /// The forcing periods from which on standard errors hold; those of shorter runs are of the right
 /// order only.
-const MIN_PERIODS: u64 = LEAST_COUNT * LEAST_LENGTH;
+const MIN_PERIODS: u64 = MIN_BATCHES * MIN_BATCH_PERIODS;
 
 /// The next number with at most two digits that are not zero.
 fn rounded_up(number: u64) -> u64 {

@@ -3,7 +3,7 @@
 use super::parse::Typed;
 use anyhow::{Result, bail};
 use percuss::System;
-use percuss::affine::LONGEST;
+use percuss::affine::MAX_HORIZON;
 
 /// The time of `--until`, or without it the longest time for a number of events, of a run that
 /// begins at a time.
@@ -24,6 +24,6 @@ pub(in crate::cli) fn horizon(
                 "--until {until} is not accepted: a finite time at or {side} the start at {start} is"
             )
         }
-        None => Ok(start + direction * LONGEST * system.time_scale),
+        None => Ok(start + direction * MAX_HORIZON * system.time_scale),
     }
 }

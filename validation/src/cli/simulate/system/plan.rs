@@ -6,7 +6,7 @@ use crate::cli::shared::long_work::Bar;
 use crate::cli::shared::parse::Typed;
 use crate::returns::{CountedReturns, Strobes};
 use anyhow::{Result, anyhow};
-use percuss::affine::{LONGEST, StartPoint};
+use percuss::affine::{MAX_HORIZON, StartPoint};
 use percuss::{Solver, System};
 use std::f64::consts::TAU;
 
@@ -90,7 +90,7 @@ impl<'a> PlannedRun<'a> {
         let horizon = match (&arguments.until, last) {
             (Some(until), _) => checked(until, first_row, left_out)?,
             (None, Some(last)) => last,
-            (None, None) => first_row + LONGEST * system.time_scale,
+            (None, None) => first_row + MAX_HORIZON * system.time_scale,
         };
         let (events, is_timed) = (arguments.events, arguments.until.is_some());
         Ok(Self { solver, start, returns, transient, horizon, is_timed, events, samples, bar })
