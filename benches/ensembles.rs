@@ -27,8 +27,8 @@ const STARTS: usize = 256;
 const PERIODS: u32 = 100;
 const ROUNDS: usize = 9;
 /// The time for which two threads and two processes work in each round.
-const SPELL: Duration = Duration::from_millis(500);
-const PROCESS: &str = "--process";
+const WORK_TIME: Duration = Duration::from_millis(500);
+const PROCESS_FLAG: &str = "--process";
 
 /// Counts the events of a run.
 struct EventCounter {
@@ -90,7 +90,7 @@ impl Ensemble {
     fn throughput(&self) -> f64 {
         let clock = Instant::now();
         let mut switches = 0;
-        while clock.elapsed() < SPELL {
+        while clock.elapsed() < WORK_TIME {
             switches += self.run(Instructions::widest());
         }
         switches as f64 / clock.elapsed().as_secs_f64()
@@ -119,7 +119,7 @@ fn one_core(ensemble: &Ensemble) {
 fn process() -> Child {
     let program = std::env::current_exe().expect("this program");
     let mut command = Command::new(program);
-    command.arg(PROCESS).stdout(Stdio::piped());
+    command.arg(PROCESS_FLAG).stdout(Stdio::piped());
     command.spawn().expect("a process")
 }
 
@@ -148,7 +148,7 @@ fn two_cores(ensemble: &Ensemble) {
 
 fn main() {
     let (omega, xi) = REGIMES[0];
-    if std::env::args().any(|argument| argument == PROCESS) {
+    if std::env::args().any(|argument| argument == PROCESS_FLAG) {
         println!("{}", threads(1).install(|| Ensemble::new(omega, xi).throughput()));
         return;
     }

@@ -26,8 +26,8 @@ const ROUNDS: usize = 15;
 
 /// The values of the diagram, and the returns at each that are left out and kept.
 const VALUES: u32 = 800;
-const LEFT_OUT: u64 = 300;
-const KEPT: u32 = 100;
+const TRANSIENT_RETURNS: u64 = 300;
+const KEPT_RETURNS: u32 = 100;
 
 /// Starts across and up of the basins.
 const SIDE: u32 = 300;
@@ -107,8 +107,8 @@ fn diagram() -> f64 {
     let diagram = ReturnDiagram {
         section: Section::strobe(0.0),
         longest: None,
-        transient: LEFT_OUT,
-        returns: KEPT,
+        transient: TRANSIENT_RETURNS,
+        returns: KEPT_RETURNS,
         follow: Follow::Carry,
     };
     let file = file();

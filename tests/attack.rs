@@ -4,13 +4,13 @@ use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// No phase of any accepted input may take longer than this to solve.
-const A_SEGMENT: Duration = Duration::from_secs(1);
+/// The longest time that any phase of any accepted input may take to solve.
+const MAX_SEGMENT_TIME: Duration = Duration::from_secs(1);
 const CASES: u64 = 20_000;
 const SEGMENTS: usize = 300;
 
 /// a, b, xi, omega, g, phi; p, y, q: what earlier attacks have found, tried first.
-const FOUND: [[f64; 9]; 7] = [
+const KNOWN_CASES: [[f64; 9]; 7] = [
     // Rest at f = 0 with every derivative zero: steps of 1e-7 for ever.
     [0.0, 0.0, 0.0016, 2781.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     [0.0, 0.0, 1.0, 6.4e-5, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -98,7 +98,7 @@ impl Chance {
     }
 
     fn case(seed: u64) -> (Parameters, Start) {
-        if let Some([a, b, xi, omega, g, phi, p, y, q]) = FOUND.get(seed as usize).copied() {
+        if let Some([a, b, xi, omega, g, phi, p, y, q]) = KNOWN_CASES.get(seed as usize).copied() {
             let start = Start { p, y, q: Some(q), ..Start::default() };
             return (Parameters { a, b, xi, omega, g, phi }, start);
         }
@@ -164,7 +164,7 @@ fn attack(seed: u64, progress: &mpsc::Sender<u64>) -> Option<String> {
     let model = Model::new(parameters).ok()?;
     let entry = model.start(&start).ok()?;
     // Some natural units, or at most a few forcing periods.
-    let most = if seed < FOUND.len() as u64 || seed % 2 == 1 { 1e9 } else { 20.0 };
+    let most = if seed < KNOWN_CASES.len() as u64 || seed % 2 == 1 { 1e9 } else { 20.0 };
     let periods = (60.0 / model.period()).clamp(1e-3, most);
     let horizon = entry.instant.after_periods((periods * 1e3) as u64, 1000);
     let mut last_v = entry.v();
@@ -196,7 +196,7 @@ fn no_accepted_input_breaks_the_solver() {
         });
         let mut last = from;
         let trouble = loop {
-            match reports.recv_timeout(A_SEGMENT) {
+            match reports.recv_timeout(MAX_SEGMENT_TIME) {
                 Ok(seed) => last = seed,
                 Err(mpsc::RecvTimeoutError::Timeout) => break Some("hangs"),
                 Err(mpsc::RecvTimeoutError::Disconnected) if last + 1 < CASES => {

@@ -5,7 +5,7 @@
 
 use crate::support::draws::{Form, REGIMES};
 use crate::support::random::Draw;
-use crate::support::taylor::{STEP, fastest_rate, series};
+use crate::support::taylor::{MAX_STEP, fastest_rate, series};
 use percuss::affine::DoubleDouble;
 use percuss::insides::flow::Point;
 use percuss::number::Number;
@@ -82,7 +82,7 @@ fn every_form_solves_its_differential_equations() {
             let mut worst = Worst::default();
             for _ in 0..DRAWS {
                 let pair = regime.pair(phase, &mut draw);
-                let step = draw.between(0.0, STEP);
+                let step = draw.between(0.0, MAX_STEP);
                 compare(&pair.exact, pair.elapsed, step, &mut worst);
                 compare(&pair.exact, 0.0, step, &mut worst);
             }

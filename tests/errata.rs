@@ -17,10 +17,10 @@ const DRAWS: usize = 2000;
 
 /// Rounding of the printed forms: their terms reach a few hundred eps of 1 at omega = 0.1
 /// (a/omega^2 = 30) and at tau = 100, and lose 1/(2 xi) = 50 times more next to resonance.
-const ROUNDING: f64 = 1e-10;
+const ROUNDING_TOLERANCE: f64 = 1e-10;
 
 /// The smallest difference that counts as a contradiction: far above rounding.
-const PLAIN_TO_SEE: f64 = 1e-3;
+const MIN_CONTRADICTION: f64 = 1e-3;
 
 /// One unit of the last digit printed in Table 1, and what it becomes within one row.
 const TABLE_1_DIGITS: f64 = 3e-5;
@@ -84,7 +84,12 @@ fn progression(begun: &Begun, d: f64) -> Point<f64> {
 #[track_caller]
 fn assert_same(printed: State, ours: State) {
     for (printed, ours) in [(printed.p, ours.p), (printed.y, ours.y), (printed.q, ours.q)] {
-        assert_relative_eq!(printed, ours, epsilon = ROUNDING, max_relative = ROUNDING);
+        assert_relative_eq!(
+            printed,
+            ours,
+            epsilon = ROUNDING_TOLERANCE,
+            max_relative = ROUNDING_TOLERANCE
+        );
     }
 }
 
@@ -153,7 +158,7 @@ fn arctangents_lose_the_quadrant_where_the_denominator_is_negative() {
             // The free part with the wrong sign: twice of it is missing.
             let lost = -2.0 * amplitude * (turned + arctan2(fraction)).sin();
             let expected = if fraction.1 < 0.0 { lost } else { 0.0 };
-            assert_abs_diff_eq!(difference, expected, epsilon = ROUNDING);
+            assert_abs_diff_eq!(difference, expected, epsilon = ROUNDING_TOLERANCE);
             seen[n][quadrant(fraction)] += 1;
         }
     }
@@ -172,7 +177,7 @@ fn table_1_contradicts_the_printed_delta() {
         let begun = begun(tau0, state);
         assert_abs_diff_eq!(begun.equation_15(tau, arctan2).y, y, epsilon = TABLE_1_DIGITS);
         let printed = begun.equation_15(tau, arctan).y;
-        contradictions += usize::from((printed - y).abs() > PLAIN_TO_SEE);
+        contradictions += usize::from((printed - y).abs() > MIN_CONTRADICTION);
         // beta is right in all four: C2 > 0.
         assert!(begun.phases().c2 > 0.0);
     }
@@ -216,7 +221,12 @@ fn equation_20_is_right_with_the_other_sign() {
         let (begun, d) = drawn(&mut draw);
         let (corrected, ours) =
             (begun.equation_20(begun.tau0 + d, -1.0), progression(&begun, d).drift);
-        assert_relative_eq!(corrected, ours, epsilon = ROUNDING, max_relative = ROUNDING);
+        assert_relative_eq!(
+            corrected,
+            ours,
+            epsilon = ROUNDING_TOLERANCE,
+            max_relative = ROUNDING_TOLERANCE
+        );
     }
 }
 
@@ -226,9 +236,13 @@ fn equation_20_as_printed_does_not_begin_at_v0() {
     let row_2 = begun(1142.48663, [0.93131, 4.43472, 0.91131]);
     assert_eq!(progression(&row_2, 0.0).drift, 0.0);
     assert_abs_diff_eq!(row_2.equation_20(row_2.tau0, -1.0), 0.0);
-    assert_abs_diff_ne!(row_2.equation_20(row_2.tau0, 1.0), 0.0, epsilon = PLAIN_TO_SEE);
+    assert_abs_diff_ne!(row_2.equation_20(row_2.tau0, 1.0), 0.0, epsilon = MIN_CONTRADICTION);
     let twice = 2.0 * (0.93131 - 0.02 - 1.0);
-    assert_relative_eq!(row_2.equation_20(row_2.tau0, 1.0), twice, max_relative = ROUNDING);
+    assert_relative_eq!(
+        row_2.equation_20(row_2.tau0, 1.0),
+        twice,
+        max_relative = ROUNDING_TOLERANCE
+    );
 }
 
 /// Eqs. (4) and (7) ask for 2 xi z' + (z - v). With the z' of the phase that ends, that is zero in
@@ -241,9 +255,13 @@ fn the_force_that_decides_an_impact_has_two_values() {
         let point = flight(&begun, d);
         let two_xi = 2.0 * begun.parameters.xi;
         let before = two_xi * point.slider_velocity + point.state.q;
-        assert_abs_diff_eq!(before, 0.0, epsilon = ROUNDING);
+        assert_abs_diff_eq!(before, 0.0, epsilon = ROUNDING_TOLERANCE);
         let after = contact(&begun, 0.0).guard.orders[0];
-        assert_relative_eq!(after, two_xi * begun.state.y + begun.state.q, epsilon = ROUNDING);
+        assert_relative_eq!(
+            after,
+            two_xi * begun.state.y + begun.state.q,
+            epsilon = ROUNDING_TOLERANCE
+        );
     }
 }
 

@@ -5,7 +5,7 @@
 use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 use std::f64::consts::FRAC_PI_2;
 
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const ROUNDING_TOLERANCE: f64 = 64.0 * f64::EPSILON;
 
 fn case(
     [a, b, xi, omega, g, phi]: [f64; 6],
@@ -39,8 +39,8 @@ fn force_stays(segments: &[Segment], xi: f64, horizon: f64) {
         for eighth in 0..=8 {
             let state = segment.at(segment.duration().min(horizon) * f64::from(eighth) / 8.0).state;
             let (damper, spring) = (2.0 * xi * state.y, state.q);
-            let room =
-                ROUNDING * (1.0 + damper.abs() + spring.abs() + segment.entry().state.q.abs());
+            let room = ROUNDING_TOLERANCE
+                * (1.0 + damper.abs() + spring.abs() + segment.entry().state.q.abs());
             let force = damper + spring;
             assert!((-room..=1.0 + room).contains(&force), "f = {force:e}, room {room:e}");
         }
@@ -281,7 +281,7 @@ fn a_contact_whose_squares_underflow() {
         segments(case(parameters, [0.0; 4], None), 30.0)[0].duration()
     });
     let [tiny, small] = durations;
-    assert!((tiny - small).abs() <= ROUNDING * small, "{tiny} {small}");
+    assert!((tiny - small).abs() <= ROUNDING_TOLERANCE * small, "{tiny} {small}");
     assert!((small - 6.274_706_586_767_35).abs() < 1e-9, "{small}");
 }
 
@@ -339,7 +339,7 @@ fn a_small_harmonic_force_on_a_threshold() {
     let angle = segments[0].entry().instant.angle();
     let moved = (angle - 1.567_510_069_900_758_7) / model.unwrap().parameters().omega;
     let expected = 17.787_837_386_337_64 - moved;
-    assert!((lasts - expected).abs() <= ROUNDING * expected, "{lasts:?} {expected:?}");
+    assert!((lasts - expected).abs() <= ROUNDING_TOLERANCE * expected, "{lasts:?} {expected:?}");
 }
 
 /// Its gap closes after 4.5e-16, which a bound of the gap's envelope denied: it had been added up
@@ -372,7 +372,10 @@ fn a_gap_that_closes_by_forces_whose_products_underflow() {
     let segments = segments(case(parameters, at, None), 1.0);
     let expected = (2.0 * g / b).sqrt();
     assert_eq!(segments[0].phase(), Phase::NoContact);
-    assert!((segments[0].duration() - expected).abs() <= ROUNDING * expected, "{segments:?}");
+    assert!(
+        (segments[0].duration() - expected).abs() <= ROUNDING_TOLERANCE * expected,
+        "{segments:?}"
+    );
 }
 
 /// A progression next to b = 1 stops at once. Its mean velocity is zero, and pieces of a period's

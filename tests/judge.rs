@@ -5,7 +5,7 @@ use crate::support::random::Draw;
 use percuss::{Counters, DoubleDouble, Entry, Exit, Model, Parameters, Phase, Segment, Start};
 
 /// Evaluations after which the judge gives a segment up.
-const PATIENCE: usize = 20_000;
+const MAX_EVALUATIONS: usize = 20_000;
 
 /// omega and xi of the paper's cases and of the corners around them.
 const REGIMES: [(f64, f64); 16] = [
@@ -82,7 +82,7 @@ fn room(model: &Model, segment: &Segment, next: &Entry) -> f64 {
 /// The time that a segment lasts by one-sided steps in 106 bits: infinite where it does not end
 /// within the horizon, nothing where that is not decided.
 fn judged(model: &Model, segment: &Segment, horizon: f64) -> Option<f64> {
-    let effort = Effort { horizon, evaluations: PATIENCE, unit: DoubleDouble::UNIT };
+    let effort = Effort { horizon, evaluations: MAX_EVALUATIONS, unit: DoubleDouble::UNIT };
     match one_sided_end::<DoubleDouble>(model, segment, &effort) {
         OneSidedEnd::Crossing { elapsed, .. } => Some(elapsed),
         OneSidedEnd::Clear => Some(f64::INFINITY),

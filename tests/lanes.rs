@@ -12,7 +12,7 @@ use proptest::test_runner::{Config, RngSeed};
 use std::ops::ControlFlow;
 
 /// Ten roundings each, as the restart test promises of a whole passage.
-const ROOM: f64 = 20.0;
+const MAX_ROUNDINGS: f64 = 20.0;
 
 /// What a motion went through.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,7 +85,7 @@ fn largest_error(model: &Model, diary: &Diary) -> Result<f64, TestCaseError> {
         let late = next.instant.since(&expected.instant, omega).value().abs();
         let time = late / (f64::EPSILON * (1.0 + segment.duration()) * growth.tau);
         let off = time.max(units(next, expected, &growth));
-        prop_assert!(off <= ROOM, "{off} {}", message);
+        prop_assert!(off <= MAX_ROUNDINGS, "{off} {}", message);
         largest = largest.max(off);
     }
     Ok(largest)

@@ -18,9 +18,9 @@ use crate::support::random::Draw;
 /// Places at which the guard is looked at.
 const PLACES: u32 = 400;
 
-/// An excursion counts if it is higher than the roundings that a certificate allows for, in the
-/// guard's largest term: SLACK at both ends of the evaluation and of the certificate.
-const HIGH: f64 = 16.0 * f64::EPSILON;
+/// The least height of an excursion that counts: the roundings that a certificate allows for, in
+/// the guard's largest term, which are SLACK at both ends of the evaluation and of the certificate.
+const MIN_EXCURSION: f64 = 16.0 * f64::EPSILON;
 
 fn excess<G: Guarded>(phase: &G, d: f64) -> (f64, f64) {
     let guard = phase.at(d).guard;
@@ -35,7 +35,7 @@ fn later_roots<G: Guarded>(phase: &G, until: f64) -> Vec<f64> {
     for k in 1..PLACES {
         let (mut inside, mut outside) = (place(k), place(k + 1));
         let (value, terms) = excess(phase, inside);
-        has_been_outside |= value > HIGH * terms;
+        has_been_outside |= value > MIN_EXCURSION * terms;
         if has_been_outside && value <= 0.0 && excess(phase, outside).0 > 0.0 {
             for _ in 0..60 {
                 let middle = 0.5 * (inside + outside);

@@ -24,7 +24,7 @@ fn dying_out(xi: f64, b: f64, f: f64, y: f64) -> (Segment, Counters) {
 
 /// Evaluations that a decided contact may take: one stage of eight decay times takes up to four,
 /// and as many divisions; 40 stages lead from 1 to 1e-139.
-const DECIDED: u64 = 600;
+const MAX_DECIDED_EVALUATIONS: u64 = 600;
 
 #[test]
 fn what_dies_out_from_one_side_rests_for_ever() {
@@ -66,7 +66,7 @@ fn what_dies_out_towards_a_pull_separates_when_nothing_else_is_left() {
             let room = handed_on / slow + f64::EPSILON * 64.0 * expected;
             let off = (segment.duration() - expected).abs();
             assert!(off <= room, "{xi} {pull:e}: {} for {expected}", segment.duration());
-            assert!(counters.evaluations <= DECIDED, "{xi} {pull:e}: {counters:?}");
+            assert!(counters.evaluations <= MAX_DECIDED_EVALUATIONS, "{xi} {pull:e}: {counters:?}");
             assert_eq!(counters.undecidable, 0, "{xi} {pull:e}");
         }
     }
@@ -86,7 +86,7 @@ fn next_to_the_upper_threshold_it_is_decided_alike() {
             matches!(next, Exit::Switch(next) if next.phase() == Phase::Progression),
             "{next:?}"
         );
-        assert!(counters.evaluations <= DECIDED, "{counters:?}");
+        assert!(counters.evaluations <= MAX_DECIDED_EVALUATIONS, "{counters:?}");
     }
 }
 

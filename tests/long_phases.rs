@@ -12,7 +12,7 @@ fn first_segment(parameters: Parameters, start: Start, periods: u64) -> (Segment
 }
 
 /// A window of search a bound's zero, and some jumps to get there.
-const EVALUATIONS: u64 = 300;
+const MAX_EVALUATIONS: u64 = 300;
 
 #[test]
 fn a_weak_force_in_resonance_takes_its_time() {
@@ -25,7 +25,7 @@ fn a_weak_force_in_resonance_takes_its_time() {
     // |f - b| = 0.6 (1 - exp(-xi d)) reaches 0.5 at d = ln(6)/xi; within an oscillation of that.
     let expected = 6.0_f64.ln() / 1e-8;
     assert!((segment.duration() - expected).abs() < 10.0, "{} {expected}", segment.duration());
-    assert!(evaluations < EVALUATIONS, "{evaluations}");
+    assert!(evaluations < MAX_EVALUATIONS, "{evaluations}");
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn flights_stay_cheap_as_the_static_force_vanishes() {
             let parameters = Parameters { b, ..Default::default() };
             let start = Start { p: -1.0, y, q: Some(0.0), ..Default::default() };
             let (_, evaluations) = first_segment(parameters, start, 1_000_000_000);
-            assert!(evaluations < limit * EVALUATIONS, "b = {b:e}, y = {y}: {evaluations}");
+            assert!(evaluations < limit * MAX_EVALUATIONS, "b = {b:e}, y = {y}: {evaluations}");
         }
     }
 }

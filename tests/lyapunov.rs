@@ -175,15 +175,15 @@ fn the_shortest_runs_are_answered() {
 }
 
 /// Forcing periods between two runs of one chaotic motion: it remembers no more.
-const APART: u64 = 100;
+const SPACING_PERIODS: u64 = 100;
 
 /// The spectra of many runs along one chaotic motion.
 fn runs(parameters: Parameters, count: u64, periods: u64) -> Vec<Spectrum> {
     let model = model(parameters);
     let mut from = from_rest(&model);
     let next = |_| {
-        let found = Spectrum::of(&model, from, APART, periods);
-        from = StrobeMap::new(model, from.instant).passage(&from, APART + periods).image;
+        let found = Spectrum::of(&model, from, SPACING_PERIODS, periods);
+        from = StrobeMap::new(model, from.instant).passage(&from, SPACING_PERIODS + periods).image;
         found
     };
     (0..count).map(next).collect()

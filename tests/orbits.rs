@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 /// A strobe's and a phase's roundings, carried to the end of one forcing period with a derivative
 /// of about ten; the largest met is 3 eps.
-const CLOSED: f64 = 16.0 * f64::EPSILON;
+const CLOSURE_TOLERANCE: f64 = 16.0 * f64::EPSILON;
 
 fn map_of(parameters: Parameters, angle: f64) -> StrobeMap {
     let model = Model::new(parameters).unwrap();
@@ -28,7 +28,7 @@ fn apart(a: StrobePoint, b: StrobePoint) -> f64 {
 }
 
 /// xi, omega and period of the paper's periodic attractors.
-const PAPER: [(f64, f64, u32); 7] = [
+const PAPER_ORBITS: [(f64, f64, u32); 7] = [
     (0.1, 1.4, 4),
     (0.1, 1.45, 12),
     (0.1, 1.6, 5),
@@ -40,9 +40,9 @@ const PAPER: [(f64, f64, u32); 7] = [
 
 /// Their maps, and what a scan finds there.
 fn papers() -> &'static [(StrobeMap, u32, Vec<Orbit>)] {
-    static FOUND: OnceLock<Vec<(StrobeMap, u32, Vec<Orbit>)>> = OnceLock::new();
-    FOUND.get_or_init(|| {
-        let found = PAPER.map(|(xi, omega, period)| {
+    static FOUND_ORBITS: OnceLock<Vec<(StrobeMap, u32, Vec<Orbit>)>> = OnceLock::new();
+    FOUND_ORBITS.get_or_init(|| {
+        let found = PAPER_ORBITS.map(|(xi, omega, period)| {
             let map = map(xi, omega);
             let mut orbits = scan(&map, period, &mut |_| {});
             orbits.retain(|it| it.period() == period);
@@ -73,7 +73,10 @@ fn an_orbit_maps_to_itself_strobe_by_strobe() {
                 .zip(next)
                 .map(|(point, next)| apart(image(map, *point, 1), *next))
                 .fold(0.0, f64::max);
-            assert!(worst <= CLOSED && orbit.residual <= CLOSED, "{worst:e} {orbit:?}");
+            assert!(
+                worst <= CLOSURE_TOLERANCE && orbit.residual <= CLOSURE_TOLERANCE,
+                "{worst:e} {orbit:?}"
+            );
             // No sooner: the first strobe is not met again before the period is over.
             for n in 1..*period {
                 assert!(apart(orbit.points[n as usize], orbit.points[0]) > 1e-6, "{orbit:?}");

@@ -18,7 +18,7 @@ const SERIES_EPS: f64 = 2.0;
 const FUNCTION_EPS: f64 = 3.0;
 
 /// The smallest argument: below it the remainders leave the range in which f64 is relatively exact.
-const SMALLEST: f64 = 1e-100;
+const MIN_ARGUMENT: f64 = 1e-100;
 
 type Real = DoubleDouble;
 
@@ -53,7 +53,7 @@ fn circular_remainders_are_relatively_exact_below_one_radian() {
     let mut draw = Draw(6);
     let mut worst = [0.0_f64; 3];
     for _ in 0..DRAWS / 10 {
-        let x = draw.decades(SMALLEST, 1.0);
+        let x = draw.decades(MIN_ARGUMENT, 1.0);
         let exact = Real::exact(x);
         let Circular { sin, cos_minus_1, sin_minus_x } = circular(x);
         let errors = [
@@ -115,7 +115,7 @@ fn decay_remainders_are_relatively_exact_below_one_half() {
     let mut draw = Draw(9);
     let mut worst = [0.0_f64; 3];
     for _ in 0..DRAWS / 10 {
-        let z = draw.decades(SMALLEST, 0.5);
+        let z = draw.decades(MIN_ARGUMENT, 0.5);
         let minus = -Real::exact(z);
         let Decay { exp, minus_1, remainder } = decay(z);
         let errors = [

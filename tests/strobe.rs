@@ -6,7 +6,7 @@ use percuss::{Entry, Exit, GrowthRecorder, Instant, Model, Parameters, Phase, St
 
 /// Roundings of a phase taken up again: the state's, and those of the form evaluated from there;
 /// the solver's own constant is 0.5 (`validate`).
-const ROUNDINGS: f64 = 16.0;
+const MAX_ROUNDINGS: f64 = 16.0;
 
 fn models() -> Vec<Model> {
     let paper = Parameters::default();
@@ -63,7 +63,7 @@ fn a_phase_taken_up_again_ends_where_it_would_have() {
             let growth = recorder.pass(&again).map_or(1.0, |growth| growth.tau.max(1.0));
             let size = 1.0 + segment.duration();
             let late = end.instant.since(&next.instant, omega).value().abs();
-            let allowed = ROUNDINGS * f64::EPSILON * size * growth;
+            let allowed = MAX_ROUNDINGS * f64::EPSILON * size * growth;
             assert!(
                 late <= allowed,
                 "{:?} {share}: {late:e}, allowed {allowed:e}",
@@ -117,7 +117,7 @@ fn periods_one_by_one_are_the_run() {
                 .flat_map(|passage| passage.derivative.into_iter().flatten())
                 .fold(1.0_f64, |largest, slope| largest.max(slope.abs()));
             let apart = distance(entry.point(), whole.point());
-            let allowed = ROUNDINGS * f64::EPSILON * growth * periods as f64;
+            let allowed = MAX_ROUNDINGS * f64::EPSILON * growth * periods as f64;
             assert!(apart <= allowed, "{:?} {periods}: {apart:e} {allowed:e}", model.parameters());
             let drift = (entry.v() - whole.image.v()).abs() / (1.0 + entry.v().abs());
             assert!(drift <= allowed, "{periods}: drift {drift:e} {allowed:e}");

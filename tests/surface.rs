@@ -268,12 +268,13 @@ fn a_contact_with_a_second_derivative_of_thirty_per_cent_lasts() {
 /// A force of the smallest number, whose rate vanishes, imposes f = 0: q becomes -2 xi y.
 #[test]
 fn a_force_without_a_rate_is_at_the_threshold() {
-    const LEAST: f64 = 5e-324;
+    const MIN_POSITIVE: f64 = 5e-324;
     let parameters = Parameters { xi: 4.0, g: 0.0, ..Parameters::default() };
     let model = Model::new(parameters).unwrap();
-    for (y, q, imposed) in
-        [(-LEAST, 7.0 * LEAST, 8.0 * LEAST), (-2.0 * LEAST, 15.0 * LEAST, 16.0 * LEAST)]
-    {
+    for (y, q, imposed) in [
+        (-MIN_POSITIVE, 7.0 * MIN_POSITIVE, 8.0 * MIN_POSITIVE),
+        (-2.0 * MIN_POSITIVE, 15.0 * MIN_POSITIVE, 16.0 * MIN_POSITIVE),
+    ] {
         let start = Start { p: q, y, q: Some(q), ..Start::default() };
         let state = model.start(&start).unwrap().state;
         assert_eq!((state.q, state.p), (imposed, imposed), "{y:e} {q:e}");

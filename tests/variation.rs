@@ -10,7 +10,7 @@ const FLIGHT: Start =
 
 /// Differences of 1e-5 are good to about 1e-10 x third derivatives and 1e-11 of rounding.
 const STEP: f64 = 1e-5;
-const CLOSE: f64 = 1e-6;
+const DERIVATIVE_TOLERANCE: f64 = 1e-6;
 
 /// The derivative along the run, the kinds of its impacts, and p, y, q and v a time `span` after
 /// the start.
@@ -66,7 +66,7 @@ fn assert_derivatives(parameters: Parameters, flight: Start, last: f64) -> Vec<P
                 let difference = (ends[0][k] - ends[1][k]) / (2.0 * STEP);
                 let exact = derivative[row][direction];
                 assert!(
-                    (difference - exact).abs() <= CLOSE * (1.0 + exact.abs()),
+                    (difference - exact).abs() <= DERIVATIVE_TOLERANCE * (1.0 + exact.abs()),
                     "row {row}, direction {direction} after {span}: {difference} {exact}"
                 );
             }

@@ -3,9 +3,10 @@
 /// Instructions by which any count may exceed its record. Four of the small benches took 12 more
 /// on another machine at the very commit that wrote their record; a third of that is room for a
 /// third machine.
-const BETWEEN_MACHINES: f64 = 16.0;
+const MACHINE_TOLERANCE_INSTRUCTIONS: f64 = 16.0;
 
-/// Excess over its record that a count may have, where that is more than `BETWEEN_MACHINES`.
+/// Excess over its record that a count may have, where that is more than
+/// `MACHINE_TOLERANCE_INSTRUCTIONS`.
 #[derive(Clone, Copy, Debug)]
 pub enum Grain {
     /// One thing done once or a few times: half a per cent.
@@ -35,7 +36,7 @@ pub fn limit(bench: &str, grain: Grain) -> u64 {
 
 fn above(recorded: u64, grain: Grain) -> u64 {
     let recorded = recorded as f64;
-    (recorded + (recorded * grain.share()).max(BETWEEN_MACHINES)) as u64
+    (recorded + (recorded * grain.share()).max(MACHINE_TOLERANCE_INSTRUCTIONS)) as u64
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// The module that the rewritten sources ask; the variable is read once.
-const CHOICE: &str = "//! Which fault is chosen.\n\
+const CHOICE_MODULE: &str = "//! Which fault is chosen.\n\
     use std::sync::LazyLock;\n\
     static CHOSEN: LazyLock<u32> = LazyLock::new(|| {\n\
         std::env::var(\"PERCUSS_FAULT\").ok().and_then(|it| it.parse().ok()).unwrap_or(0)\n\
@@ -102,7 +102,7 @@ fn write_sources(
         if !text.ends_with(MODULE) {
             tree::write(&library, format!("{text}{MODULE}").as_bytes())?;
         }
-        tree::write(&scratch.join(folder).join("fault.rs"), CHOICE.as_bytes())?;
+        tree::write(&scratch.join(folder).join("fault.rs"), CHOICE_MODULE.as_bytes())?;
     }
     Ok(all)
 }

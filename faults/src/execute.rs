@@ -21,12 +21,12 @@ pub enum OscillatorOutcome {
 }
 
 /// The signals by which a limit of the processor's time ends a program: SIGKILL and SIGXCPU.
-const KILLED: i32 = 9;
-const TIME_IS_UP: i32 = 24;
+const SIGKILL: i32 = 9;
+const SIGXCPU: i32 = 24;
 
 /// Memory that a test program may address, in KiB: a fault may make a run collect phases without
 /// end.
-const MEMORY: &str = "16000000";
+const MEMORY_KIB: &str = "16000000";
 
 /// Runs the program with this fault; 0 is none. It may take so many seconds of the processor's
 /// time, which does not depend on what else the machine does.
@@ -42,7 +42,7 @@ pub fn run(program: &Program, fault: u32, limit: Option<u64>) -> Result<Oscillat
     let status = child.wait()?;
     Ok(match status.signal() {
         _ if status.success() => OscillatorOutcome::Passed(started.elapsed()),
-        Some(KILLED | TIME_IS_UP) => OscillatorOutcome::TimedOut,
+        Some(SIGKILL | SIGXCPU) => OscillatorOutcome::TimedOut,
         _ => OscillatorOutcome::Crashed,
     })
 }
@@ -51,7 +51,7 @@ fn start(program: &Program, fault: u32, limit: Option<u64>) -> Result<Child> {
     let time = limit.map_or("unlimited".to_owned(), |seconds| seconds.to_string());
     Command::new("sh")
         .arg("-c")
-        .arg(format!("ulimit -v {MEMORY}; ulimit -t {time}; exec \"$0\" \"$@\""))
+        .arg(format!("ulimit -v {MEMORY_KIB}; ulimit -t {time}; exec \"$0\" \"$@\""))
         .arg(&program.path)
         .args(&program.module)
         .env("PERCUSS_FAULT", fault.to_string())

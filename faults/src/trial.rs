@@ -19,7 +19,7 @@ pub struct Plan {
 }
 
 /// Seconds that a test program may take beside its multiple, however short it is.
-const AT_LEAST: f64 = 20.0;
+const MIN_SECONDS: f64 = 20.0;
 
 /// A test program and how long it may take.
 struct Timed {
@@ -85,7 +85,7 @@ fn timed(scratch: &Path, packages: &[&str], plan: &Plan) -> Result<Vec<Timed>> {
     timed.sort_by_key(|(took, _)| *took);
     let with_limit = |(took, program): (Duration, Program)| Timed {
         program,
-        limit: (took.as_secs_f64() * plan.patience + AT_LEAST) as u64,
+        limit: (took.as_secs_f64() * plan.patience + MIN_SECONDS) as u64,
     };
     Ok(timed.into_iter().map(with_limit).collect())
 }

@@ -119,7 +119,7 @@ impl Bytes<'_> {
     }
 }
 
-const LIMIT: f64 = 1e9;
+const MAX_SIZE: f64 = 1e9;
 
 impl Case {
     pub fn decode(bytes: &[u8]) -> Self {
@@ -221,6 +221,6 @@ fn start(bytes: &mut Bytes, parameters: &Parameters) -> Start {
         // Anything; the slider follows or is at rest.
         _ => (bytes.signed(), bytes.signed(), None),
     };
-    let [p, y] = [p, y].map(|x| x.clamp(-LIMIT, LIMIT));
+    let [p, y] = [p, y].map(|x| x.clamp(-MAX_SIZE, MAX_SIZE));
     Start { tau, cycle, p, y, q, v, phase }
 }

@@ -12,29 +12,29 @@ use percuss::{Exit, Model, Parameters, Phase, Segment, State};
 const SEGMENTS: usize = 20;
 
 /// Longest run in units of 1/omega0, the time of the free oscillation.
-const LONGEST: f64 = 200.0;
+const MAX_RUN_TIME: f64 = 200.0;
 
 /// Rounding allowed in what is compared, in units of eps times the terms that went into it: the
 /// closed forms claim 10 eps for a phase of at most one forcing period, and an event adds as much.
-const ROUNDING: f64 = 32.0 * f64::EPSILON;
+const ROUNDING_TOLERANCE: f64 = 32.0 * f64::EPSILON;
 
 /// What products that underflow may lose of a state: the smallest normal number times a/omega^2 <=
 /// 1e21.
-const UNDERFLOW: f64 = 1e-285;
+const UNDERFLOW_TOLERANCE: f64 = 1e-285;
 
 /// Phases of a case that are decided again in 106 bits, where any are.
-const JUDGED: usize = 6;
+const MAX_JUDGED_PHASES: usize = 6;
 
 /// Evaluations of the judge for one phase.
 const JUDGE_EVALUATIONS: usize = 2000;
 
 /// One case in so many of those drawn from everything is judged.
-const ONE_IN: u64 = 16;
+const CASES_PER_JUDGED: u64 = 16;
 
 /// How far an event may be off, in units of what rounding of the guard moves it by: the search
 /// allows itself as much again, and the guards of the two arithmetics differ by some roundings of
 /// the parameters' products.
-const WIDTHS: f64 = 8.0;
+const MAX_EVENT_WIDTHS: f64 = 8.0;
 
 /// The counts of what the runs met.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -81,14 +81,14 @@ pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
     // A phase without events costs up to a few evaluations a forcing period and, in contact, a
     // period of the free oscillation: 64 of the one, 200/2 pi of the other are honest work.
     let period = model.period();
-    let periods = case.periods.min(LONGEST / period);
+    let periods = case.periods.min(MAX_RUN_TIME / period);
     let (whole, rest) = (periods.floor(), (periods.fract() * 1e6).floor());
     let horizon = entry.instant.after_periods(whole as u64 * 1_000_000 + rest as u64, 1_000_000);
     let mut trajectory = model.trajectory(entry).until(horizon);
     let mut history = History::new(&case.parameters);
     let mut before = trajectory.counters();
     let sampled = case.parameters.a.to_bits() ^ case.start.p.to_bits() ^ case.start.y.to_bits();
-    let judged = case.family != Family::Any || sampled % ONE_IN == 0;
+    let judged = case.family != Family::Any || sampled % CASES_PER_JUDGED == 0;
     for number in 0..SEGMENTS {
         let Some(segment) = trajectory.next() else { break };
         let counters = trajectory.counters();
@@ -105,7 +105,7 @@ pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
         }
         let undecidable = *segment.exit() == Exit::Undecidable;
         tally.undecidable += u64::from(undecidable);
-        if undecidable || judged && number < JUDGED {
+        if undecidable || judged && number < MAX_JUDGED_PHASES {
             let left = segment.elapsed_at(&horizon);
             judge(&model, &segment, left, touched, tally).map_err(named)?;
         }
@@ -122,8 +122,8 @@ fn without_horizon(
     left: f64,
     touched: bool,
 ) -> Result<(), String> {
-    /// What an end may be off next to the horizon.
-    const APART: f64 = 1e-3;
+    /// The largest distance of two ends next to the horizon.
+    const HORIZON_TOLERANCE: f64 = 1e-3;
     /// A contact that is taken up in stages is granted the limit by its first search, by its stages
     /// and by the last of these.
     const SEARCHES: u64 = 3;
@@ -141,7 +141,7 @@ fn without_horizon(
             one.phase() == other.phase() && same_place(model, segment, [&one.state, &other.state])
         }
         (Exit::Endless(one), Exit::Endless(other)) => one == other,
-        (Exit::Horizon, _) => free >= left * (1.0 - APART),
+        (Exit::Horizon, _) => free >= left * (1.0 - HORIZON_TOLERANCE),
         _ => false,
     };
     let touched = touched || counters.undecidable > 0;
@@ -171,12 +171,14 @@ fn judge(
         (Exit::Switch(next), OneSidedEnd::Crossing { elapsed, rises, width }) => {
             let side =
                 segment.phase() != Phase::Contact || rises == (next.phase() == Phase::Progression);
-            side && (elapsed - lasts).abs() <= WIDTHS * width
+            side && (elapsed - lasts).abs() <= MAX_EVENT_WIDTHS * width
         }
         (Exit::Switch(_) | Exit::Undecidable, _) => false,
         (_, OneSidedEnd::Clear) => true,
         // The horizon may fall into what rounding moves the event by.
-        (_, OneSidedEnd::Crossing { elapsed, width, .. }) => elapsed > left - WIDTHS * width,
+        (_, OneSidedEnd::Crossing { elapsed, width, .. }) => {
+            elapsed > left - MAX_EVENT_WIDTHS * width
+        }
     };
     tally.decided += 1;
     if !alike && touched {
@@ -272,13 +274,13 @@ impl History {
         // At the event f is known to the rounding of its terms, up to 1; h' = f/(2 xi) passes it
         // on as long as q has not died out.
         let passed_on = (elapsed / two_xi).min(1.0);
-        let room = ROUNDING * (place + passed_on) + UNDERFLOW;
+        let room = ROUNDING_TOLERANCE * (place + passed_on) + UNDERFLOW_TOLERANCE;
         ensure!(over <= room, "p - (q + g) = {over:e}, room {room:e}, {sample:?}");
         if segment.phase() != Phase::NoContact {
             ensure!(over.abs() <= room, "p - (q + g) = {over:e} on the surface, room {room:e}");
             let force = two_xi * y + q;
             let speed = self.speed;
-            let room = ROUNDING * (1.0 + place + two_xi * speed);
+            let room = ROUNDING_TOLERANCE * (1.0 + place + two_xi * speed);
             let inside = match segment.phase() {
                 Phase::Contact => force >= -room && force <= 1.0 + room,
                 _ => force >= 1.0 - room,
@@ -289,7 +291,7 @@ impl History {
         // 2 xi y where it is imposed at the end of this phase or was at that of an earlier one.
         let in_place = (0.0..=1.0).contains(&q);
         let terms = 1.0 + place + two_xi * self.speed;
-        self.q_room = self.q_room.max(ROUNDING * terms);
+        self.q_room = self.q_room.max(ROUNDING_TOLERANCE * terms);
         if self.settled {
             let far = (-q).max(q - 1.0);
             ensure!(far <= self.q_room, "q = {q:e} left [0, 1] again, room {:e}", self.q_room);
@@ -322,17 +324,17 @@ impl History {
         } else {
             0.0
         };
-        ROUNDING * (entry.v().abs() + slipped) + UNDERFLOW
+        ROUNDING_TOLERANCE * (entry.v().abs() + slipped) + UNDERFLOW_TOLERANCE
     }
 }
 
 /// Whether two ends of a phase are the same state within the rounding of its terms.
 fn same_place(model: &Model, segment: &Segment, [one, other]: [&State; 2]) -> bool {
-    const NEAR: f64 = 1e-9;
+    const STATE_TOLERANCE: f64 = 1e-9;
     let Parameters { a, b, .. } = *model.parameters();
     let size = |state: &State| state.p.abs() + state.y.abs() + state.q.abs();
     let scale = 1.0 + a + b.abs() + size(&segment.entry().state) + size(one);
-    let near = |x: f64, y: f64| (x - y).abs() <= NEAR * scale;
+    let near = |x: f64, y: f64| (x - y).abs() <= STATE_TOLERANCE * scale;
     near(one.p, other.p) && near(one.y, other.y) && near(one.q, other.q)
 }
 

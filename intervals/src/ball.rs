@@ -17,14 +17,14 @@ pub struct Ball {
     radius: f64,
 }
 
-/// 4 u^2
-const SUM: f64 = 1.0 / (1_u128 << 104) as f64;
-/// 8 u^2
-const PRODUCT: f64 = 2.0 * SUM;
-/// More than eight roundings of the radius.
-const GROW: f64 = 1.0 + 8.0 * f64::EPSILON;
+/// The relative error of a sum, 4 u^2.
+const SUM_ERROR: f64 = 1.0 / (1_u128 << 104) as f64;
+/// The relative error of a product, 8 u^2.
+const PRODUCT_ERROR: f64 = 2.0 * SUM_ERROR;
+/// The factor by which a radius is raised: more than eight roundings of it.
+const RADIUS_FACTOR: f64 = 1.0 + 8.0 * f64::EPSILON;
 /// More than what products of words below the normal range lose.
-const UNDERFLOW: f64 = 1e-290;
+const UNDERFLOW_ERROR: f64 = 1e-290;
 
 impl Ball {
     /// Zero, exactly.
@@ -50,7 +50,7 @@ impl Ball {
     #[inline]
     #[must_use]
     pub const fn widened(self, more: f64) -> Self {
-        Self { radius: (self.radius + more) * GROW, ..self }
+        Self { radius: (self.radius + more) * RADIUS_FACTOR, ..self }
     }
 
     /// A number not below any member; a NaN if nothing is known.
@@ -71,7 +71,7 @@ impl Ball {
     #[inline]
     #[must_use]
     pub const fn size(self) -> f64 {
-        ((self.high.abs() + self.low.abs()) + self.radius) * GROW
+        ((self.high.abs() + self.low.abs()) + self.radius) * RADIUS_FACTOR
     }
 
     /// The distance of the bounds, for decisions that prove nothing.
@@ -90,7 +90,7 @@ impl Ball {
     #[inline]
     #[must_use]
     pub const fn rough(self) -> (f64, f64) {
-        (self.high, (self.low.abs() + self.radius) * GROW)
+        (self.high, (self.low.abs() + self.radius) * RADIUS_FACTOR)
     }
 
     /// Whether the ball is the number zero alone.
@@ -114,7 +114,7 @@ impl Ball {
         let low = TwoWord::sum(self.low, other.low);
         let TwoWord { high, low: carried } = quick_sum(high.high, high.low + low.high);
         let TwoWord { high, low } = quick_sum(high, carried + low.low);
-        let radius = ((self.radius + other.radius) + SUM * high.abs()) * GROW;
+        let radius = ((self.radius + other.radius) + SUM_ERROR * high.abs()) * RADIUS_FACTOR;
         Self { high, low, radius }
     }
 
@@ -132,7 +132,7 @@ impl Ball {
         let TwoWord { high, low } = quick_sum(product.high, product.low + mixed);
         let (x, y) = (self.high.abs(), other.high.abs());
         let spread = x * other.radius + (y + other.radius) * self.radius;
-        let radius = (spread + PRODUCT * high.abs()) * GROW + UNDERFLOW;
+        let radius = (spread + PRODUCT_ERROR * high.abs()) * RADIUS_FACTOR + UNDERFLOW_ERROR;
         Self { high, low, radius }
     }
 
@@ -153,7 +153,11 @@ impl Ball {
         // x/y - m = (x - m y)/y
         let rest = self.plus(other.times(quotient).negated());
         let least = larger(other.lower(), -other.upper());
-        let radius = if least > 0.0 { rest.size() / least * GROW + UNDERFLOW } else { f64::NAN };
+        let radius = if least > 0.0 {
+            rest.size() / least * RADIUS_FACTOR + UNDERFLOW_ERROR
+        } else {
+            f64::NAN
+        };
         Self { radius, ..quotient }
     }
 
@@ -167,7 +171,8 @@ impl Ball {
         // sqrt(x) - m = (x - m^2)/(sqrt(x) + m)
         let (rest, least) = (self - root * root, root.lower());
         let known = self.lower() > 0.0 && least > 0.0;
-        let radius = if known { rest.size() / least * GROW + UNDERFLOW } else { f64::NAN };
+        let radius =
+            if known { rest.size() / least * RADIUS_FACTOR + UNDERFLOW_ERROR } else { f64::NAN };
         Self { radius, ..root }
     }
 

@@ -23,7 +23,7 @@ pub(crate) enum Damping {
 }
 
 /// From here on the free oscillation is taken apart into two exponentials.
-const FAR: f64 = 1.25;
+const MIN_SPLIT_DAMPING: f64 = 1.25;
 
 impl Damping {
     /// The form for this damping ratio.
@@ -39,7 +39,7 @@ impl Damping {
         let root = (-discriminant).sqrt();
         let fast = x + root;
         let slow = one / fast;
-        if xi < FAR {
+        if xi < MIN_SPLIT_DAMPING {
             Self::Above { slow, spread: root.scaled(2.0) }
         } else {
             Self::Far { slow, fast }

@@ -4,7 +4,7 @@
 use crate::ball::Ball;
 use crate::guard::Expansion;
 use crate::hull::Piecewise;
-use crate::proof::{CorridorProof, GRANTED, Verdict};
+use crate::proof::{CorridorProof, MAX_SLACKS, Verdict};
 use percuss::insides::crossing::Corridor;
 
 impl CorridorProof<'_> {
@@ -13,12 +13,12 @@ impl CorridorProof<'_> {
         let slack = self.claim.slack;
         let outwards = if self.claim.rises { residual } else { -residual };
         let least = residual.lower().max(-residual.upper());
-        if least > GRANTED * slack {
+        if least > MAX_SLACKS * slack {
             return Verdict::Elsewhere { residual: least / slack };
         }
         let open = Verdict::Open { until: self.claim.duration.high };
         // Written so that a NaN confirms nothing.
-        if !(residual.size() <= GRANTED * slack) {
+        if !(residual.size() <= MAX_SLACKS * slack) {
             return open;
         }
         if outwards.lower() >= 0.0 {

@@ -28,14 +28,14 @@ const LN_2: Ball =
         .widened(1e-33);
 
 /// More turns are not taken off: nothing is known of such an angle.
-const FURTHEST: f64 = 1e12;
+const MAX_ANGLE: f64 = 1e12;
 
 /// Sine and cosine.
 #[must_use]
 pub fn sin_cos(x: Ball) -> (Ball, Ball) {
     const HALVINGS: usize = 3;
     // Written so that a NaN knows nothing.
-    if !(x.size() < FURTHEST) {
+    if !(x.size() < MAX_ANGLE) {
         let unknown = Ball::ZERO.widened(f64::NAN);
         return (unknown, unknown);
     }
@@ -59,15 +59,16 @@ pub fn sin_cos(x: Ball) -> (Ball, Ball) {
 /// sin x and cos x - 1 for |x| <= 0.1 or so.
 fn near_zero(x: Ball) -> (Ball, Ball) {
     /// The next term is 0.1^18/19! = 8e-36 of the first.
-    const LAST: usize = 8;
+    const LAST_TERM: usize = 8;
     let square = x.square();
     let (mut s, mut c) = (Ball::ZERO, Ball::ZERO);
-    for k in (1..=LAST).rev() {
+    for k in (1..=LAST_TERM).rev() {
         s = square * (INVERSE_FACTORIALS[2 * k + 1] - s);
         c = square * (INVERSE_FACTORIALS[2 * k + 2] - c);
     }
     // The series alternate: what is left out is less than its first term.
-    let left_out = power(square.size(), LAST + 1) * INVERSE_FACTORIALS[2 * LAST + 3].size();
+    let left_out =
+        power(square.size(), LAST_TERM + 1) * INVERSE_FACTORIALS[2 * LAST_TERM + 3].size();
     let sin = x - x * s;
     let cos_less_1 = square * (c - Ball::exact(0.5));
     let more = left_out * 1.000_001;
@@ -92,17 +93,17 @@ pub fn exp(x: Ball) -> Ball {
 
 /// exp(x) for x so far from zero that it is no number one can use.
 fn nothing(x: Ball) -> Ball {
-    /// exp(-690) is less.
-    const NOTHING: f64 = 1e-299;
-    Ball::ZERO.widened(if x.upper() < -690.0 { NOTHING } else { f64::NAN })
+    /// An upper bound of exp(x) for x below -690.
+    const MAX_UNDERFLOW: f64 = 1e-299;
+    Ball::ZERO.widened(if x.upper() < -690.0 { MAX_UNDERFLOW } else { f64::NAN })
 }
 
 /// exp(x) = (1 + grown) scale, where the scale is a power of two.
 fn grown(x: Ball) -> Option<(Ball, f64)> {
     const HALVINGS: usize = 4;
-    const LARGEST: f64 = 700.0;
+    const MAX_ARGUMENT: f64 = 700.0;
     // Written so that a NaN is none.
-    if !(x.size() < LARGEST) {
+    if !(x.size() < MAX_ARGUMENT) {
         return None;
     }
     let doublings = (x.about() / std::f64::consts::LN_2).round();
@@ -117,13 +118,13 @@ fn grown(x: Ball) -> Option<(Ball, f64)> {
 /// exp(x) - 1 for |x| <= 0.03 or so.
 fn grown_a_little(x: Ball) -> Ball {
     /// The next term is 0.03^14/15! = 4e-34 of the first.
-    const LAST: usize = 14;
-    let mut sum = INVERSE_FACTORIALS[LAST];
-    for k in (1..LAST).rev() {
+    const LAST_TERM: usize = 14;
+    let mut sum = INVERSE_FACTORIALS[LAST_TERM];
+    for k in (1..LAST_TERM).rev() {
         sum = INVERSE_FACTORIALS[k] + x * sum;
     }
     // Lagrange's remainder: exp of at most 1/8 times the first term that is left out.
-    let left_out = power(x.size(), LAST + 1) * INVERSE_FACTORIALS[LAST + 1].size();
+    let left_out = power(x.size(), LAST_TERM + 1) * INVERSE_FACTORIALS[LAST_TERM + 1].size();
     let small = x.size() < 0.125;
     (x * sum).widened(if small { left_out * 1.2 } else { f64::NAN })
 }
@@ -139,7 +140,7 @@ mod tests {
 
     /// x, sin x, cos x and exp x, computed with 70 digits (mpmath) and cut to two words; no
     /// exponential where it is above 700.
-    const KNOWN: [[(f64, f64); 4]; 8] = [
+    const KNOWN_VALUES: [[(f64, f64); 4]; 8] = [
         [
             (0.001, 0.0),
             (0.0009999998333333417, 5.670638989736153e-21),
@@ -201,7 +202,7 @@ mod tests {
 
     #[test]
     fn known_values_are_held() {
-        for [(x, _), sin, cos, power] in KNOWN {
+        for [(x, _), sin, cos, power] in KNOWN_VALUES {
             let (s, c) = sin_cos(Ball::exact(x));
             holds(s, sin);
             holds(c, cos);

@@ -16,7 +16,7 @@ pub(crate) struct Piecewise {
 }
 
 /// (n - k)!/n! for n = ORDERS.
-const SHARES: [Ball; ORDERS + 1] = {
+const FACTORIAL_RATIOS: [Ball; ORDERS + 1] = {
     let mut shares = [Ball::ONE; ORDERS + 1];
     let mut k = 1;
     while k <= ORDERS {
@@ -35,7 +35,7 @@ impl Piecewise {
 
     pub(crate) fn reduced(here: &Expansion, length: Ball) -> Self {
         let (terms, remainder) = terms(&here.smooth, here.bounds[0], length);
-        let slope = -(here.quick * here.rate) * length * SHARES[1];
+        let slope = -(here.quick * here.rate) * length * FACTORIAL_RATIOS[1];
         let slope_range = with_zero(slope);
         Self { terms, remainder, reduced: true, range: here.quick_range(), slope_range }
     }
@@ -56,10 +56,10 @@ fn terms(orders: &[Ball; ORDERS], bound: f64, length: Ball) -> ([Ball; ORDERS + 
     let mut terms = [Ball::ZERO; ORDERS + 1];
     let mut power = Ball::ONE;
     for (k, order) in orders.iter().enumerate() {
-        terms[k] = if k == 0 { *order } else { *order * power * SHARES[k] };
+        terms[k] = if k == 0 { *order } else { *order * power * FACTORIAL_RATIOS[k] };
         power = power * length;
     }
-    (terms, (Ball::exact(bound) * power * SHARES[ORDERS]).size())
+    (terms, (Ball::exact(bound) * power * FACTORIAL_RATIOS[ORDERS]).size())
 }
 
 /// The bounds of all coefficients.

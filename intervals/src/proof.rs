@@ -62,13 +62,13 @@ pub enum Verdict {
 
 /// How many times the slack a guard may be off where the solver says that it is on its threshold:
 /// the solver accepts one slack in what it computes, and that errs by less than another.
-pub const GRANTED: f64 = 2.0;
+pub const MAX_SLACKS: f64 = 2.0;
 
 /// The number of pieces after which a phase is left undecided.
-const MOST_PIECES: usize = 4000;
+const MAX_PIECES: usize = 4000;
 
 /// The longest piece, in units of the inverse of the guard's pace.
-const LONGEST: f64 = 4.0;
+const MAX_PIECE_LENGTH: f64 = 4.0;
 
 /// The verdict on a claim.
 #[must_use]
@@ -108,7 +108,7 @@ impl CorridorProof<'_> {
         if self.end.is_exactly_zero() {
             return Ok(());
         }
-        for _ in 0..MOST_PIECES {
+        for _ in 0..MAX_PIECES {
             let here = self.at(from);
             let rest = self.end - Ball::exact(from);
             if let Some(clear) = self.clear_by_bounds(&here, from, rest) {
@@ -134,11 +134,12 @@ impl CorridorProof<'_> {
     /// The guard around a place; soon after the entry its series there knows value and slope
     /// better.
     pub fn at(&self, from: f64) -> Expansion {
-        /// With twelve orders the remainder is 1e-45 of the highest.
-        const SOON: f64 = 1e-3;
+        /// The largest time since the entry, in units of the guard's fastest time, at which its
+        /// series there is taken: with twelve orders the remainder is 1e-45 of the highest.
+        const MAX_SERIES_TIME: f64 = 1e-3;
         let place = Ball::exact(from);
         let mut here = self.guard.at(place);
-        if from * self.guard.pace.max(here.rate.about()) < SOON && from > 0.0 {
+        if from * self.guard.pace.max(here.rate.about()) < MAX_SERIES_TIME && from > 0.0 {
             here.whole[0] = self.origin.value_after(place);
             here.whole[1] = self.origin.slope_after(place);
         }
@@ -195,11 +196,15 @@ impl CorridorProof<'_> {
     /// A piece that begins here, as long as it can be proved to be inside, or the last.
     fn proved(&self, here: &Expansion, rest: Ball, wish: f64, start: Option<[usize; 2]>) -> Piece {
         let quick = here.rate.about() > 0.0;
-        let longest = LONGEST / self.guard.pace;
+        let longest = MAX_PIECE_LENGTH / self.guard.pace;
         let reach = Reach {
             longest,
             // In full the quick exponential must not be quick against the piece.
-            in_full: if quick { longest.min(LONGEST / here.rate.about()) } else { longest },
+            in_full: if quick {
+                longest.min(MAX_PIECE_LENGTH / here.rate.about())
+            } else {
+                longest
+            },
             // At the entry the series with the exponential is known exactly.
             reduced: quick && start.is_none(),
         };
@@ -227,14 +232,14 @@ impl CorridorProof<'_> {
         zeros: [usize; 2],
     ) -> Piece {
         /// Share of the first length at which halving ends.
-        const LEAST: f64 = 1e-9;
+        const MIN_LENGTH_SHARE: f64 = 1e-9;
         let begin = wish.min(if reach.reduced { reach.longest } else { reach.in_full });
         let mut pieces = [
             Some(Piecewise::full(here, Ball::exact(begin))),
             reach.reduced.then(|| Piecewise::reduced(here, Ball::exact(begin))),
         ];
         let mut length = begin;
-        while length > LEAST * begin {
+        while length > MIN_LENGTH_SHARE * begin {
             for piece in pieces.iter_mut().flatten() {
                 let suits = piece.reduced || length <= reach.in_full;
                 if suits && self.inside(piece, zeros) {

@@ -184,13 +184,13 @@ impl Chance {
 
     /// A velocity at which the first phase's length jumps over some value between two that occur.
     fn edge(&mut self, parameters: Parameters, start: &Start) -> Option<f64> {
-        const APART: f64 = 1.3;
+        const MIN_LENGTH_RATIO: f64 = 1.3;
         const HALVINGS: usize = 60;
         let other = start.y + self.sign() * self.log(0.01, 1.0);
         let length = |y: f64| first_length(parameters, &Start { y, ..*start });
         let (mut one, mut two) = (start.y, other);
         let (first, second) = (length(one)?, length(two)?);
-        if !(first > APART * second || second > APART * first) {
+        if !(first > MIN_LENGTH_RATIO * second || second > MIN_LENGTH_RATIO * first) {
             return None;
         }
         let between = (first.min(1e6) * second.min(1e6)).sqrt();

@@ -3,14 +3,14 @@
 use crate::ball::Ball;
 use crate::frame::Frame;
 use crate::guard::Guard;
-use crate::proof::{Claim, GRANTED, Verdict, examine};
+use crate::proof::{Claim, MAX_SLACKS, Verdict, examine};
 use crate::regimes::{Chance, Regime, Run};
 use percuss::insides::Motion;
 use percuss::insides::crossing::{Guarded, slack};
 use percuss::{Exit, Model, Phase, Segment};
 
 /// The number of examples kept of a regime's events that were not proved.
-const MOST_EXAMPLES: usize = 20;
+const MAX_EXAMPLES: usize = 20;
 
 /// The counts of proved, open and contradicted events of a regime.
 #[derive(Clone, Debug, Default)]
@@ -126,7 +126,7 @@ impl Tally {
                 return;
             }
             if let Some(verdict) = self.count(&found, &frame, flagged, chance.unit())
-                && self.examples.len() < MOST_EXAMPLES
+                && self.examples.len() < MAX_EXAMPLES
             {
                 self.examples
                     .push(format!("phase {number} of {run:?}: {verdict:?}, {:?}", found.claim));
@@ -156,7 +156,7 @@ impl Tally {
                 self.undecidable += 1;
                 None
             }
-            Verdict::Earlier { excess, .. } if flagged && excess <= GRANTED => {
+            Verdict::Earlier { excess, .. } if flagged && excess <= MAX_SLACKS => {
                 self.undecidable += 1;
                 None
             }

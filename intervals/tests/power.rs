@@ -8,7 +8,7 @@ use percuss::insides::Motion;
 use percuss::insides::crossing::Guarded;
 use percuss::{Model, Parameters};
 use percuss_intervals::frame::Frame;
-use percuss_intervals::proof::{Claim, GRANTED, Verdict, examine};
+use percuss_intervals::proof::{Claim, MAX_SLACKS, Verdict, examine};
 use percuss_intervals::regimes::{Chance, REGIMES};
 use percuss_intervals::tally::{Found, Tally};
 
@@ -85,7 +85,7 @@ fn a_later_root_is_refuted() {
     every_event(6, |parameters, found| {
         let Some((root, height)) = later_root(found) else { return };
         // An excursion that rounding hides is no fault.
-        if height <= 4.0 * GRANTED * found.claim.slack {
+        if height <= 4.0 * MAX_SLACKS * found.claim.slack {
             return;
         }
         let claim = Claim { duration: TwoWord::new(root), ..found.claim };
@@ -111,7 +111,7 @@ fn a_root_that_is_off_is_refuted() {
                 Verdict::Confirmed { residual } => {
                     // Soon after the entry, or next to a graze, the guard hardly moves in that
                     // time.
-                    assert!(residual <= GRANTED, "{residual}");
+                    assert!(residual <= MAX_SLACKS, "{residual}");
                     passed += 1;
                 }
                 _ => refuted += 1,

@@ -2,7 +2,8 @@
 
 use percuss::{Bits212, DoubleDouble, Ending, Event, Kind, Proved, System, SystemError, gallery};
 
-const ALL: [&str; 3] = [gallery::BOUNCING_BALL, gallery::IMPACT_OSCILLATOR, gallery::THERMOSTAT];
+const GALLERY: [&str; 3] =
+    [gallery::BOUNCING_BALL, gallery::IMPACT_OSCILLATOR, gallery::THERMOSTAT];
 
 fn system(text: &str) -> System {
     System::from_toml(text).unwrap()
@@ -14,7 +15,7 @@ fn names<V>(events: impl Iterator<Item = Event<'static, V>>) -> Vec<(String, Str
 
 #[test]
 fn all_numbers_have_the_same_events() {
-    for text in ALL {
+    for text in GALLERY {
         let system: &'static System = Box::leak(Box::new(system(text)));
         macro_rules! of {
             ($number:ty) => {{
@@ -32,7 +33,7 @@ fn all_numbers_have_the_same_events() {
 
 #[test]
 fn proved_numbers_enclose_those_of_f64() {
-    for text in ALL {
+    for text in GALLERY {
         let system = system(text);
         let (fast, proved) = (system.solver::<f64>().unwrap(), system.solver::<Proved>().unwrap());
         let pairs = fast.run().events(12).unwrap().zip(proved.run().events(12).unwrap());

@@ -127,7 +127,7 @@ fn beside_a_decay() -> impl Strategy<Value = Guard> {
     })
 }
 
-const UNTIL: f64 = 10.0;
+const HORIZON: f64 = 10.0;
 
 proptest! {
     #![proptest_config(ProptestConfig {
@@ -172,10 +172,10 @@ fn above() -> impl Strategy<Value = f64> {
 fn none_before_the_first(guard: &Guard, above: f64) -> Result<(), TestCaseError> {
     let room = 1e-13 * (1.0 + guard.size());
     let level = guard.value(0.0) + above * (1e-3 + guard.size());
-    let (name, time) = first(&guard.system(level), UNTIL);
+    let (name, time) = first(&guard.system(level), HORIZON);
     let near = (1..400).map(|n| time - f64::from(n) * 0.02 / guard.omega);
     let near = near.filter(|it| *it > 0.0);
-    for t in guard.instants(UNTIL).into_iter().filter(|it| *it < time).chain(near) {
+    for t in guard.instants(HORIZON).into_iter().filter(|it| *it < time).chain(near) {
         prop_assert!(guard.value(t) < level + room, "{t} before {time}");
     }
     let steepest = guard.fast * guard.u.abs() * (-guard.fast * time).exp()
@@ -186,19 +186,19 @@ fn none_before_the_first(guard: &Guard, above: f64) -> Result<(), TestCaseError>
 }
 
 fn highest_crest_decides(guard: &Guard) -> Result<(), TestCaseError> {
-    let crests = guard.crests(UNTIL);
+    let crests = guard.crests(HORIZON);
     let highest = |best: (f64, f64), it: &(f64, f64)| if it.1 > best.1 { *it } else { best };
     let (at, value) = crests.iter().fold(crests[crests.len() - 1], highest);
     let margin = 1e-11 * (1e-2 + guard.size());
-    prop_assume!(at > 1e-9 && at < 0.999 * UNTIL);
+    prop_assume!(at > 1e-9 && at < 0.999 * HORIZON);
     prop_assume!(guard.value(0.0) < value - 2.0 * margin);
     // Rounding decides at a crest that is as near to the level as a hundred times what it may
     // do to the guard, and there are several hundred crests.
     let room = 1e-13 * (1.0 + guard.size());
     prop_assume!(crests.iter().all(|it| (it.1 - (value - margin)).abs() > room));
-    let (missed, time) = first(&guard.system(value + margin), UNTIL);
+    let (missed, time) = first(&guard.system(value + margin), HORIZON);
     prop_assert!(missed == "end", "{missed} at {time}, {at}");
-    let (hit, time) = first(&guard.system(value - margin), UNTIL);
+    let (hit, time) = first(&guard.system(value - margin), HORIZON);
     prop_assert!(hit == "reached" && time <= at * (1.0 + 1e-9), "{hit} at {time}, {at}");
     Ok(())
 }

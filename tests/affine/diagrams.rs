@@ -10,8 +10,8 @@ use percuss::{Ending, Parameter, Parameters, Start};
 const OSCILLATOR: &str = include_str!("../../validation/systems/percussive-oscillator.system.toml");
 const RIGID: &str = include_str!("../../validation/systems/rigid-impact-oscillator.system.toml");
 
-/// Errors of f64 over some hundred returns of motions in which none grows.
-const AGREED: f64 = 1e-11;
+/// The largest error of f64 over some hundred returns of motions in which none grows.
+const STATE_TOLERANCE: f64 = 1e-11;
 
 fn plan(section: Section, follow: Follow) -> ReturnDiagram {
     ReturnDiagram { section, longest: None, transient: 40, returns: 6, follow }
@@ -74,7 +74,7 @@ fn the_oscillators_diagram_is_its_own() {
                 for (own, point) in own.points.iter().zip(&step.points) {
                     let apart = own.iter().zip(&point.state).map(|(a, b)| (a - b).abs());
                     let apart = apart.fold(0.0, f64::max);
-                    assert!(apart < AGREED, "{name} {own:?} {point:?}");
+                    assert!(apart < STATE_TOLERANCE, "{name} {own:?} {point:?}");
                 }
             }
         }
@@ -97,7 +97,7 @@ fn carried_motions_go_on() {
         for (n, point) in step.points.iter().enumerate() {
             let known = all[46 * k + 40 + n].as_ref().unwrap();
             let apart = point.state.iter().zip(&known.state).map(|(a, b)| (a - b).abs());
-            assert!(apart.fold(0.0, f64::max) < AGREED, "{k} {n} {point:?} {known:?}");
+            assert!(apart.fold(0.0, f64::max) < STATE_TOLERANCE, "{k} {n} {point:?} {known:?}");
         }
     }
 }

@@ -13,11 +13,11 @@ const CASES: usize = 53;
 const DIGITS: usize = 25;
 
 /// A derivative that is zero is known within this.
-const ZERO: f64 = 1e-20;
+const ZERO_TOLERANCE: f64 = 1e-20;
 
 /// Derivatives of which a run does not look for digits, because they are so small beside others by
 /// the same name: how many there are, and what none of them exceeds.
-const TINY: (usize, f64) = (22, 1e-130);
+const UNPROVED_DERIVATIVES: (usize, f64) = (22, 1e-130);
 
 fn folder(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
@@ -113,13 +113,14 @@ enum Cell {
 
 fn compare(cell: &str, found: &Proved) -> Cell {
     if cell == "0" {
-        let is_zero = found.may_be(0.0) && found.error() <= ZERO;
+        let is_zero = found.may_be(0.0) && found.error() <= ZERO_TOLERANCE;
         return if is_zero { Cell::Right } else { Cell::Wrong };
     }
     let text = found.to_digits(DIGITS);
     if text.starts_with("0e") {
         let below = decimal(&text.replacen('0', "1", 1));
-        let is_tiny = decimal(cell).abs() <= below && decimal(cell).abs() < Bits212::exact(TINY.1);
+        let is_tiny = decimal(cell).abs() <= below
+            && decimal(cell).abs() < Bits212::exact(UNPROVED_DERIVATIVES.1);
         return if is_tiny { Cell::Tiny } else { Cell::Wrong };
     }
     let off = (decimal(&text) - decimal(cell)).abs();
@@ -189,5 +190,5 @@ fn every_digit_of_every_table_is_found() {
         tiny += count;
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert_eq!(tiny, TINY.0);
+    assert_eq!(tiny, UNPROVED_DERIVATIVES.0);
 }

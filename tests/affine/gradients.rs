@@ -8,11 +8,11 @@ use std::sync::Arc;
 
 /// Differences over steps of this share of a parameter, and of twice that: their extrapolation is
 /// off by the fourth power, 1e-41, and by what the fifth derivatives make of it.
-const STEP: i32 = -34;
+const STEP_EXPONENT: i32 = -34;
 
 /// Twenty-five digits and what the differences leave: they agree much better where the motion does
 /// not amplify.
-const DIGITS: f64 = 1e-26;
+const DIFFERENCE_TOLERANCE: f64 = 1e-26;
 
 fn file(text: &str, set: &[(&str, f64)]) -> SystemFile {
     let mut file = SystemFile::read("test.system.toml", text).unwrap();
@@ -42,14 +42,14 @@ fn moved(text: &str, name: &Name, steps: f64) -> (System, f64) {
         Name::Parameter(own) => {
             let value = file(text, &[]).system().unwrap().parameters[own];
             let size = if value == 0.0 { 1.0 } else { value.abs() };
-            let step = size * 2_f64.powi(STEP);
+            let step = size * 2_f64.powi(STEP_EXPONENT);
             // A power of two of the size of the parameter's last bits.
             let step = 2_f64.powi(step.log2().floor() as i32);
             (file(text, &[(own, value + steps * step)]).system().unwrap(), step)
         }
         Name::Start(state) => {
             let mut system = file(text, &[]).system().unwrap();
-            let step = 2_f64.powi(STEP);
+            let step = 2_f64.powi(STEP_EXPONENT);
             let at = system.states.iter().position(|it| it == state).unwrap();
             let start = system.start.as_mut().unwrap();
             start.state[at][2] += Rational::try_from(steps * step).unwrap();
@@ -126,7 +126,10 @@ fn compare(text: &str, names: &[&str], count: usize) {
                 let error = Bits212::of_bound(*error).to_f64();
                 assert!(error <= 1e-30 * size, "{name}, {n}: {value:?} +- {error:e}");
                 let off = rest.to_f64().abs();
-                assert!(off <= DIGITS * size, "{name}, {n}: {value:?} {expected:?} {off:e}");
+                assert!(
+                    off <= DIFFERENCE_TOLERANCE * size,
+                    "{name}, {n}: {value:?} {expected:?} {off:e}"
+                );
             }
         }
     }

@@ -7,7 +7,7 @@ use percuss::affine::{Event, SearchWork, Solver, System};
 use percuss::number::Number;
 
 /// The largest number of pieces in a search of one guard from one event to the next.
-const MOST_PIECES: u64 = 1 << 18;
+const MAX_PIECES: u64 = 1 << 18;
 
 fn in_form(parameters: &str, equations: &str, guard: &str, reset: &str, start: &str) -> System {
     let states: Vec<_> = start.lines().filter_map(|line| line.split_once(" = ")).collect();
@@ -132,7 +132,7 @@ fn a_search_that_has_no_end_is_given_up() {
     );
     let (all, work) = run::<f64>(&sum, 1e9, false);
     assert_eq!(names(&sum, &all), ["undecided"]);
-    assert!((MOST_PIECES / 9..=MOST_PIECES).contains(&work.pieces), "{work:?}");
+    assert!((MAX_PIECES / 9..=MAX_PIECES).contains(&work.pieces), "{work:?}");
     // A horizon that is not too far is reached.
     assert_eq!(names(&sum, &run::<f64>(&sum, 1e4, false).0), ["end"]);
 }

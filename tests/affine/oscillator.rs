@@ -11,12 +11,12 @@ use std::fmt::Write as _;
 const TEXT: &str = include_str!("../../validation/systems/percussive-oscillator.system.toml");
 
 /// Orbits that settle: errors die out, and what is left is rounding.
-const SETTLED: [(f64, f64, f64, f64); 3] =
+const SETTLED_ORBITS: [(f64, f64, f64, f64); 3] =
     [(0.3, 0.1, 0.01, 0.1), (0.8, 0.2, 0.5, 2.3), (0.4, 0.08, 1.0, 1.1)];
 
 #[test]
 fn the_oscillator_as_a_system_has_the_events_of_its_own_solver() {
-    for (a, b, xi, omega) in SETTLED {
+    for (a, b, xi, omega) in SETTLED_ORBITS {
         let mut file = SystemFile::read("percussive-oscillator.system.toml", TEXT).unwrap();
         let mut parameters = "[parameters]\n".to_owned();
         for (name, value) in [("a", a), ("b", b), ("xi", xi), ("frequency", omega)] {

@@ -189,13 +189,13 @@ fn an_impact_without_restitution_rests_at_once() {
 }
 
 /// With u = 1, g = 2 and e = 1/2 the limit is at 2, and all numbers are exact.
-const EXACT: &str = "u = 1, g = 2, e = 0.5, tau = 1";
+const EXACT_PARAMETERS: &str = "u = 1, g = 2, e = 0.5, tau = 1";
 
 /// A horizon between the last row and the limit is reached by impacts that have no rows; so are
 /// samples there.
 #[test]
 fn impacts_without_rows_lead_to_a_horizon_before_the_limit() {
-    let ball = ball(EXACT);
+    let ball = ball(EXACT_PARAMETERS);
     // After the impact at 2 - 2^-k the ball flies for 2^-(k + 1).
     for k in [33, 36, 40] {
         let half_way = 2.0 - 0.75 / 2_f64.powi(k);
@@ -218,7 +218,7 @@ fn impacts_without_rows_lead_to_a_horizon_before_the_limit() {
 /// A limit that leads back into its own mode is told from progress: the run ends.
 #[test]
 fn limits_that_lead_to_themselves_make_no_progress() {
-    let mut ball = ball(EXACT);
+    let mut ball = ball(EXACT_PARAMETERS);
     let limit = ball.modes[0].until[0].accumulates_to.as_mut().unwrap();
     limit.next.iter_mut().for_each(|it| it.mode = 0);
     let solver = ball.solver::<f64>().unwrap();
@@ -232,7 +232,7 @@ fn limits_that_lead_to_themselves_make_no_progress() {
 /// No derivative is taken across a limit, and it says so; those before it are there.
 #[test]
 fn no_derivative_is_taken_across_a_limit() {
-    let ball = ball(EXACT);
+    let ball = ball(EXACT_PARAMETERS);
     let solver = ball.solver::<f64>().unwrap();
     let all: Vec<_> = solver.run().gradients(["g"]).unwrap().until(4.0).unwrap().collect();
     let at = all.iter().position(|it| it.name() == "accumulation").unwrap();

@@ -11,7 +11,7 @@ use percuss::number::Number;
 use std::fmt::Write;
 
 /// The time that runs take at most, and the number of events that are compared.
-const UNTIL: f64 = 20.0;
+const HORIZON: f64 = 20.0;
 const EVENTS: usize = 60;
 
 /// The counts of what a check has compared.
@@ -232,7 +232,7 @@ fn kind<T: Number>(event: &Event<T>) -> (u8, usize, usize) {
     }
 }
 
-const UNDECIDED: (u8, usize, usize) = (3, 0, 5);
+const UNDECIDED_RUNS: (u8, usize, usize) = (3, 0, 5);
 
 /// Checks the system of a seed.
 ///
@@ -252,13 +252,13 @@ fn agreement(system: &System, met: &mut Met) -> Result<(), String> {
     let prepared = (Solver::<f64>::new(system), Solver::<DoubleDouble>::new(system));
     let (Ok(narrow), Ok(wide)) = prepared else { return Err("not taken apart".to_owned()) };
     let start = system.start.as_ref().ok_or("no start")?;
-    let begun = (narrow.run_enclosed(start, UNTIL), narrow.run(start, UNTIL));
+    let begun = (narrow.run_enclosed(start, HORIZON), narrow.run(start, HORIZON));
     let (Ok(mut enclosed), Ok(mut plain)) = begun else { return Err("no run".to_owned()) };
-    let mut wide = wide.run(start, DoubleDouble::exact(UNTIL)).map_err(|_| "no run")?;
+    let mut wide = wide.run(start, DoubleDouble::exact(HORIZON)).map_err(|_| "no run")?;
     for n in 0..EVENTS {
         let (Some(bounded), Some(event)) = (enclosed.next(), plain.next()) else { return Ok(()) };
         let Some(truth) = wide.next() else { return Err(format!("event {n} is not there")) };
-        if kind(&bounded) == UNDECIDED || wide.work().undecidable > 0 {
+        if kind(&bounded) == UNDECIDED_RUNS || wide.work().undecidable > 0 {
             met.undecided += 1;
             return Ok(());
         }
@@ -323,7 +323,7 @@ fn crest(system: &System, met: &mut Met) -> Result<(), String> {
     mode.watch.push(Watch { name, guard: slope, direction: Direction::Falling });
     let solver = Solver::<DoubleDouble>::new(&looked_at).map_err(|error| error.to_string())?;
     let start = looked_at.start.as_ref().ok_or("no start")?;
-    let mut run = solver.run(start, DoubleDouble::exact(UNTIL)).map_err(|_| "no run")?;
+    let mut run = solver.run(start, DoubleDouble::exact(HORIZON)).map_err(|_| "no run")?;
     // The level is in the last entry of the row, whose factor is 1.
     let states = looked_at.states.len();
     let value = |event: &Event<DoubleDouble>| {
@@ -359,7 +359,7 @@ fn crest(system: &System, met: &mut Met) -> Result<(), String> {
         mode.until = vec![percuss::affine::Until { guard, ..until.clone() }];
         mode.watch.clear();
         let solver = Solver::<f64>::new(&planted).map_err(|error| error.to_string())?;
-        let mut run = solver.run(start, UNTIL).map_err(|_| "no run")?;
+        let mut run = solver.run(start, HORIZON).map_err(|_| "no run")?;
         let first = run.next().ok_or("no event")?;
         // Rounding moves guards of large factors by more than the margin, which the run counts.
         if run.work().undecidable > 0 {

@@ -10,7 +10,7 @@ const RELAY: &str = include_str!("../../validation/systems/relay-feedback.system
 const OSCILLATOR: &str = include_str!("../../validation/systems/percussive-oscillator.system.toml");
 
 /// The rounding, beside 1, that runs of a few events and Newton's method leave.
-const ROUNDINGS: f64 = 1e-12;
+const ROUNDING_TOLERANCE: f64 = 1e-12;
 
 /// A system, and what is asked of its return map from the place of the return after `skipped`.
 fn at_return<R>(
@@ -83,15 +83,15 @@ fn the_relays_cycle_is_that_of_its_closed_form() {
     let half = relay_half_period(0.01);
     let cycle = orbit(RELAY, &Section::event("switch-down"), 1, 2);
     assert_eq!(cycle.period(), 1);
-    assert!((cycle.time - 2.0 * half).abs() < ROUNDINGS, "{} {half}", cycle.time);
+    assert!((cycle.time - 2.0 * half).abs() < ROUNDING_TOLERANCE, "{} {half}", cycle.time);
     for (found, known) in cycle.points[0].state.iter().zip(relay_state(half)) {
-        assert!((found - known).abs() < ROUNDINGS, "{:?} {half}", cycle.points);
+        assert!((found - known).abs() < ROUNDING_TOLERANCE, "{:?} {half}", cycle.points);
     }
     let [first, second, last] = cycle.multipliers[..] else { panic!("{:?}", cycle.multipliers) };
     assert_eq!((first[1], second[1], last), (0.0, 0.0, [0.0; 2]));
     let [sum, squares] = relay_sums(half);
-    assert!((first[0] + second[0] - sum).abs() < ROUNDINGS);
-    assert!((first[0] * first[0] + second[0] * second[0] - squares).abs() < ROUNDINGS);
+    assert!((first[0] + second[0] - sum).abs() < ROUNDING_TOLERANCE);
+    assert!((first[0] * first[0] + second[0] * second[0] - squares).abs() < ROUNDING_TOLERANCE);
 }
 
 /// The exponents of a motion on a stable cycle are the logarithms of its multipliers, and one along
@@ -105,7 +105,7 @@ fn exponents_of_cycles_are_logarithms_of_multipliers() {
     for (found, known) in found.per_return.iter().zip(known) {
         assert!((found - known).abs() < 1e-10, "{found} {known}");
     }
-    assert!((found.mean_return_time - cycle.time).abs() < ROUNDINGS);
+    assert!((found.mean_return_time - cycle.time).abs() < ROUNDING_TOLERANCE);
 }
 
 /// The volume of small changes shrinks by exp(-damping t), and by r^2 in an impact with restitution
@@ -165,7 +165,7 @@ fn the_oscillators_orbits_are_its_own() {
         assert_eq!(orbit.period() as u32, known.period());
         for (found, own) in orbit.points.iter().zip(&known.points) {
             let apart = found.state.iter().zip(own).map(|(a, b)| (a - b).abs());
-            assert!(apart.fold(0.0, f64::max) < ROUNDINGS, "{orbit:?} {known:?}");
+            assert!(apart.fold(0.0, f64::max) < ROUNDING_TOLERANCE, "{orbit:?} {known:?}");
         }
         for (found, own) in orbit.multipliers.iter().zip(known.multipliers) {
             // Multipliers are products of six returns that grow and decay.
@@ -202,7 +202,7 @@ fn a_scan_finds_the_oscillators_orbits() {
             assert!(apart < 1e-9 * (1.0 + own[0].hypot(own[1])), "{found:?} {own:?}");
         }
         let least = own.points.iter().map(|it| it[0]).fold(f64::INFINITY, f64::min);
-        assert!((found.points[0].state[0] - least).abs() < ROUNDINGS, "{found:?} {own:?}");
+        assert!((found.points[0].state[0] - least).abs() < ROUNDING_TOLERANCE, "{found:?} {own:?}");
         assert!((found.drift_per_return[0] - own.drift_per_period).abs() < 1e-9, "{found:?}");
     }
 }

@@ -9,7 +9,7 @@ use percuss::system::Section;
 const STEP: f64 = 1e-24;
 
 /// The error of derivatives beside the largest: some hundred roundings of f64, grown by the motion.
-const AGREED: f64 = 1e-10;
+const DERIVATIVE_TOLERANCE: f64 = 1e-10;
 
 fn numbers<T: Number>(values: impl IntoIterator<Item = T>) -> Vec<f64> {
     values.into_iter().map(Number::to_f64).collect()
@@ -81,7 +81,7 @@ fn check(text: &str, section: &Section, skips: &[usize]) {
             let size = second.at_return.iter().flatten().fold(1.0, |a: f64, b| a.max(b.abs()));
             for (found, expected) in predicted.iter().zip(&differences) {
                 assert!(
-                    (found - expected).abs() <= AGREED * size,
+                    (found - expected).abs() <= DERIVATIVE_TOLERANCE * size,
                     "{} {section}, {skipped}: {predicted:?} {differences:?}",
                     system.name
                 );

@@ -6,17 +6,17 @@ use percuss::affine::{Ending, Event, Place, Solver, System, Time, What};
 use percuss::gallery;
 
 /// The time that runs take.
-const UNTIL: f64 = 16.0;
+const HORIZON: f64 = 16.0;
 
 /// The most events of a run.
-const MOST: usize = 400;
+const MAX_EVENTS: usize = 400;
 
 /// A reach beyond all segments: each crossing is searched as in a run that does not stop.
-const FAR: f64 = 1e3;
+const FAR_REACH: f64 = 1e3;
 
 /// The rounding of a crossing that was searched from another time on, as it grows until the end of
 /// a run: e^16 for the fastest growth of the random systems, a unit per unit of time.
-const GROWN: f64 = 1e-8;
+const GROWN_ROUNDING: f64 = 1e-8;
 
 macro_rules! system {
     ($name:literal) => {
@@ -40,7 +40,7 @@ const SYSTEMS: [&str; 9] = [
 /// number of choices that rounding left open.
 fn whole(solver: &Solver<f64>, place: &Place<f64>, until: Time<f64>) -> (Vec<Event<f64>>, u64) {
     let mut run = solver.run_at(place, until);
-    let events = run.by_ref().take(MOST).collect();
+    let events = run.by_ref().take(MAX_EVENTS).collect();
     (events, run.work().undecidable)
 }
 
@@ -56,7 +56,7 @@ fn stopped(
     let mut events = Vec::new();
     for stop in stops {
         run.go_on_to(*stop);
-        events.extend(run.by_ref().take(MOST));
+        events.extend(run.by_ref().take(MAX_EVENTS));
     }
     (events, run.work().undecidable)
 }
@@ -73,7 +73,7 @@ fn solver_and_place(system: &System) -> (Solver<f64>, Place<f64>) {
 
 /// Whether times or states are the same but for rounding.
 fn is_near(found: f64, expected: f64) -> bool {
-    (found - expected).abs() < GROWN * (1.0 + expected.abs())
+    (found - expected).abs() < GROWN_ROUNDING * (1.0 + expected.abs())
 }
 
 /// Holds a run that stops at these times against runs that end there, unless rounding leaves
@@ -85,7 +85,7 @@ fn check(solver: &Solver<f64>, place: &Place<f64>, stops: &[Time<f64>]) -> usize
         return 0;
     }
     // A search that ends between two events goes on from there.
-    for reach in [FAR, 0.3 * solver.system().time_scale] {
+    for reach in [FAR_REACH, 0.3 * solver.system().time_scale] {
         let (found, open) = stopped(solver, place, stops, reach);
         assert_eq!(open, 0, "{name}");
         let between: Vec<_> = found.iter().filter(|it| !is_stop(it)).collect();
@@ -98,7 +98,7 @@ fn check(solver: &Solver<f64>, place: &Place<f64>, stops: &[Time<f64>]) -> usize
         // At an event rounding decides which side of it a stop is on.
         let is_clear = |it: &&Event<f64>| {
             let apart = |other: &Event<f64>| (other.time.value() - it.time.value()).abs();
-            is_stop(it) && between.iter().all(|other| apart(other) > GROWN)
+            is_stop(it) && between.iter().all(|other| apart(other) > GROWN_ROUNDING)
         };
         for stop in found.iter().filter(is_clear) {
             let (there, _) = whole(solver, place, stop.time);
@@ -122,7 +122,7 @@ fn a_run_that_stops_has_the_events_of_one_that_does_not() {
         let system = System::parse("test.system.toml", text).unwrap();
         let (solver, place) = solver_and_place(&system);
         for step in [0.03125, 0.7, 3.0] {
-            let (count, step) = ((UNTIL / step) as u32, step * system.time_scale);
+            let (count, step) = ((HORIZON / step) as u32, step * system.time_scale);
             let stops = at((1..=count).map(|n| place.time.value() + step * f64::from(n)));
             events += check(&solver, &place, &stops);
         }
@@ -136,9 +136,9 @@ fn a_run_that_stops_at_its_events_has_each_once() {
     for text in SYSTEMS {
         let system = System::parse("test.system.toml", text).unwrap();
         let (solver, place) = solver_and_place(&system);
-        let (events, _) = whole(&solver, &place, place.time.after(UNTIL * system.time_scale));
+        let (events, _) = whole(&solver, &place, place.time.after(HORIZON * system.time_scale));
         let mut stops: Vec<_> = events.iter().map(|it| it.time).collect();
-        stops.push(place.time.after((UNTIL + 1.0) * system.time_scale));
+        stops.push(place.time.after((HORIZON + 1.0) * system.time_scale));
         stops.dedup_by(|a, b| a.value() <= b.value());
         stopped_at += check(&solver, &place, &stops);
     }

@@ -14,11 +14,11 @@ const EVENTS: usize = 60;
 
 /// The horizon: at later times many systems have come to rest, where rounding hides the signs of
 /// guards.
-const UNTIL: f64 = 5.0;
+const HORIZON: f64 = 5.0;
 
 /// The largest distance of two crossings that are the same: far above what 106 bits leave after so
 /// many events, and far below the distance of two that are not.
-const ROOM: f64 = 1e-9;
+const CROSSING_TOLERANCE: f64 = 1e-9;
 
 #[test]
 fn guards_are_crossed_together_as_alone() {
@@ -40,7 +40,7 @@ fn compared(seed: u64) -> usize {
         let Some(alone) = events(&alone) else { continue };
         // The shorter run of the two ends first.
         let last = |all: &[(What<DoubleDouble>, f64)]| all.last().map_or(0.0, |it| it.1);
-        let until = last(&together).min(last(&alone)) - ROOM;
+        let until = last(&together).min(last(&alone)) - CROSSING_TOLERANCE;
         let own = |all: &[(What<DoubleDouble>, f64)], index: usize| -> Vec<(usize, usize, f64)> {
             let before = all.iter().filter(|it| it.1 < until);
             let kept = before.filter_map(|(what, time)| match *what {
@@ -58,7 +58,9 @@ fn compared(seed: u64) -> usize {
         a.sort_by(order);
         b.sort_by(order);
         let same = a.len() == b.len()
-            && a.iter().zip(&b).all(|(x, y)| (x.0, x.1) == (y.0, y.1) && (x.2 - y.2).abs() < ROOM);
+            && a.iter()
+                .zip(&b)
+                .all(|(x, y)| (x.0, x.1) == (y.0, y.1) && (x.2 - y.2).abs() < CROSSING_TOLERANCE);
         assert!(same, "seed {seed}, watch {watch}: {a:?} together, {b:?} alone");
         compared += a.len();
     }
@@ -89,7 +91,7 @@ fn most_watched(system: &System) -> usize {
 fn events(system: &System) -> Option<Vec<(What<DoubleDouble>, f64)>> {
     let solver = Solver::<DoubleDouble>::new(system).unwrap();
     let start = system.start.as_ref().unwrap();
-    let mut run = solver.run(start, DoubleDouble::exact(UNTIL)).unwrap();
+    let mut run = solver.run(start, DoubleDouble::exact(HORIZON)).unwrap();
     let all: Vec<_> =
         run.by_ref().take(EVENTS).map(|it| (it.what, it.time.value().to_f64())).collect();
     (run.work().undecidable == 0).then_some(all)

@@ -11,7 +11,7 @@ use percuss::number::Number;
 use proptest::prelude::*;
 use std::fmt::Write;
 
-const UNTIL: f64 = 12.0;
+const HORIZON: f64 = 12.0;
 
 /// A motion of the states "a", "b", ... by its equations, its parameters and its start.
 fn motion(equations: &[&str], parameters: &[(&str, f64)], start: &[f64]) -> System {
@@ -62,7 +62,7 @@ fn crest(system: &System, which: usize) -> Option<(System, [f64; 2])> {
     let (name, direction) = ("crest".to_owned(), Direction::Both);
     mode.watch = vec![Watch { name, guard, direction }];
     let solver = Solver::<DoubleDouble>::new(&system).unwrap();
-    let mut run = solver.run(system.start.as_ref()?, DoubleDouble::exact(UNTIL)).ok()?;
+    let mut run = solver.run(system.start.as_ref()?, DoubleDouble::exact(HORIZON)).ok()?;
     let crests: Vec<_> = run.by_ref().filter(|it| matches!(it.what, What::Watch(..))).collect();
     let crest = crests.get(which % crests.len().max(1))?;
     let (high, low) = crest.state[0].words();
@@ -87,10 +87,10 @@ fn decided(system: &System, which: usize, shift: f64) -> Option<bool> {
     *guard.last_mut()? = -(word(high) + word(low) + word(shift * size * f64::EPSILON));
     system.modes[0].watch[0].guard = guard;
     let wide = Solver::<DoubleDouble>::new(&system).unwrap();
-    let truth = wide.run_enclosed(&start, DoubleDouble::exact(UNTIL)).ok()?.collect::<Vec<_>>();
+    let truth = wide.run_enclosed(&start, DoubleDouble::exact(HORIZON)).ok()?.collect::<Vec<_>>();
     let truth = crossings(&truth)?;
     let narrow = Solver::<f64>::new(&system).unwrap();
-    let mut run = narrow.run(&start, UNTIL).ok()?;
+    let mut run = narrow.run(&start, HORIZON).ok()?;
     let own: Vec<_> = run.by_ref().collect();
     let (own, counted) = (crossings(&own), run.work().undecidable > 0);
     assert!(counted || own.as_ref() == Some(&truth), "{own:?} instead of {truth:?}");

@@ -17,10 +17,10 @@ pub struct Regime {
     draw: fn(&mut Draw) -> (f64, f64),
 }
 
-const OMEGA: (f64, f64) = (0.01, 50.0);
+const OMEGA_RANGE: (f64, f64) = (0.01, 50.0);
 
 fn any_omega(draw: &mut Draw) -> f64 {
-    draw.decades(OMEGA.0, OMEGA.1)
+    draw.decades(OMEGA_RANGE.0, OMEGA_RANGE.1)
 }
 
 /// Regimes of xi and omega.
@@ -108,7 +108,7 @@ impl<T: Number> Form<T> {
 }
 
 /// The shortest phase looked at.
-const SHORTEST: f64 = 1e-12;
+const MIN_PHASE_TIME: f64 = 1e-12;
 
 impl Regime {
     /// Parameters of this regime, one phase of the kind asked for, and a time inside it.
@@ -129,9 +129,9 @@ impl Regime {
         };
         let period = std::f64::consts::TAU / omega;
         let elapsed = if draw.once_in(2) {
-            draw.decades(SHORTEST, period)
+            draw.decades(MIN_PHASE_TIME, period)
         } else {
-            draw.between(SHORTEST, period)
+            draw.between(MIN_PHASE_TIME, period)
         };
         Pair { rounded, exact, elapsed }
     }
@@ -153,7 +153,7 @@ impl Pair {
         };
         let place = |k: u32| self.elapsed * f64::from(k) / f64::from(PLACES);
         let last = (1..=PLACES).map(place).take_while(|d| inside(*d)).last();
-        self.elapsed = last.unwrap_or(SHORTEST);
+        self.elapsed = last.unwrap_or(MIN_PHASE_TIME);
         self
     }
 }

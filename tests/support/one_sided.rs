@@ -127,7 +127,7 @@ impl<P, B> OneSidedSearch<'_, P, B> {
         B: Fn(&Point<T>) -> f64,
     {
         /// Steps over a place where rounding hides the guard's sign.
-        const BLIND: usize = 4;
+        const MAX_BLIND_STEPS: usize = 4;
         let head_start = if self.head_start > 0.0 { self.head_start } else { 0.0 };
         let mut elapsed = T::exact(head_start);
         let (mut blind, mut last_step) = (0, 0.0);
@@ -150,7 +150,7 @@ impl<P, B> OneSidedSearch<'_, P, B> {
                 return OneSidedEnd::Undecided;
             }
             // Written so that a NaN decides nothing.
-            if !(step > 0.0 && blind <= BLIND) {
+            if !(step > 0.0 && blind <= MAX_BLIND_STEPS) {
                 return OneSidedEnd::Undecided;
             }
             last_step = step;

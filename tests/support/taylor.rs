@@ -12,7 +12,7 @@ use percuss::{Phase, State};
 const TERMS: usize = 24;
 
 /// The largest step in units of the fastest time for which the above holds.
-pub const STEP: f64 = 0.25;
+pub const MAX_STEP: f64 = 0.25;
 
 type Real = DoubleDouble;
 
