@@ -1,6 +1,6 @@
 //! The root of a guard that is inside its corridor at one time and outside at another.
 
-use crate::crossing::candidate::{cubic_step, evaluate_again, leaves, polished};
+use crate::crossing::candidate::{cubic_step, evaluate_again, leaves, polish};
 use crate::crossing::{Counters, Guarded, Root, Side};
 use crate::flow::Point;
 
@@ -26,7 +26,7 @@ pub fn bracketed<G: Guarded>(
             root >= inside && root <= outside && cubic.rises == rises && leaves(&point, rises);
         if within
             && cubic.is_short(&point, left.elapsed, reach)
-            && let Some(root) = polished(phase, &point, &cubic)
+            && let Some(root) = polish(phase, &point, &cubic)
         {
             return root;
         }

@@ -119,11 +119,7 @@ impl CubicStep {
 /// The root that the guard's series has next to a point's cubic step; none where that is no
 /// crossing outwards.
 #[inline(always)]
-pub(super) fn polished<G: Guarded>(
-    phase: &G,
-    point: &Point<f64>,
-    cubic: &CubicStep,
-) -> Option<Root> {
+pub(super) fn polish<G: Guarded>(phase: &G, point: &Point<f64>, cubic: &CubicStep) -> Option<Root> {
     let [few_terms, _] = phase.reaches();
     if cubic.step.abs() <= few_terms {
         polished_by(phase, point, cubic, &phase.series::<SHORT_TERMS>(point))
@@ -221,7 +217,7 @@ pub fn follow<G: Guarded>(
             return Err(point);
         }
         if cubic.is_short(&point, left, reach) {
-            return polished(phase, &point, &cubic).ok_or(point);
+            return polish(phase, &point, &cubic).ok_or(point);
         }
         last_step = step.abs();
         point = evaluate_again(phase, next, counters);

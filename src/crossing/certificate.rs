@@ -136,9 +136,9 @@ pub fn interpolant<T: Real>(left: [T; 4], right: [T; 4]) -> Coefficients<T> {
     // Degree seven, raised to eight.
     let pairs = [
         [a, h],
-        [mixed(a, b, 0.875), mixed(h, g, 0.875)],
-        [mixed(b, c, 0.75), mixed(g, f, 0.75)],
-        [mixed(c, d, 0.625), mixed(f, e, 0.625)],
+        [mix(a, b, 0.875), mix(h, g, 0.875)],
+        [mix(b, c, 0.75), mix(g, f, 0.75)],
+        [mix(c, d, 0.625), mix(f, e, 0.625)],
     ];
     (pairs, d.same(0.5) * (d + e))
 }
@@ -156,7 +156,7 @@ fn next_to_an_end<T: Real>([value, first, second, third]: [T; 4]) -> [T; 4] {
 
 /// A share of the way from one number to another.
 #[inline(always)]
-fn mixed<T: Real>(from: T, to: T, share: f64) -> T {
+fn mix<T: Real>(from: T, to: T, share: f64) -> T {
     from.same(1.0 - share).times_plus(from, from.same(share) * to)
 }
 

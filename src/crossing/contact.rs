@@ -108,7 +108,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// piece with a wide room is divided first, unless the guard is within rounding of its
     /// threshold at both ends, where shorter pieces touch as well.
     #[inline(always)]
-    fn near(&self, verdict: Proof, room: f64, ends: [&Point<f64>; 2]) -> Proof {
+    fn trusted_verdict(&self, verdict: Proof, room: f64, ends: [&Point<f64>; 2]) -> Proof {
         if verdict != Proof::Touches || room == 0.0 {
             return verdict;
         }
@@ -202,7 +202,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
 
     #[inline(always)]
     fn hint(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint {
-        self.ahead(steps, left, limit)
+        self.hint_ahead(steps, left, limit)
     }
 
     fn touches_for_ever(&self) -> bool {
@@ -224,7 +224,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         let free = self.free_eighth(left, &split);
         let eighth = self.eighth(free);
         let whole = Piece::between(left, right, (-eighth, eighth));
-        let verdict = self.near(whole.verdict(&corridor, ends, slack), room, [left, right]);
+        let verdict =
+            self.trusted_verdict(whole.verdict(&corridor, ends, slack), room, [left, right]);
         if verdict != Proof::Open {
             return verdict;
         }
@@ -348,7 +349,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             eighth: (-free, free),
         };
         let corridor = self.corridor().narrowed(split.amplitude);
-        self.near(
+        self.trusted_verdict(
             unforced.verdict(&corridor, ThresholdEnds::FREE, slack + room),
             room,
             [left, right],

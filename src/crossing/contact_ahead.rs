@@ -14,8 +14,8 @@ use std::borrow::Borrow;
 impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// A guess, or a proof, about what comes after `left`.
     #[inline(always)]
-    pub(super) fn ahead(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint {
-        if let Some(time) = self.soon(left) {
+    pub(super) fn hint_ahead(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint {
+        if let Some(time) = self.early_exit(left) {
             return SearchHint::Root(time);
         }
         let split = self.split(left);
@@ -26,7 +26,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if self.rests(&split) || self.rests_on_one_side(left, &split) {
             return SearchHint::ClearFrom(left.elapsed);
         }
-        match self.calm(left, &split) {
+        match self.calm_time(left, &split) {
             calm if calm > 8.0 => SearchHint::ClearUntil(left.elapsed + calm),
             _ => onward,
         }
@@ -92,7 +92,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// carries over many oscillations where the forcing is weak, resonant or not. And the steady
     /// part moves no faster than its amplitude times omega, around which the free part keeps
     /// within its own energy norm: that carries where the forcing is slow.
-    fn calm(&self, left: &Point<f64>, split: &Split) -> f64 {
+    fn calm_time(&self, left: &Point<f64>, split: &Split) -> f64 {
         const FORCE_TOLERANCE: f64 = 1e-12;
         let Constants { a, b, two_xi, omega, .. } = *self.constants.borrow();
         let f = left.guard.orders[0] + self.reference;
@@ -106,7 +106,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
 
     /// The first place where a cubic from `left` leaves the corridor, if that is soon.
     #[inline(always)]
-    fn soon(&self, left: &Point<f64>) -> Option<f64> {
+    fn early_exit(&self, left: &Point<f64>) -> Option<f64> {
         const CUBIC_REACH: f64 = 0.4;
         let [f, f1, f2, f3] = left.guard.orders;
         let horizon = CUBIC_REACH / self.fastest_rate();

@@ -142,7 +142,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         let place = match first {
             true if self.separates() => self.clear_of_the_surface(&envelope, &steps.turning),
             true => envelope.start(),
-            false => envelope.near(left.elapsed),
+            false => envelope.place_at(left.elapsed),
         };
         let inside = !first || self.surface.is_some();
         envelope.hint(steps, left.elapsed, (place, inside), limit)
@@ -170,7 +170,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
             }
         }
         let end = |at: &Point<f64>| PieceEnd { orders: at.guard.orders, parts: self.parts(at) };
-        PiecewiseCertificate::new(&self.shape(), steps).decided(end(left), end(right), ends, slack)
+        PiecewiseCertificate::new(&self.shape(), steps).proof(end(left), end(right), ends, slack)
     }
 
     fn underflow(&self) -> f64 {

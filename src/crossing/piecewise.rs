@@ -93,7 +93,7 @@ impl FreeParts {
     }
 
     /// Value and slope of the parabola and a line that stands for the exponential.
-    fn slow(&self, shape: &FreeShape, line: &Chord) -> (f64, f64) {
+    fn slow_part(&self, shape: &FreeShape, line: &Chord) -> (f64, f64) {
         let value = self.value + self.bow * shape.per_omega2;
         let slope = self.slope + self.quarter * (shape.omega * shape.per_omega2);
         (value + line.at(self.elapsed), slope + line.slope)
@@ -157,13 +157,7 @@ impl<'a> PiecewiseCertificate<'a> {
     /// What can be said about the excess between the two ends, which round it within `slack`. The
     /// parts may be far larger than their sum: a touch that only their rounding hides is left to
     /// shorter pieces, which are certified by evaluations alone.
-    pub fn decided(
-        self,
-        left: PieceEnd,
-        right: PieceEnd,
-        ends: ThresholdEnds,
-        slack: f64,
-    ) -> Proof {
+    pub fn proof(self, left: PieceEnd, right: PieceEnd, ends: ThresholdEnds, slack: f64) -> Proof {
         const MAX_TOUCH_SLACKS: f64 = 16.0;
         match self.verdict(left, right, ends) {
             (Proof::Touches, room) if room > MAX_TOUCH_SLACKS * slack => Proof::Open,
@@ -197,7 +191,7 @@ impl<'a> PiecewiseCertificate<'a> {
         // From here on the line stands for it.
         let (mut settled, mut right) = (settled, right);
         (settled.lasting, right.parts.lasting) = (0.0, 0.0);
-        let mut orders = self.above(&right.parts, &line);
+        let mut orders = self.orders_with_line(&right.parts, &line);
         if ends.right {
             orders[0] = right.orders[0];
         }
@@ -267,8 +261,8 @@ impl<'a> PiecewiseCertificate<'a> {
         let FreeShape { curvature, grain, strength, per_omega2, rate, .. } = *self.shape;
         let line = self.line.unwrap_or_else(|| Chord::above(near, far, rate));
         let amplitude = strength * per_omega2;
-        let (here, rising) = near.slow(self.shape, &line);
-        let (there, falling) = far.slow(self.shape, &line);
+        let (here, rising) = near.slow_part(self.shape, &line);
+        let (there, falling) = far.slow_part(self.shape, &line);
         let mut most = here.max(there);
         if curvature < 0.0 && rising > 0.0 && falling < 0.0 {
             most = most.max(here - 0.5 * rising * rising / curvature);
@@ -299,10 +293,10 @@ impl<'a> PiecewiseCertificate<'a> {
 
     fn end(&self, parts: FreeParts) -> PieceEnd {
         let orders = match &self.line {
-            Some(line) => self.above(&parts, line),
+            Some(line) => self.orders_with_line(&parts, line),
             None => {
                 let rate = self.shape.rate;
-                let [value, slope, bend, third] = self.bare(&parts);
+                let [value, slope, bend, third] = self.orders_without_exponential(&parts);
                 let fall = rate * parts.lasting;
                 let turn = rate * fall;
                 [value + parts.lasting, slope - fall, bend + turn, third - rate * turn]
@@ -312,13 +306,13 @@ impl<'a> PiecewiseCertificate<'a> {
     }
 
     /// The orders with a line in place of the exponential.
-    fn above(&self, parts: &FreeParts, line: &Chord) -> [f64; 4] {
-        let [value, slope, bend, third] = self.bare(parts);
+    fn orders_with_line(&self, parts: &FreeParts, line: &Chord) -> [f64; 4] {
+        let [value, slope, bend, third] = self.orders_without_exponential(parts);
         [value + line.at(parts.elapsed), slope + line.slope, bend, third]
     }
 
     /// The orders without the exponential.
-    fn bare(&self, parts: &FreeParts) -> [f64; 4] {
+    fn orders_without_exponential(&self, parts: &FreeParts) -> [f64; 4] {
         let FreeShape { omega, curvature, .. } = *self.shape;
         [parts.value, parts.slope, curvature + parts.bow, omega * parts.quarter]
     }

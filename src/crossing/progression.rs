@@ -84,7 +84,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         }
         let envelope = self.slow_envelope();
         let first = left.elapsed == 0.0;
-        let place = if first { envelope.start() } else { envelope.near(left.elapsed) };
+        let place = if first { envelope.start() } else { envelope.place_at(left.elapsed) };
         envelope.hint(steps, left.elapsed, (place, true), limit)
     }
 
@@ -112,7 +112,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
             orders: at.guard.orders.map(|order| -order),
             parts: self.parts(at),
         };
-        PiecewiseCertificate::new(&self.shape(), steps).decided(end(left), end(right), ends, slack)
+        PiecewiseCertificate::new(&self.shape(), steps).proof(end(left), end(right), ends, slack)
     }
 
     fn underflow(&self) -> f64 {

@@ -121,7 +121,7 @@ impl<'a, G: Guarded> Search<'a, G> {
             let reached = match self.proposal(counters) {
                 Proposal::Over(crossing) => return crossing,
                 Proposal::Clear(point) => point,
-                Proposal::Target(target) => match self.settled(target, counters) {
+                Proposal::Target(target) => match self.certify_towards(target, counters) {
                     ControlFlow::Continue(point) => point,
                     ControlFlow::Break(crossing) => return crossing,
                 },
@@ -135,7 +135,7 @@ impl<'a, G: Guarded> Search<'a, G> {
     /// Turns the current hint into the next step.
     fn proposal(&mut self, counters: &mut Counters) -> Proposal {
         let (phase, horizon) = (self.phase, self.horizon);
-        match onwards(self.hint, self.left.elapsed, &mut self.least_step) {
+        match advancing_hint(self.hint, self.left.elapsed, &mut self.least_step) {
             SearchHint::ClearFrom(time) if time <= self.left.elapsed => {
                 counters.undecidable += u64::from(phase.touches_for_ever());
                 Proposal::Over(Crossing::Never)
@@ -149,7 +149,7 @@ impl<'a, G: Guarded> Search<'a, G> {
                 }
             }
             SearchHint::Root(time) if time < horizon => {
-                Proposal::Target(self.followed(time, counters))
+                Proposal::Target(self.follow_guess(time, counters))
             }
             SearchHint::Root(time) | SearchHint::Onward(time) | SearchHint::ClearFrom(time) => {
                 let time = time.min(horizon);
@@ -163,7 +163,7 @@ impl<'a, G: Guarded> Search<'a, G> {
     }
 
     /// The root that a guess leads to, or a point further on.
-    fn followed(&mut self, time: f64, counters: &mut Counters) -> Target {
+    fn follow_guess(&mut self, time: f64, counters: &mut Counters) -> Target {
         let (phase, horizon, left) = (self.phase, self.horizon, self.left.elapsed);
         let followed = self.followed.take();
         match followed.unwrap_or_else(|| follow(phase, left, time, horizon, counters)) {
@@ -180,7 +180,7 @@ impl<'a, G: Guarded> Search<'a, G> {
 
     /// The point up to which everything is certified, on the way to a target, where the search
     /// continues; or what it ends with.
-    fn settled(
+    fn certify_towards(
         &self,
         target: Target,
         counters: &mut Counters,
@@ -208,7 +208,7 @@ const MIN_ADVANCE: f64 = 1e-3;
 
 /// A hint that makes progress. A guess that falls on `left` is no guess; that, or a hint to go
 /// on by less than the least step, is replaced by that step, which doubles each time.
-fn onwards(hint: SearchHint, left: f64, least_step: &mut f64) -> SearchHint {
+fn advancing_hint(hint: SearchHint, left: f64, least_step: &mut f64) -> SearchHint {
     let resolution = 8.0 * f64::EPSILON * left;
     let nearest = match hint {
         SearchHint::Onward(_) => left + least_step.max(MIN_ADVANCE * left),
@@ -264,7 +264,7 @@ fn divide<G: Guarded>(
         let right = target.point();
         ends.right = target.is_root();
         let mut verdict = phase.certify(steps, &left, right, ends);
-        if verdict == Proof::Touches && uneven(&left, right) {
+        if verdict == Proof::Touches && is_uneven(&left, right) {
             verdict = Proof::Open;
         }
         // Below the smallest normal number halving no longer divides.
@@ -294,7 +294,7 @@ fn divide<G: Guarded>(
 
 /// Whether most of a piece's rounding room comes from one of its ends, from what dies out in it or
 /// grows: then a touch may be decided on the part next to the other.
-fn uneven(left: &Point<f64>, right: &Point<f64>) -> bool {
+fn is_uneven(left: &Point<f64>, right: &Point<f64>) -> bool {
     const UNEVEN_RATIO: f64 = 16.0;
     let [left, right] = [left, right].map(|end| end.guard.largest_term);
     left > UNEVEN_RATIO * right || right > UNEVEN_RATIO * left

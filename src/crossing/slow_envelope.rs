@@ -191,7 +191,7 @@ impl SlowEnvelope {
                     return None;
                 }
                 if opens > here.elapsed + look.length {
-                    here = self.near(opens);
+                    here = self.place_at(opens);
                 }
             }
             let next = here.after(look);
@@ -235,7 +235,7 @@ impl SlowEnvelope {
     }
 
     /// Harmonic and exponential to about 1e-7 and a per cent, without a call of a library function.
-    pub fn near(&self, elapsed: f64) -> EnvelopePlace {
+    pub fn place_at(&self, elapsed: f64) -> EnvelopePlace {
         let (sin, cos) = rough_sin_cos(self.omega * elapsed);
         let turned = (self.sin * cos + self.cos * sin, self.cos * cos - self.sin * sin);
         self.place(elapsed, turned)

@@ -235,7 +235,7 @@ mod tests {
 
     /// How often the batches of 1000 runs with a step of this many scatters at this share of the
     /// run are told.
-    fn told(chance: &mut Chance, step: f64, share: f64) -> f64 {
+    fn detections(chance: &mut Chance, step: f64, share: f64) -> f64 {
         let count = MAX_BATCHES as usize;
         let told = (0..1000).filter(|_| {
             let mut draws = chance.normals(count);
@@ -252,8 +252,8 @@ mod tests {
     #[test]
     fn a_change_is_told_with_the_stated_power() {
         let mut chance = Chance(2);
-        let [none, half, eighth] =
-            [(0.0, 0.5), (2.5, 0.5), (3.5, 0.125)].map(|(step, at)| told(&mut chance, step, at));
+        let [none, half, eighth] = [(0.0, 0.5), (2.5, 0.5), (3.5, 0.125)]
+            .map(|(step, at)| detections(&mut chance, step, at));
         println!("none {none}, half {half}, eighth {eighth}");
         assert!(none <= 0.014 && half >= 0.95 && eighth >= 0.9, "{none} {half} {eighth}");
     }

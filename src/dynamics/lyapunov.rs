@@ -93,14 +93,14 @@ impl Spectrum {
         periods: u64,
         seen: &mut dyn FnMut(&Segment),
     ) -> Self {
-        ExponentRun::new(model, from, transient, periods).told(model, from, seen)
+        ExponentRun::new(model, from, transient, periods).follow_phases(model, from, seen)
     }
 
     /// [`Spectrum::of`] without a transient, but the last phase is not solved beyond `horizon` to
     /// see whether it ends.
     pub(super) fn within(model: &Model, from: Entry, periods: u64, horizon: Instant) -> Self {
         let run = ExponentRun::new(model, from, 0, periods);
-        ExponentRun { last_horizon: Some(horizon), ..run }.told(model, from, &mut |_| ())
+        ExponentRun { last_horizon: Some(horizon), ..run }.follow_phases(model, from, &mut |_| ())
     }
 
     /// Whether the largest exponent is above zero by more than `errors` standard errors.
@@ -168,7 +168,12 @@ impl ExponentRun {
     }
 
     /// The exponents of the run from its first phase on, of which `seen` is told.
-    fn told(mut self, model: &Model, from: Entry, seen: &mut dyn FnMut(&Segment)) -> Spectrum {
+    fn follow_phases(
+        mut self,
+        model: &Model,
+        from: Entry,
+        seen: &mut dyn FnMut(&Segment),
+    ) -> Spectrum {
         let end = self.next.after_periods(self.periods, 1);
         for segment in model.trajectory(from).until(end) {
             self.pass(&segment);
@@ -185,12 +190,12 @@ impl ExponentRun {
         let mut done = 0.0;
         while self.marks.len() as u64 <= self.batches.count() && !segment.ends_by(&self.next) {
             let here = segment.elapsed_at(&self.next).max(done);
-            self.go(segment, done, here);
+            self.carry_errors(segment, done, here);
             self.mark(segment);
             done = here;
         }
         if let Exit::Switch(next) = segment.exit() {
-            self.go(segment, done, segment.duration());
+            self.carry_errors(segment, done, segment.duration());
             self.tangent.switch(segment);
             if self.observing() && segment.phase() == Phase::NoContact {
                 self.contraction +=
@@ -205,7 +210,7 @@ impl ExponentRun {
     }
 
     /// Carries errors from one time in a phase to another.
-    fn go(&mut self, segment: &Segment, from: f64, to: f64) {
+    fn carry_errors(&mut self, segment: &Segment, from: f64, to: f64) {
         let elapsed = (to - from).max(0.0);
         self.tangent.flow(segment, elapsed);
         if self.observing() {

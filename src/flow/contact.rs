@@ -114,8 +114,9 @@ impl<T: Real> Pressing<T> {
         response: &Response<T>,
     ) -> Pressed<T> {
         let Self { parameters: [a, b, two_xi], state: [y0, q0], offset, reference, .. } = *self;
-        let (driven, y_driven) = (self.driven(response.force), self.driven(response.rate));
-        let q_driven = self.driven(response.displacement);
+        let (driven, y_driven) =
+            (self.driven_part(response.force), self.driven_part(response.rate));
+        let q_driven = self.driven_part(response.displacement);
         let f_less_b = offset + (reference - b);
         let relaxing = f_less_b * free.s_rate_minus_1;
         let f_change = y0.times_plus(free.s, relaxing) + driven;
@@ -140,7 +141,7 @@ impl<T: Real> Pressing<T> {
 
     /// What the forcing does, from the response to exp(i omega d).
     #[inline(always)]
-    fn driven(&self, response: Complex<T>) -> T {
+    fn driven_part(&self, response: Complex<T>) -> T {
         let [a, ..] = self.parameters;
         a * self.angle.sin.times_from(response.im, self.angle.cos * response.re)
     }

@@ -88,7 +88,7 @@ impl<T: Number> Damping<T> {
     #[inline]
     pub fn at(&self, d: T) -> Free<T> {
         match *self {
-            Self::Under { xi, nu, nu_low } => under(xi, nu, nu_low, d),
+            Self::Under { xi, nu, nu_low } => under_damped(xi, nu, nu_low, d),
             Self::NearCritical { xi, discriminant } => {
                 let m = discriminant * d * d;
                 if m.abs() < T::exact(0.5) {
@@ -96,19 +96,19 @@ impl<T: Number> Damping<T> {
                 }
                 let root = discriminant.abs().sqrt();
                 if discriminant > T::zero() {
-                    under(xi, root, T::zero(), d)
+                    under_damped(xi, root, T::zero(), d)
                 } else {
-                    over(T::one() / (xi + root), root + root, d)
+                    over_damped(T::one() / (xi + root), root + root, d)
                 }
             }
             // No series here: for strong damping it would lose xi d, where this form loses nothing.
-            Self::Over { slow, spread, .. } => over(slow, spread, d),
+            Self::Over { slow, spread, .. } => over_damped(slow, spread, d),
         }
     }
 }
 
 #[inline]
-fn under<T: Number>(xi: T, nu: T, nu_low: T, d: T) -> Free<T> {
+fn under_damped<T: Number>(xi: T, nu: T, nu_low: T, d: T) -> Free<T> {
     let angle = nu * d;
     let turn = circular_of(angle, nu.product_error(d) + nu_low * d);
     let shrink = decay(xi * d);
@@ -158,7 +158,7 @@ impl<T: Real> Free<T> {
         let rest = T::choose(weak, shrink.remainder, shrink.minus_1);
         let c_minus_1 = xi.times_plus(T::choose(weak, s_minus_d, s), rest + turned);
         let s_rate_minus_1 = (xi + xi).times_from(s, c_minus_1);
-        Self { s, s_minus_d, c_minus_1, s_rate_minus_1, ..Self::nothing(d) }
+        Self { s, s_minus_d, c_minus_1, s_rate_minus_1, ..Self::zero(d) }
     }
 
     /// With S = exp(-slow d) (1 - exp(-spread d))/spread nothing cancels, however small the spread;
@@ -174,13 +174,13 @@ impl<T: Real> Free<T> {
             c_minus_1: slow.times_plus(s, lasting.minus_1),
             s_rate_minus_1: slow.times_from(s, quick_minus_1),
             fast_exponential: lasting.exp * ratio.exp,
-            ..Self::nothing(s)
+            ..Self::zero(s)
         }
     }
 
     /// All zero, in the lanes of a number.
     #[inline(always)]
-    pub fn nothing(number: T) -> Self {
+    pub fn zero(number: T) -> Self {
         let zero = number.same(0.0);
         let shrink = Decay { exp: zero, minus_1: zero, remainder: zero };
         let turn = Circular { sin: zero, cos_minus_1: zero, sin_minus_x: zero };
@@ -198,6 +198,6 @@ impl<T: Real> Free<T> {
 }
 
 #[inline]
-fn over<T: Number>(slow: T, spread: T, d: T) -> Free<T> {
+fn over_damped<T: Number>(slow: T, spread: T, d: T) -> Free<T> {
     Free::of_exponentials(slow, spread, &decay(slow * d), &decay(spread * d))
 }

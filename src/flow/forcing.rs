@@ -212,17 +212,17 @@ impl<T: Number> Forced<T> {
                 } else {
                     turn.sin - omega * free.s
                 };
-                Response::plain(two_xi, omega, inverse, sines, turn, free)
+                Response::plain_quotients(two_xi, omega, inverse, sines, turn, free)
             }
             Self::Resonant { xi, half_over_nu, delta, near_pole, in_step, far_pole } => {
                 let together =
                     Together { turn, rotation: &free.rotation, inverses: [near_pole, far_pole] };
                 let parts = if d < T::one() {
-                    together.short(d, &circular(delta * d))
+                    together.in_short_times(d, &circular(delta * d))
                 } else if d < in_step {
-                    together.long(together.lag_by_beat(&circular(delta * d)))
+                    together.in_long_times(together.lag_by_beat(&circular(delta * d)))
                 } else {
-                    together.long(together.lag())
+                    together.in_long_times(together.lag())
                 };
                 parts.response(xi, half_over_nu)
             }
@@ -234,7 +234,7 @@ impl<T: Real> Response<T> {
     /// Divides by P: `inverse` is 1/P, `sines` what is left of exp(i omega d) - C - i omega S in
     /// its imaginary part.
     #[inline(always)]
-    pub fn plain(
+    pub fn plain_quotients(
         two_xi: T,
         omega: T,
         inverse: Complex<T>,
@@ -289,7 +289,7 @@ impl<T: Real> Together<'_, T> {
 
     /// D+ and D- in long times, from exp(i omega d) - exp(lambda+ d).
     #[inline(always)]
-    pub fn long(&self, lag: Complex<T>) -> Differences<T> {
+    pub fn in_long_times(&self, lag: Complex<T>) -> Differences<T> {
         let [inverse_near, inverse_far] = self.inverses;
         let near = lag * inverse_near;
         let conjugate = self.damped().conjugate().scale(self.rotation.shrink.exp);
@@ -299,7 +299,7 @@ impl<T: Real> Together<'_, T> {
 
     /// D+ and D- in short times, by D+ - d and D- - d, which are both of the order of d^2.
     #[inline(always)]
-    pub fn short(&self, d: T, beat: &Circular<T>) -> Differences<T> {
+    pub fn in_short_times(&self, d: T, beat: &Circular<T>) -> Differences<T> {
         let (turn, Rotation { shrink, turn: free }) = (self.turn, self.rotation);
         let [inverse_near, inverse_far] = self.inverses;
         let beating = Complex::new(beat.cos_minus_1 - shrink.remainder, beat.sin_minus_x);

@@ -37,7 +37,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Progression<T, C> {
         let slipping =
             Slipping::new([b, rate, two_xi], [y0, q0, w0, closing], d, &harmonic, &decay);
         let Slipped { q, w, drift, terms } =
-            if decay.exp > T::exact(0.5) { slipping.early() } else { slipping.late() };
+            if decay.exp > T::exact(0.5) { slipping.early_state() } else { slipping.late_state() };
         let Slipping { y, lag, bends: [slope, bend, third], push_terms, .. } = slipping;
         let orders = [w, slope, bend, third];
         let largest_term = terms + push_terms;
@@ -128,7 +128,7 @@ impl<T: Real> Slipping<T> {
     /// q0)/(2 xi) = w0. 1 - q0 as 2 xi times the closing velocity keeps the digits that q0 near 1
     /// has lost.
     #[inline(always)]
-    pub fn early(&self) -> Slipped<T> {
+    pub fn early_state(&self) -> Slipped<T> {
         let ([_, q0, w0, closing], [d, _]) = (self.begin, self.times);
         let settling = self.two_xi * closing * self.remainder;
         Slipped {
@@ -141,7 +141,7 @@ impl<T: Real> Slipping<T> {
 
     /// The state by what is left of 1 - q0: the changes would lose the digits of a large q0.
     #[inline(always)]
-    pub fn late(&self) -> Slipped<T> {
+    pub fn late_state(&self) -> Slipped<T> {
         let ([y0, ..], [d, z]) = (self.begin, self.times);
         let one = d.same(1.0);
         Slipped {

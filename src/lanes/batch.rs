@@ -44,7 +44,7 @@ impl LaneTask {
     }
 
     /// The task that certifies the same phase in finer pieces, where there is one.
-    pub const fn again(self) -> Option<Self> {
+    pub const fn finer_task(self) -> Option<Self> {
         match self {
             Self::Flight => Some(Self::FlightAgain),
             Self::Contact => Some(Self::ContactAgain),

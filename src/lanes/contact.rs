@@ -2,7 +2,7 @@
 //! [`super::contact_ahead`].
 
 use super::contact_constants::Forms;
-use super::contact_steps::{LaneParts, each};
+use super::contact_steps::{LaneParts, choose_each};
 use super::forcing::Angle;
 use super::root::{Fineness, LanePhase, LaneRoot, find};
 use super::series::LATER_ORDERS;
@@ -84,7 +84,7 @@ impl<S: Simd> LanePhase<S> for Leaving<'_, '_, S> {
     }
 
     #[inline(always)]
-    fn later(&self, at: &Evaluated<S>) -> [Wide<S>; LATER_ORDERS] {
+    fn later_orders(&self, at: &Evaluated<S>) -> [Wide<S>; LATER_ORDERS] {
         let Shape { two_xi, omega2, .. } = *self.contact.shape;
         let mut higher = ContactOrders::new([omega2, two_xi], [at.force[0], at.force[1]], at.f);
         [(); LATER_ORDERS].map(|()| higher.step())
@@ -113,7 +113,8 @@ impl<S: Simd> LaneContact<'_, S> {
         };
         let Pressed { excess, y, q, largest_term: terms } =
             begin.after(d, &force, &free, &response);
-        let f = self.one_by_one(d, self.orders(force, excess, y), force, free.fast_exponential);
+        let f =
+            self.orders_one_by_one(d, self.orders(force, excess, y), force, free.fast_exponential);
         Evaluated { f, force, y, q, fast_exponential: free.fast_exponential, terms }
     }
 
@@ -134,7 +135,7 @@ impl<S: Simd> LaneContact<'_, S> {
     /// equations of motion would multiply the rounding of f by 2 xi with each derivative, although
     /// what is left of f moves slowly. There its parts are differentiated one by one.
     #[inline(always)]
-    fn one_by_one(
+    fn orders_one_by_one(
         &self,
         elapsed: Wide<S>,
         orders: [Wide<S>; 4],
@@ -153,7 +154,7 @@ impl<S: Simd> LaneContact<'_, S> {
         let parts = ContactParts { elapsed, free: slowly, free_rate: quickly, forced, quarter };
         let parts = LaneParts { parts, forms: self.forms };
         let [_, rate, bend, third] = parts.orders(self.shape, self.reference);
-        each(dying, [orders[0], rate, bend, third], orders)
+        choose_each(dying, [orders[0], rate, bend, third], orders)
     }
 
     /// The switches that end the contacts.
@@ -170,8 +171,12 @@ impl<S: Simd> LaneContact<'_, S> {
         let y = at.y + (rest.times_plus(step, impulse) - series.integral(step));
         let fast_exponential =
             at.fast_exponential + at.fast_exponential * short_decay(self.shape.fast * step);
-        let last =
-            self.one_by_one(elapsed, self.orders(force, threshold, y), force, fast_exponential);
+        let last = self.orders_one_by_one(
+            elapsed,
+            self.orders(force, threshold, y),
+            force,
+            fast_exponential,
+        );
         let rises = !(threshold + self.reference).below(0.5);
         let outward = rises.choose(last[1], -last[1]).above(0.0);
         let proved =

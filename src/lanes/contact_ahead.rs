@@ -7,7 +7,7 @@
 use super::certificate::LanePiece;
 use super::contact::LaneContact;
 use super::contact_constants::Forms;
-use super::contact_steps::{ContactSteps, LaneParts, each};
+use super::contact_steps::{ContactSteps, LaneParts, choose_each};
 use super::guess::zero_between;
 use super::root::Fineness;
 use super::shape::Shape;
@@ -98,7 +98,7 @@ impl<S: Simd> LaneContact<'_, S> {
             }
             here = here.after(&steps.now);
             let next = here.orders(self.shape, self.reference);
-            let right = each(is_last, last, next);
+            let right = choose_each(is_last, last, next);
             let length = is_last.choose(rest, step);
             let piece =
                 LanePiece { left, right, length, eighth, bare, double: none, to_root: is_last };

@@ -109,12 +109,12 @@ impl Shape<f64> {
             early_piece_s_rate: early_piece.s_rate,
             roundings,
             pulls,
-            ..Self::forced(&constants.forced, Self::free(&damping, omega.max(1.0)))
+            ..Self::of_forced(&constants.forced, Self::of_free(&damping, omega.max(1.0)))
         }
     }
 
     /// What the free oscillation needs.
-    fn free(damping: &Damping<f64>, pace: f64) -> Self {
+    fn of_free(damping: &Damping<f64>, pace: f64) -> Self {
         let free = Self { quickest: pace, ..Self::default() };
         let strong = Self { unusual: 1.0, ..free };
         match *damping {
@@ -142,7 +142,7 @@ impl Shape<f64> {
     }
 
     /// What the forced oscillation needs.
-    fn forced(forced: &Forced<f64>, free: Self) -> Self {
+    fn of_forced(forced: &Forced<f64>, free: Self) -> Self {
         match *forced {
             Forced::Plain { inverse, .. } => {
                 Self { response: inverse.re, response_im: inverse.im, ..free }

@@ -60,7 +60,7 @@ impl<S: Simd> LaneParts<S> {
             slowly2 + quickly2,
             -(slow * slowly2 + fast * quickly2),
         ];
-        each(shape.fast.above(0.0), sums, orders)
+        choose_each(shape.fast.above(0.0), sums, orders)
     }
 
     /// The guard, which counts from `reference`, and its first three derivatives.
@@ -215,7 +215,7 @@ impl<S: Simd> ContactStep<Wide<S>> {
 /// Takes one of two where the mask holds, the other elsewhere. (Under run-time dispatch the
 /// closures of an array's `map` are calls.)
 #[inline(always)]
-pub fn each<S: Simd, const N: usize>(
+pub fn choose_each<S: Simd, const N: usize>(
     mask: Mask<S>,
     yes: [Wide<S>; N],
     no: [Wide<S>; N],

@@ -23,7 +23,7 @@ impl<S: Simd> Free<Wide<S>> {
         let series = shape.near_critical.above(0.0) & m.magnitude().below(MAX_SERIES_ARGUMENT);
         let over = shape.spread.above(0.0) & !series;
         let turns = !(series | over);
-        let mut free = if turns.any() { Self::rotation(shape, d) } else { Self::nothing(d) };
+        let mut free = if turns.any() { Self::rotation(shape, d) } else { Self::zero(d) };
         if series.any() {
             let (cosine_minus_1, sine_over_x_minus_1) = cosines(m);
             let sums = [cosine_minus_1, sine_over_x_minus_1];

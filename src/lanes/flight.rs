@@ -98,7 +98,7 @@ impl<S: Simd> LanePhase<S> for Flight<'_, S> {
     }
 
     #[inline(always)]
-    fn later(&self, at: &Aloft<S>) -> [Wide<S>; LATER_ORDERS] {
+    fn later_orders(&self, at: &Aloft<S>) -> [Wide<S>; LATER_ORDERS] {
         let Shape { b, omega2, rate, .. } = *self.shape;
         let [total, next, _] = at.force;
         let mut higher = PushedOrders::new([omega2, rate], at.q, [total - b, next]);

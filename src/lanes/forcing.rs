@@ -56,13 +56,13 @@ impl<S: Simd> Response<Wide<S>> {
     ) -> Self {
         let resonant = shape.half_over_nu.above(0.0);
         if forms == Forms::Usual || !resonant.any() {
-            return Self::far(shape, d, turn, free);
+            return Self::far_from_resonance(shape, d, turn, free);
         }
-        let near = Self::near(shape, d, turn, free);
+        let near = Self::near_resonance(shape, d, turn, free);
         if !(!resonant).any() {
             return near;
         }
-        let far = Self::far(shape, d, turn, free);
+        let far = Self::far_from_resonance(shape, d, turn, free);
         Self {
             rate: Complex::choose(resonant, near.rate, far.rate),
             force: Complex::choose(resonant, near.force, far.force),
@@ -71,7 +71,7 @@ impl<S: Simd> Response<Wide<S>> {
     }
 
     #[inline(always)]
-    fn far(
+    fn far_from_resonance(
         shape: &Shape<Wide<S>>,
         d: Wide<S>,
         turn: &Circular<Wide<S>>,
@@ -82,11 +82,11 @@ impl<S: Simd> Response<Wide<S>> {
             omega.times_from(free.s_minus_d, turn.sin_minus_x),
             omega.times_from(free.s, turn.sin),
         );
-        Self::plain(two_xi, omega, Complex::new(response, response_im), sines, turn, free)
+        Self::plain_quotients(two_xi, omega, Complex::new(response, response_im), sines, turn, free)
     }
 
     #[inline(always)]
-    fn near(
+    fn near_resonance(
         shape: &Shape<Wide<S>>,
         d: Wide<S>,
         turn: &Circular<Wide<S>>,
@@ -99,10 +99,10 @@ impl<S: Simd> Response<Wide<S>> {
         let beat = short_turn(shape.delta * d);
         let in_step = d.less(shape.in_step);
         let lag = Complex::choose(in_step, together.lag_by_beat(&beat), together.lag());
-        let mut parts = together.long(lag);
+        let mut parts = together.in_long_times(lag);
         let short = d.below(1.0);
         if short.any() {
-            let early = together.short(d, &beat);
+            let early = together.in_short_times(d, &beat);
             parts = Differences {
                 sum: Complex::choose(short, early.sum, parts.sum),
                 difference: Complex::choose(short, early.difference, parts.difference),

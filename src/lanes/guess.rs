@@ -56,7 +56,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
         for _ in 0..GUESS_STEPS {
             let closed = open & (self.parabola(here.elapsed) + self.amplitude).less(zero);
             if closed.any() {
-                here = self.skipped(here, closed);
+                here = self.skip(here, closed);
             }
             let next = self.place(
                 here.elapsed + look,
@@ -108,7 +108,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
     /// Skips the time in which the parabola lies below minus the amplitude: the place where it no
     /// longer does.
     #[inline(always)]
-    fn skipped(&self, here: LanePlace<S>, closed: Mask<S>) -> LanePlace<S> {
+    fn skip(&self, here: LanePlace<S>, closed: Mask<S>) -> LanePlace<S> {
         let Shape { omega, look, .. } = *self.shape;
         let value = self.parabola(here.elapsed) + self.amplitude;
         let rising = self.curvature.times_plus(here.elapsed, self.slope);

@@ -19,7 +19,7 @@ pub trait LanePhase<S: Simd> {
     fn excess(&self, at: &Self::At) -> [Wide<S>; 4];
 
     /// The guard's derivatives of orders four and on.
-    fn later(&self, at: &Self::At) -> [Wide<S>; LATER_ORDERS];
+    fn later_orders(&self, at: &Self::At) -> [Wide<S>; LATER_ORDERS];
 
     /// The lanes in which a step from an evaluation at `d` is so short that the guard's series
     /// loses nothing.
@@ -80,8 +80,8 @@ pub fn find<S: Simd, P: LanePhase<S>>(
         let near = step.magnitude().less(next * MAX_ROOT_STEP);
         let short = phase.is_short(elapsed, step) & settled & near;
         if attempt == GUESS_EVALUATIONS || !(alive & !short).any() {
-            let series = Series::of_orders(excess, phase.later(&at));
-            let (step, slope, polished) = series.polished(step);
+            let series = Series::of_orders(excess, phase.later_orders(&at));
+            let (step, slope, polished) = series.polish(step);
             return LaneRoot { at, elapsed, series, step, slope, found: alive & short & polished };
         }
         elapsed = (alive & !short).choose(next, elapsed);

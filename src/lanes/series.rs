@@ -21,7 +21,7 @@ impl<S: Simd> Series<Wide<S>, TERMS> {
     /// The root next to a step that is one of the series' first four terms; the slope there, and
     /// where both are settled.
     #[inline(always)]
-    pub fn polished(&self, step: Wide<S>) -> (Wide<S>, Wide<S>, Mask<S>) {
+    pub fn polish(&self, step: Wide<S>) -> (Wide<S>, Wide<S>, Mask<S>) {
         /// The square of what Newton's step changes the slope by is left out of the time: 1e-10 of
         /// a step that is mostly below 1e-7 itself, and next to a flat inflection below 1e-4.
         const SLOPE_CHANGE_TOLERANCE: f64 = 1e-5;

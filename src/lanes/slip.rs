@@ -89,7 +89,7 @@ impl<S: Simd> LanePhase<S> for Slip<'_, S> {
         let begin = [y, q, drift_rate, closing];
         let slipping = Slipping::new([b, rate, two_xi], begin, d, &harmonic, &decay);
         let Slipped { q, w, drift, terms } =
-            slipping.late().or_where(decay.exp.above(0.5), slipping.early());
+            slipping.late_state().or_where(decay.exp.above(0.5), slipping.early_state());
         let Slipping { y, lag, bends: [slope, bend, third], push_terms, .. } = slipping;
         let [force, first, second] = harmonic.force;
         Sliding {
@@ -110,7 +110,7 @@ impl<S: Simd> LanePhase<S> for Slip<'_, S> {
     }
 
     #[inline(always)]
-    fn later(&self, at: &Sliding<S>) -> [Wide<S>; LATER_ORDERS] {
+    fn later_orders(&self, at: &Sliding<S>) -> [Wide<S>; LATER_ORDERS] {
         let Shape { omega2, rate, .. } = *self.shape;
         let mut higher = PushedOrders::new([omega2, rate], at.lag, at.force);
         [(); LATER_ORDERS].map(|()| higher.step())

@@ -49,8 +49,8 @@ impl Model {
         let q = start.q.unwrap_or(if start.p >= g { start.p - g } else { 0.0 });
         let state = State { p: start.p, y: start.y, q };
         let (state, mode) = match start.phase {
-            None => self.decided(state, &instant)?,
-            Some(phase) => self.stated(state, phase, &instant)?,
+            None => self.decide_phase(state, &instant)?,
+            Some(phase) => self.project(state, phase, &instant)?,
         };
         Ok(Entry { instant, state, drift: TwoWord::new(start.v), mode })
     }
@@ -62,11 +62,15 @@ impl Model {
     /// [`InputError`] names what is out of range, or a mass beyond the slider's top.
     pub fn entry(&self, instant: Instant, state: State) -> Result<Entry, InputError> {
         check_size(&state)?;
-        let (state, mode) = self.decided(state, &instant)?;
+        let (state, mode) = self.decide_phase(state, &instant)?;
         Ok(Entry { instant, state, drift: TwoWord::ZERO, mode })
     }
 
-    fn decided(&self, state: State, instant: &Instant) -> Result<(State, ModeEntry), InputError> {
+    fn decide_phase(
+        &self,
+        state: State,
+        instant: &Instant,
+    ) -> Result<(State, ModeEntry), InputError> {
         let g = self.parameters().g;
         let scale = state.p.abs().max(state.q.abs()).max(g);
         let limit = state.q + g;
@@ -85,7 +89,7 @@ impl Model {
     }
 
     /// Projects a rounded state onto where its phase can begin.
-    fn stated(
+    fn project(
         &self,
         given: State,
         phase: Phase,
@@ -104,7 +108,7 @@ impl Model {
                 let near =
                     (given.p - (q + g)).abs() <= MAX_PROJECTION && force.abs() <= MAX_PROJECTION;
                 if !near {
-                    return self.apart(given, instant);
+                    return self.no_contact_entry(given, instant);
                 }
                 on(0.0, at(y, -(two_xi * y)))
             }
@@ -123,15 +127,19 @@ impl Model {
                 (state, ModeEntry::slipping(self.constants(), &state))
             }
         };
-        near(phase, "p", given.p, state.p)?;
-        near(phase, "q", given.q, state.q)?;
-        near(phase, "y", given.y, state.y)?;
+        check_near(phase, "p", given.p, state.p)?;
+        check_near(phase, "q", given.q, state.q)?;
+        check_near(phase, "y", given.y, state.y)?;
         Ok((state, mode))
     }
 
     /// A start stated to be without contact and not at a separation must be so.
-    fn apart(&self, state: State, instant: &Instant) -> Result<(State, ModeEntry), InputError> {
-        let (settled, mode) = self.decided(state, instant)?;
+    fn no_contact_entry(
+        &self,
+        state: State,
+        instant: &Instant,
+    ) -> Result<(State, ModeEntry), InputError> {
+        let (settled, mode) = self.decide_phase(state, instant)?;
         match mode {
             ModeEntry::Apart | ModeEntry::Separation { .. } => Ok((settled, mode)),
             // In contact: the force would have to fall to zero.
@@ -145,7 +153,7 @@ impl Model {
     }
 }
 
-fn near(phase: Phase, name: &'static str, from: f64, to: f64) -> Result<(), InputError> {
+fn check_near(phase: Phase, name: &'static str, from: f64, to: f64) -> Result<(), InputError> {
     // Written so that a NaN is refused.
     if (from - to).abs() <= MAX_PROJECTION {
         Ok(())

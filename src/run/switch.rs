@@ -135,7 +135,7 @@ fn pass_by<P: Landing>(
         let (certain, limit) = h.since_roughly(instant, omega);
         (certain - beyond, limit + beyond)
     });
-    match found(phase, model, (begun, next), limit, counters) {
+    match find_end(phase, model, (begun, next), limit, counters) {
         SearchEnd::At(elapsed) if elapsed.high <= certain => {
             counters.switches += 1;
             PhaseEnd { end: End::Switch, duration: elapsed }
@@ -150,7 +150,7 @@ fn pass_by<P: Landing>(
 /// works on both. If the certificate fails and the search finds another root, the phase begins
 /// there; if it finds none, what has begun counts for nothing.
 #[inline(always)]
-fn found<P: Landing>(
+fn find_end<P: Landing>(
     phase: &P,
     model: &Model,
     (begun, next): (&Begun, &mut Begun),
@@ -226,7 +226,7 @@ fn found_later<P: Landing>(
 ) -> Option<TwoWord> {
     let mut again = *begun;
     let mut counted = Counters::default();
-    let found = match found(phase, model, (begun, &mut again), limit, &mut counted) {
+    let found = match find_end(phase, model, (begun, &mut again), limit, &mut counted) {
         SearchEnd::Stage(from) => {
             phase.in_stages(model, (begun, &mut again), (from, limit), &mut counted)
         }

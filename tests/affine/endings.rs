@@ -178,7 +178,7 @@ fn what_is_open_is_a_guard_of_the_mode_in_which_it_was_met() {
         let mut run = solver.run_enclosed(start, DoubleDouble::exact(5.0)).unwrap();
         let _ = run.by_ref().count();
         // A run that decides the touch leaves nothing open.
-        let open = run.doubtful();
+        let open = run.doubtful_event();
         assert!(open.is_none_or(|it| it == What::Watch(0, 0)), "{open:?}");
     }
 }

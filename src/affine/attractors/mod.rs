@@ -6,9 +6,10 @@
 //! - **Periodic**: returns repeat, Newton's method confirms the orbit, its multipliers are inside
 //!   the unit circle, and there is a neighbourhood from which all sampled points return closer
 //!   (`trap_search.rs`): evidence, not proof.
-//! - **Chaotic**: the largest exponent is above zero by more than [`MIN_STANDARD_ERRORS`] standard
-//! errors over a long run that met no orbit. Another motion is on the same attractor when 48
-//! returns in a row lie in the cells of that run (`cells.rs`).
+//! - **Chaotic**: the largest exponent is above zero by more than
+//!   [`MIN_STANDARD_ERRORS`](crate::dynamics::attractor::MIN_STANDARD_ERRORS) standard errors over
+//!   a long run that met no orbit. Another motion is on the same attractor when 48 returns in a row
+//!   lie in the cells of that run (`cells.rs`).
 //! - **Quasi-periodic**: neither, with a largest exponent below 1e-3. In the oscillator every
 //!   contact contracts areas; in other systems there may be such motions.
 //! - **Equilibrium**: the motion does not return to the section within the longest time.

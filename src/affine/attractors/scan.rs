@@ -40,7 +40,7 @@ impl SectionMap<'_, f64> {
         let motions = SectionMotions::of(self);
         let starts = plane.starts(&PlaneStart::of(self.solver(), start, &plane.axes)?)?;
         let reached = parallel::map(&starts, |start| {
-            let reached = motions.reached(start, period);
+            let reached = motions.reached_orbits(start, period);
             seen(1);
             reached
         });
@@ -50,7 +50,7 @@ impl SectionMap<'_, f64> {
                 found.push(orbit);
             }
         }
-        found.sort_by(|a, b| rank(a).preferred(&rank(b), period));
+        found.sort_by(|a, b| rank(a).preference(&rank(b), period));
         Ok(found)
     }
 }
@@ -58,7 +58,7 @@ impl SectionMap<'_, f64> {
 impl SectionMotions<'_> {
     /// The orbits that Newton's method reaches from a start's guesses, each from its smallest first
     /// state on: what is found does not depend on which start found it.
-    fn reached(&self, start: &Place<f64>, period: u32) -> Vec<Orbit> {
+    fn reached_orbits(&self, start: &Place<f64>, period: u32) -> Vec<Orbit> {
         let guesses = self.guesses(start, period);
         let found = guesses.iter().filter_map(|it| self.map.orbit_with_places(it, period).ok());
         found.map(|(orbit, places)| from_smallest(self.map, orbit, &places)).collect()
@@ -81,13 +81,14 @@ impl SectionMotions<'_> {
         let places = std::iter::successors(Some(settled.clone()), next);
         let places: Vec<_> = places.take((WATCHED_PERIODS + u64::from(period)) as usize).collect();
         let later = places.iter().skip(period as usize);
-        let apart = |a: &Place<f64>, b: &Place<f64>| self.apart(&self.spot_of(a), &self.spot_of(b));
+        let apart =
+            |a: &Place<f64>, b: &Place<f64>| self.distance(&self.spot_of(a), &self.spot_of(b));
         let pairs = places.iter().zip(later).map(|(a, b)| (apart(a, b), a));
         pairs.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, place)| place.clone())
     }
 
     /// The largest distance of two spots in a co-ordinate, infinite of different modes.
-    fn apart(&self, one: &Spot, other: &Spot) -> f64 {
+    fn distance(&self, one: &Spot, other: &Spot) -> f64 {
         if one.mode != other.mode {
             return f64::INFINITY;
         }
@@ -101,7 +102,7 @@ impl SectionMotions<'_> {
             spots.collect::<Vec<_>>()
         });
         let size = |it: &Spot| it.at.iter().fold(0.0_f64, |most, it| it.abs().max(most));
-        are_one(&one, &other, |a, b| self.apart(a, b) <= ORBIT_TOLERANCE * (1.0 + size(a)))
+        are_one(&one, &other, |a, b| self.distance(a, b) <= ORBIT_TOLERANCE * (1.0 + size(a)))
     }
 }
 

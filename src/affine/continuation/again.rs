@@ -39,13 +39,8 @@ impl Curve<'_> {
     ///
     /// The branch is entered before that place, by the corrector, which holds the distance along
     /// the branch and leaves the parameter free: so it is entered next to a fold, too.
-    pub fn found_again(
-        &self,
-        sought: &Sought,
-        expected: &CurvePoint,
-        reach: f64,
-    ) -> Option<OnLine> {
-        let start = self.corrected(expected, -reach)?;
+    pub fn find_again(&self, sought: &Sought, expected: &CurvePoint, reach: f64) -> Option<OnLine> {
+        let start = self.corrected_point(expected, -reach)?;
         match sought.kind {
             BifurcationKind::Fold => self.zero(&start, reach, &OrbitPoint::rate),
             BifurcationKind::Flip => self.zero(&start, reach, &OrbitPoint::flip),
@@ -67,7 +62,7 @@ impl Curve<'_> {
         reach: f64,
         test: &dyn Fn(&CurvePoint) -> f64,
     ) -> Option<OnLine> {
-        let end = self.corrected(start, 2.0 * reach)?;
+        let end = self.corrected_point(start, 2.0 * reach)?;
         let is_between = end.is_on_piece_of(start) && test(start) * test(&end) < 0.0;
         let located =
             if is_between { self.located(start, 2.0 * reach, test)? } else { return None };
@@ -91,7 +86,7 @@ impl Curve<'_> {
             return None;
         }
         let leaves = |distance: &f64| {
-            self.corrected(start, *distance).is_none_or(|it| !it.is_on_piece_of(start))
+            self.corrected_point(start, *distance).is_none_or(|it| !it.is_on_piece_of(start))
         };
         let distance = END_DISTANCES.map(|it| it * reach).into_iter().find(leaves)?;
         let corner = match sought.is_lost {

@@ -49,13 +49,13 @@ impl BifurcationCurve {
         for (n, found) in branch.bifurcations.iter().enumerate() {
             let mut share = |share: f64| told((n as f64 + share) / count);
             let tracer = Tracer { plane, sought: Sought::of(found) };
-            let start = traced(found, second);
+            let start = traced_point(found, second);
             let is_known = curves.iter().any(|(points, curve)| {
                 (curve.kind, curve.event) == (found.kind, found.event)
                     && points.windows(2).any(|it| tracer.passes([&it[0], &it[1]], &start))
             });
             if !is_known {
-                let (points, endings) = whole(&tracer, start, &mut share);
+                let (points, endings) = whole_curve(&tracer, start, &mut share);
                 let own = Self::of(plane, found, &points, endings);
                 curves.push((points, own));
             }
@@ -73,7 +73,7 @@ impl BifurcationCurve {
         let ReturnBifurcation { kind, event, .. } = *found;
         let point = |(n, it): (usize, &Traced)| BifurcationPoint {
             values: it.at,
-            error: across(plane, points, n),
+            error: error_across(plane, points, n),
             orbit: it.point.orbit.clone(),
         };
         let points = points.iter().enumerate().map(point).collect();
@@ -81,7 +81,7 @@ impl BifurcationCurve {
     }
 }
 
-fn traced(found: &ReturnBifurcation, second: f64) -> Traced {
+fn traced_point(found: &ReturnBifurcation, second: f64) -> Traced {
     let ReturnBifurcation { value, error, point, .. } = found;
     Traced { at: [*value, second], axis: 0, error: *error, point: point.clone() }
 }
@@ -90,7 +90,7 @@ fn traced(found: &ReturnBifurcation, second: f64) -> Traced {
 const HALFWAY_POINTS: f64 = 40.0;
 
 /// The curve through a place, from one end to the other.
-fn whole(
+fn whole_curve(
     tracer: &Tracer<'_>,
     start: Traced,
     told: &mut dyn FnMut(f64),
@@ -116,7 +116,7 @@ fn whole(
 /// A place that was found along the second parameter has an error in that: the first is uncertain
 /// by as much as it changes along the curve until the second has changed by its error. Where the
 /// curve turns in the second that grows as the root of the error.
-fn across(plane: &ReturnPlane<'_>, points: &[Traced], n: usize) -> f64 {
+fn error_across(plane: &ReturnPlane<'_>, points: &[Traced], n: usize) -> f64 {
     let Traced { at, axis, error, .. } = &points[n];
     if *axis == 0 {
         return *error;

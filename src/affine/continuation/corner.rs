@@ -6,7 +6,7 @@ use super::family::OrbitShots;
 use super::point::{CurvePoint, are_on_one_piece};
 use crate::dynamics::continuation::corner::last_along;
 use crate::dynamics::continuation::steps::{Corner, OrbitPoint};
-use crate::dynamics::orbit::newton::polished;
+use crate::dynamics::orbit::newton::polish;
 use core::cell::Cell;
 
 /// Distance at which a corner counts as reached: some roundings of the points.
@@ -52,7 +52,7 @@ impl Curve<'_> {
         let mut best = Corner { before, beyond: None, error: f64::INFINITY };
         for step in PROBE_DISTANCES {
             let before = &best.before;
-            let Some(beyond) = self.beyond(before, step) else { continue };
+            let Some(beyond) = self.point_beyond(before, step) else { continue };
             let apart = self.seen_from(&beyond, step, before).unwrap_or(0.0);
             if apart > MAX_END_SHARE * step {
                 continue;
@@ -80,7 +80,7 @@ impl Curve<'_> {
     /// The last orbit of the piece along the curve from a point, and what the halving leaves
     /// uncertain of the parameter's value at the piece's end.
     fn end(&self, base: &CurvePoint, distance: f64) -> (CurvePoint, f64) {
-        let Approach { last, rest, .. } = self.approached(base, distance);
+        let Approach { last, rest, .. } = self.approach(base, distance);
         let own = rest * last.tangent.rate.abs();
         (last, own)
     }
@@ -94,16 +94,16 @@ impl Curve<'_> {
     /// The distance in the parameter between the corner and where it is found from beyond; none
     /// where no orbit is found on the way there, as where a derivative grows without bound.
     fn seen_from(&self, beyond: &CurvePoint, step: f64, before: &CurvePoint) -> Option<f64> {
-        let Approach { last, rest, is_lost } = self.approached(&beyond.turned(), 2.0 * step);
+        let Approach { last, rest, is_lost } = self.approach(&beyond.turned(), 2.0 * step);
         let apart = (last.value - before.value).abs() + rest * last.tangent.rate.abs();
         (!is_lost).then_some(apart)
     }
 
     /// Follows the curve from a point as far as its piece goes.
-    fn approached(&self, base: &CurvePoint, distance: f64) -> Approach {
+    fn approach(&self, base: &CurvePoint, distance: f64) -> Approach {
         let is_lost = Cell::new(false);
         let (last, rest) = last_along(base, distance, CORNER_TOLERANCE, &|from, step| {
-            let there = self.corrected(from, step).or_else(|| self.at_value(from, step));
+            let there = self.corrected_point(from, step).or_else(|| self.at_value(from, step));
             is_lost.set(there.is_none());
             there.filter(|it| it.is_on_piece_of(from))
         });
@@ -118,7 +118,7 @@ impl Curve<'_> {
     fn at_value(&self, base: &CurvePoint, step: f64) -> Option<CurvePoint> {
         let value = base.value + step * base.tangent.rate;
         let shots = self.shifted(base, &base.tangent, step)?;
-        let shots = self.family.at(value, |map| Some(polished(map, shots)))?;
+        let shots = self.family.at(value, |map| Some(polish(map, shots)))?;
         if !shots.is_closed() || !self.is_near(value, &shots, base, step) {
             return None;
         }
@@ -129,7 +129,7 @@ impl Curve<'_> {
 
     /// The curve a step beyond the corner at `before`. Its direction there is that of the other
     /// piece's derivative; of the two ways along it one leads to an orbit of that piece.
-    fn beyond(&self, before: &CurvePoint, step: f64) -> Option<CurvePoint> {
+    fn point_beyond(&self, before: &CurvePoint, step: f64) -> Option<CurvePoint> {
         let value = before.value + step * before.tangent.rate;
         let mut bases = Vec::new();
         for probe in self.probes(before, step) {
@@ -141,7 +141,8 @@ impl Curve<'_> {
         }
         // The way forward first, of each probe.
         bases.into_iter().rev().find_map(|base| {
-            let point = self.corrected(&base, step).filter(|it| !it.is_on_piece_of(before))?;
+            let point =
+                self.corrected_point(&base, step).filter(|it| !it.is_on_piece_of(before))?;
             if !self.is_near(point.value, &point.shots, before, step) {
                 return None;
             }
@@ -180,7 +181,7 @@ impl Curve<'_> {
             let pairs = probe.points.iter().zip(&base.shots.points).zip(&base.tangent.points);
             let own = pairs.zip(&base.carried).map(|(((probe, from), change), own)| {
                 let back = map.moved(probe, &change.map(|it| -step * it), probe);
-                if probe.mode == from.mode { own.clone() } else { map.carried(&back) }
+                if probe.mode == from.mode { own.clone() } else { map.carry(&back) }
             });
             Some(own.collect())
         });
@@ -191,17 +192,23 @@ impl Curve<'_> {
     /// The points of the motion at a value that begins aside of an orbit's first point, after so
     /// many times once around: a motion takes each event where it comes, on whichever side of a
     /// section.
-    fn settled(&self, from: &CurvePoint, value: f64, aside: f64, turns: u32) -> Option<OrbitShots> {
+    fn settle_motion(
+        &self,
+        from: &CurvePoint,
+        value: f64,
+        aside: f64,
+        turns: u32,
+    ) -> Option<OrbitShots> {
         let period = u32::try_from(from.carried.len()).ok()?;
         self.family.at(value, |map| {
-            let first = map.taken_up(&from.carried[0]);
+            let first = map.take_up(&from.carried[0]);
             let change = from.tangent.points[0].map(|it| aside * it);
             let mut place = map.moved(&first, &change, &first);
             for _ in 0..turns {
-                let along = Shots::along(map, &place, period).ok()?;
+                let along = Shots::follow(map, &place, period).ok()?;
                 place = map.rebased(&along.images.last()?.point);
             }
-            Shots::along(map, &place, period).ok()
+            Shots::follow(map, &place, period).ok()
         })
     }
 
@@ -220,7 +227,7 @@ impl Curve<'_> {
         });
         let starts =
             SIDE_STEPS.iter().flat_map(|aside| SETTLING_TURNS.map(|turns| (aside * step, turns)));
-        let motions = starts.map(|(aside, turns)| self.settled(from, value, aside, turns));
+        let motions = starts.map(|(aside, turns)| self.settle_motion(from, value, aside, turns));
         let all = [probe, second].into_iter().chain(motions).flatten();
         let others = all.filter(|it| !are_on_one_piece(it, &from.shots));
         others.filter(|it| self.is_near(value, it, from, step)).collect()
@@ -230,7 +237,8 @@ impl Curve<'_> {
     fn is_near(&self, value: f64, shots: &OrbitShots, from: &CurvePoint, step: f64) -> bool {
         let distance = self.family.at(value, |map| {
             let pairs = shots.points.iter().zip(&from.carried);
-            let sizes = pairs.map(|(it, own)| map.size(it, &map.apart(&map.taken_up(own), it)));
+            let sizes =
+                pairs.map(|(it, own)| map.size(it, &map.change_between(&map.take_up(own), it)));
             Some(sizes.fold(0.0, f64::max))
         });
         distance.is_some_and(|it| it <= MAX_ROOT_MULTIPLE * libm::sqrt(step))

@@ -39,7 +39,7 @@ struct Around {
     offset: Change,
 }
 
-fn around(shots: &OrbitShots, added: &[Change]) -> Around {
+fn recurrence(shots: &OrbitShots, added: &[Change]) -> Around {
     let mut all = Around { matrix: identity(), offset: [0.0; MAX_COORDINATES] };
     for (image, added) in shots.images.iter().zip(added) {
         all.matrix = product(&image.derivative, &all.matrix);
@@ -49,7 +49,7 @@ fn around(shots: &OrbitShots, added: &[Change]) -> Around {
 }
 
 /// The changes of all points that follow from that of the first.
-fn spread(shots: &OrbitShots, first: Change, added: &[Change]) -> Vec<Change> {
+fn spread_changes(shots: &OrbitShots, first: Change, added: &[Change]) -> Vec<Change> {
     let mut changes = vec![first];
     for (image, added) in shots.images.iter().zip(added).take(shots.points.len() - 1) {
         let carried = apply(&image.derivative, &changes[changes.len() - 1]);
@@ -97,7 +97,7 @@ impl<'a> Curve<'a> {
     ) -> Option<OrbitShots> {
         self.family.at(base.value + distance * along.rate, |map| {
             let moved = base.carried.iter().zip(&along.points).map(|(point, change)| {
-                let place = map.taken_up(point);
+                let place = map.take_up(point);
                 map.moved(&place, &change.map(|it| it * distance), &place)
             });
             Shots::of(map, moved.collect())
@@ -106,13 +106,13 @@ impl<'a> Curve<'a> {
 
     /// The orbit at a distance along the tangent of `base`, with the parameter's derivative as the
     /// corrector learned it.
-    pub fn corrected(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
+    pub fn corrected_point(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
         let mut value = base.value + distance * base.tangent.rate;
         let mut shots = self.shifted(base, &base.tangent, distance)?;
         let mut slopes = base.slopes.clone();
         let mut best: Option<(f64, OrbitShots, Vec<Change>)> = None;
         for _ in 0..ITERATIONS {
-            let left = self.along(base, value, &shots)? - distance;
+            let left = self.distance_along(base, value, &shots)? - distance;
             let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
             let closed = in_place && shots.is_closed();
             match &best {
@@ -120,14 +120,14 @@ impl<'a> Curve<'a> {
                 None if !closed => {}
                 _ => best = Some((value, shots.clone(), slopes.clone())),
             }
-            let bordered = self.bordered(&shots, &slopes, &base.tangent, &base.shots);
+            let bordered = self.bordered_system(&shots, &slopes, &base.tangent, &base.shots);
             let mut right = [0.0; BORDERED_DIMENSION];
             (0..MAX_COORDINATES).for_each(|n| right[n] = -bordered.offset[n] / self.scales[n]);
             right[MAX_COORDINATES] = -left;
             let (first, step) = self.unscaled(&solve(bordered.matrix, right));
             let added: Vec<Change> =
                 shots.defects.iter().zip(&slopes).map(|(a, b)| sum(a, b, step)).collect();
-            let changes = spread(&shots, first, &added);
+            let changes = spread_changes(&shots, first, &added);
             let next = self.moved(value, &shots, &changes, step)?;
             self.learn(&mut slopes, [value, step], [&shots, &next], &changes);
             (value, shots) = (value + step, next);
@@ -144,12 +144,12 @@ impl<'a> Curve<'a> {
         changes: &[Change],
         step: f64,
     ) -> Option<OrbitShots> {
-        let carried = self.family.carried(value, &shots.points)?;
+        let carried = self.family.carry(value, &shots.points)?;
         let count = carried.len();
         self.family.at(value + step, |map| {
             let moved = carried.iter().zip(changes).enumerate().map(|(k, (point, change))| {
                 let piece = &shots.images[(k + count - 1) % count].point;
-                map.moved(&map.taken_up(point), change, piece)
+                map.moved(&map.take_up(point), change, piece)
             });
             Shots::of(map, moved.collect())
         })
@@ -167,10 +167,14 @@ impl<'a> Curve<'a> {
             return;
         }
         let images: Vec<Place<f64>> = before.images.iter().map(|it| it.point.clone()).collect();
-        let apart = self.family.carried(value, &images).and_then(|images| {
+        let apart = self.family.carry(value, &images).and_then(|images| {
             self.family.at(value + step, |map| {
                 let pairs = images.iter().zip(&after.images);
-                Some(pairs.map(|(a, b)| map.apart(&map.taken_up(a), &b.point)).collect::<Vec<_>>())
+                Some(
+                    pairs
+                        .map(|(a, b)| map.change_between(&map.take_up(a), &b.point))
+                        .collect::<Vec<_>>(),
+                )
             })
         });
         for (k, apart) in apart.into_iter().flatten().enumerate() {
@@ -196,18 +200,18 @@ impl<'a> Curve<'a> {
     ) -> Option<CurvePoint> {
         let tangent = self.tangent(&shots, &slopes, along);
         let orbit = self.family.at(value, |map| map.of_shots(&shots))?;
-        let carried = self.family.carried(value, &shots.points)?;
+        let carried = self.family.carry(value, &shots.points)?;
         Some(CurvePoint { value, shots, carried, slopes, tangent, orbit })
     }
 
     /// The curve's direction at shots.
     pub fn tangent(&self, shots: &OrbitShots, slopes: &[Change], along: &Direction) -> Direction {
-        let bordered = self.bordered(shots, slopes, along, shots);
+        let bordered = self.bordered_system(shots, slopes, along, shots);
         let mut right = [0.0; BORDERED_DIMENSION];
         right[MAX_COORDINATES] = 1.0;
         let (first, rate) = self.unscaled(&solve(bordered.matrix, right));
         let added: Vec<Change> = slopes.iter().map(|it| it.map(|by| by * rate)).collect();
-        let mut tangent = Direction { points: spread(shots, first, &added), rate };
+        let mut tangent = Direction { points: spread_changes(shots, first, &added), rate };
         let length = self.product(&tangent, &tangent, shots).sqrt();
         if length > 0.0 && length.is_finite() {
             tangent.rate /= length;
@@ -223,10 +227,10 @@ impl<'a> Curve<'a> {
     }
 
     /// The distance along the tangent of `base` at which shots lie.
-    fn along(&self, base: &CurvePoint, value: f64, shots: &OrbitShots) -> Option<f64> {
-        let moved = self
-            .family
-            .at(value, |map| Some(map.apart(&map.taken_up(&base.carried[0]), &shots.points[0])))?;
+    fn distance_along(&self, base: &CurvePoint, value: f64, shots: &OrbitShots) -> Option<f64> {
+        let moved = self.family.at(value, |map| {
+            Some(map.change_between(&map.take_up(&base.carried[0]), &shots.points[0]))
+        })?;
         let moved = Direction { points: vec![moved], rate: value - base.value };
         Some(self.product(&base.tangent, &moved, &base.shots))
     }
@@ -248,15 +252,15 @@ impl<'a> Curve<'a> {
         sizes.fold(0.0, f64::max)
     }
 
-    fn bordered(
+    fn bordered_system(
         &self,
         shots: &OrbitShots,
         slopes: &[Change],
         along: &Direction,
         weighed: &OrbitShots,
     ) -> Bordered {
-        let Around { matrix: own, offset } = around(shots, &shots.defects);
-        let Around { offset: by_value, .. } = around(shots, slopes);
+        let Around { matrix: own, offset } = recurrence(shots, &shots.defects);
+        let Around { offset: by_value, .. } = recurrence(shots, slopes);
         let (scales, weight) = (&self.scales, self.weight(weighed));
         let mut matrix = [[0.0; BORDERED_DIMENSION]; BORDERED_DIMENSION];
         for (i, row) in self.less_identity(&own).iter().enumerate() {
@@ -282,7 +286,7 @@ impl<'a> Curve<'a> {
     /// leaves.
     pub fn uncertainty(&self, point: &CurvePoint) -> f64 {
         let Bordered { matrix, .. } =
-            self.bordered(&point.shots, &point.slopes, &point.tangent, &point.shots);
+            self.bordered_system(&point.shots, &point.slopes, &point.tangent, &point.shots);
         let by_row = (0..MAX_COORDINATES).map(|row| {
             let mut right = [0.0; BORDERED_DIMENSION];
             right[row] = 1.0;
@@ -299,7 +303,7 @@ impl<'a> Curve<'a> {
     /// where an uncertain orbit touches it. The orbit is uncertain where a multiplier is near 1,
     /// and so is the curve's direction there: it is taken from where it is known better.
     pub fn blur(&self, point: &CurvePoint, along: &Direction) -> f64 {
-        let Around { matrix, .. } = around(&point.shots, &point.shots.defects);
+        let Around { matrix, .. } = recurrence(&point.shots, &point.shots.defects);
         let apart = self.less_identity(&matrix);
         let by_row = (0..MAX_COORDINATES).map(|row| {
             let mut right = [0.0; MAX_COORDINATES];

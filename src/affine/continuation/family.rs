@@ -70,8 +70,8 @@ impl<'a> ReturnFamily<'a> {
     }
 
     /// The points of shots as places of any value's map.
-    pub(super) fn carried(&self, value: f64, points: &[Place<f64>]) -> Option<Vec<Carried>> {
-        self.at(value, |map| Some(points.iter().map(|it| map.carried(it)).collect()))
+    pub(super) fn carry(&self, value: f64, points: &[Place<f64>]) -> Option<Vec<Carried>> {
+        self.at(value, |map| Some(points.iter().map(|it| map.carry(it)).collect()))
     }
 
     /// The derivatives of the images of all points by the parameter, by differences.
@@ -80,7 +80,7 @@ impl<'a> ReturnFamily<'a> {
     /// satisfies the map itself, and its multipliers are those of the exact derivative. Where a
     /// corner is near, the difference is taken on the shots' own side of it.
     pub(super) fn slopes(&self, value: f64, shots: &OrbitShots, scale: f64) -> Vec<Change> {
-        let Some(points) = self.carried(value, &shots.points) else {
+        let Some(points) = self.carry(value, &shots.points) else {
             return vec![[0.0; MAX_COORDINATES]; shots.points.len()];
         };
         let points = points.iter().zip(0..);
@@ -100,13 +100,15 @@ impl<'a> ReturnFamily<'a> {
         // events.
         let beside = |step: f64| {
             let carried = self.at(value + step, |map| {
-                let image = map.image(&map.taken_up(point)).ok()?;
+                let image = map.image(&map.take_up(point)).ok()?;
                 let same =
                     image.way.events == here.way.events && image.point.mode == here.point.mode;
-                Some((map.carried(&image.point), same))
+                Some((map.carry(&image.point), same))
             });
             let (image, same) = carried?;
-            self.at(value, |map| Some((map.apart(&here.point, &map.taken_up(&image)), same)))
+            self.at(value, |map| {
+                Some((map.change_between(&here.point, &map.take_up(&image)), same))
+            })
         };
         let size = value.abs().max(scale);
         let mut fallback = [0.0; MAX_COORDINATES];

@@ -8,7 +8,7 @@ use super::point::{CurvePoint, are_on_one_piece};
 use super::words::{Meaning, cyclic};
 use crate::dynamics::continuation::steps::{Corner, Noted, OrbitCurve, OrbitPoint};
 use crate::dynamics::linear::ReIm;
-use crate::dynamics::orbit::newton::polished;
+use crate::dynamics::orbit::newton::polish;
 
 impl OrbitPoint for CurvePoint {
     fn value(&self) -> f64 {
@@ -44,8 +44,8 @@ impl OrbitCurve for Curve<'_> {
     type Bifurcation = ReturnBifurcation;
     type Kept = (f64, Orbit);
 
-    fn corrected(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
-        Self::corrected(self, base, distance)
+    fn corrected_point(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
+        Self::corrected_point(self, base, distance)
     }
 
     fn cosine(&self, point: &CurvePoint, next: &CurvePoint) -> f64 {
@@ -61,10 +61,10 @@ impl OrbitCurve for Curve<'_> {
         let shots = self.family.at(value, |map| {
             let pairs = point.carried.iter().zip(&next.carried);
             let between = pairs.map(|(a, b)| {
-                let [a, b] = [a, b].map(|it| map.taken_up(it));
-                map.moved(&a, &map.apart(&a, &b).map(|it| share * it), &a)
+                let [a, b] = [a, b].map(|it| map.take_up(it));
+                map.moved(&a, &map.change_between(&a, &b).map(|it| share * it), &a)
             });
-            let shots = polished(map, Shots::of(map, between.collect())?);
+            let shots = polish(map, Shots::of(map, between.collect())?);
             shots.is_closed().then_some(shots)
         })?;
         self.point(value, shots, &next.tangent)
@@ -101,7 +101,7 @@ impl OrbitCurve for Curve<'_> {
         ReturnBifurcation { kind, value, error, event: None, turns, orbit, point, is_lost: false }
     }
 
-    fn kept(&self, point: &CurvePoint) -> (f64, Orbit) {
+    fn kept_point(&self, point: &CurvePoint) -> (f64, Orbit) {
         (point.value, point.orbit.clone())
     }
 
@@ -111,7 +111,7 @@ impl OrbitCurve for Curve<'_> {
         }
         let distance = |a: &CurvePoint, b: &CurvePoint| {
             let distance = self.family.at(a.value, |map| {
-                let other: Vec<_> = b.carried.iter().map(|it| map.taken_up(it)).collect();
+                let other: Vec<_> = b.carried.iter().map(|it| map.take_up(it)).collect();
                 Some(a.shots.distance(map, &other))
             });
             distance.unwrap_or(f64::INFINITY)

@@ -3,7 +3,7 @@
 use super::super::returns::shooting::{Change, MAX_COORDINATES, ReturnMap, Shots};
 use super::curve::Curve;
 use super::point::{CurvePoint, Direction};
-use crate::dynamics::orbit::newton::solved;
+use crate::dynamics::orbit::newton::solve;
 
 impl Curve<'_> {
     /// An orbit of half the period midway between the halves of a point's, if the curve runs into
@@ -19,10 +19,10 @@ impl Curve<'_> {
         let half = point.shots.points.len() / 2;
         let middle = self.family.at(point.value, |map| {
             let points = point.carried[..half].iter().zip(&here).map(|(it, change)| {
-                let place = map.taken_up(it);
+                let place = map.take_up(it);
                 map.moved(&place, &change.map(|by| 0.5 * by), &place)
             });
-            solved(map, Shots::of(map, points.collect())?).ok()
+            solve(map, Shots::of(map, points.collect())?).ok()
         })?;
         let along = Direction { points: vec![[0.0; MAX_COORDINATES]; half], rate: self.unit };
         self.point(point.value, middle, &along)
@@ -33,7 +33,7 @@ impl Curve<'_> {
         let points = &point.shots.points;
         let (first, second) = points.split_at(points.len() / 2);
         let changes = self.family.at(point.value, |map| {
-            Some(first.iter().zip(second).map(|(a, b)| map.apart(a, b)).collect())
+            Some(first.iter().zip(second).map(|(a, b)| map.change_between(a, b)).collect())
         });
         changes.filter(|_| points.len().is_multiple_of(2))
     }

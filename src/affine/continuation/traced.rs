@@ -101,7 +101,7 @@ impl Tracer<'_> {
                     return None;
                 }
                 let target = self.plane.moved(start.at, way.map(|it| it * length));
-                let found = self.near(&step, target, axis_of(*way), &FIRST_REACHES)?;
+                let found = self.find_near(&step, target, axis_of(*way), &FIRST_REACHES)?;
                 Some(self.plane.way(start.at, found.at))
             })
         })
@@ -159,18 +159,18 @@ impl Tracer<'_> {
         if let Some(edge) = edge {
             target = between(from.at, target, fixed, edge);
         }
-        let found = self.near(step, target, axis, &REACHES)?;
+        let found = self.find_near(step, target, axis, &REACHES)?;
         let Some(side) = self.plane.passed(axis, found.at[axis]) else {
             return Some((found, edge.is_some()));
         };
         let target = between(from.at, found.at, axis, side);
-        let found = self.near(step, target, fixed, &REACHES)?;
+        let found = self.find_near(step, target, fixed, &REACHES)?;
         self.plane.passed(fixed, found.at[fixed]).is_none().then_some((found, true))
     }
 
     /// The bifurcation on the line through a place on which one parameter varies, if it lies where
     /// a step may lead.
-    fn near(
+    fn find_near(
         &self,
         step: &Step<'_>,
         target: [f64; 2],
@@ -182,7 +182,7 @@ impl Tracer<'_> {
             let expected = self.expected(curve, step, from, target, axis);
             reaches.iter().find_map(|reach| {
                 let reach = reach * step.length;
-                let OnLine { point, error } = curve.found_again(&self.sought, &expected, reach)?;
+                let OnLine { point, error } = curve.find_again(&self.sought, &expected, reach)?;
                 let mut at = target;
                 at[axis] = point.value;
                 let chord = self.plane.way(step.from.at, at);
@@ -229,10 +229,10 @@ impl Tracer<'_> {
             let pairs = from.carried.iter().zip(&before.point.carried);
             curve.family.at(value, |map| {
                 let ahead = pairs.map(|(from, before)| {
-                    let [from, before] = [from, before].map(|it| map.taken_up(it));
+                    let [from, before] = [from, before].map(|it| map.take_up(it));
                     let is_same = from.mode == before.mode;
-                    let change = map.apart(&before, &from).map(|it| it * share);
-                    is_same.then(|| map.carried(&map.moved(&from, &change, &from)))
+                    let change = map.change_between(&before, &from).map(|it| it * share);
+                    is_same.then(|| map.carry(&map.moved(&from, &change, &from)))
                 });
                 ahead.collect::<Option<Vec<_>>>()
             })
@@ -257,7 +257,7 @@ impl Tracer<'_> {
         let back = self.plane.way(nearer.at, other.at);
         let reach = length(back).max(FIRST_STEP * PASSING_TOLERANCE);
         let step = Step { from: nearer, before: None, way, length: reach };
-        let found = self.near(&step, other.at, other.axis, &FIRST_REACHES);
+        let found = self.find_near(&step, other.at, other.axis, &FIRST_REACHES);
         found.is_some_and(|it| {
             (it.at[other.axis] - other.at[other.axis]).abs() <= it.error + other.error
         })

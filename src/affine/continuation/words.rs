@@ -43,7 +43,7 @@ impl Curve<'_> {
     pub fn meaning(&self, before: &CurvePoint, beyond: Option<&CurvePoint>) -> Option<Meaning> {
         let probe = || Some(self.events_of(self.probes(before, PROBE_DISTANCES[0][0]).first()?));
         let after = beyond.map(|it| it.orbit.events.clone()).or_else(probe)?;
-        let [lost, gained] = differing(&before.orbit.events, &after);
+        let [lost, gained] = differing_parts(&before.orbit.events, &after);
         let is_beyond = lost.is_empty();
         let changed = if is_beyond { &gained } else { &lost };
         let first = *changed.first()?;
@@ -57,11 +57,11 @@ impl Curve<'_> {
         let sides = orbits.or_else(|| {
             PROBE_DISTANCES.iter().find_map(|distances| {
                 let [near, far] = distances.map(|it| self.side(before, is_beyond, it));
-                alike(near?, far?)
+                same_events(near?, far?)
             })
         });
         let (near, far) = sides.unwrap_or_default();
-        let touched = touched(&near, &far, changed);
+        let touched = touched_event(&near, &far, changed);
         let is_corner = !gained.is_empty() && !lost.is_empty() || are_at_once(&near, &far, changed);
         Some(match touched {
             Some(event) => Meaning { kind: BifurcationKind::Grazing, event },
@@ -78,9 +78,9 @@ impl Curve<'_> {
     /// The distance is that at which a parabola would be whose top is the corner, or twice it.
     fn orbits_beyond(&self, before: &CurvePoint, beyond: &CurvePoint) -> Option<Sides> {
         let apart = ((beyond.value - before.value) / beyond.tangent.rate).abs();
-        let far = self.corrected(beyond, 15.0 * apart)?;
+        let far = self.corrected_point(beyond, 15.0 * apart)?;
         let near = self.crossings(beyond.value, &beyond.shots)?;
-        alike(near, self.crossings(far.value, &far.shots)?)
+        same_events(near, self.crossings(far.value, &far.shots)?)
     }
 
     /// The crossings on one side at a distance from the corner: of the orbit before, or of points
@@ -90,7 +90,7 @@ impl Curve<'_> {
             let found = self.probes(before, distance).into_iter().next()?;
             return self.crossings(before.value + distance * before.tangent.rate, &found);
         }
-        let point = self.corrected(before, -distance)?;
+        let point = self.corrected_point(before, -distance)?;
         self.crossings(point.value, &point.shots)
     }
 
@@ -104,14 +104,14 @@ impl Curve<'_> {
 }
 
 /// The crossings near to a corner and far from it, if they are of the same events.
-fn alike(near: Vec<Crossing>, far: Vec<Crossing>) -> Option<Sides> {
+fn same_events(near: Vec<Crossing>, far: Vec<Crossing>) -> Option<Sides> {
     let guards = |side: &[Crossing]| side.iter().map(|it| it.guard).collect::<Vec<_>>();
     (guards(&near) == guards(&far)).then_some((near, far))
 }
 
 /// The event among those that have changed whose rate vanishes, the first of those that follow one
 /// another: a touch is followed by the end of what it has begun.
-fn touched(near: &[Crossing], far: &[Crossing], changed: &[Guard]) -> Option<Guard> {
+fn touched_event(near: &[Crossing], far: &[Crossing], changed: &[Guard]) -> Option<Guard> {
     let count = near.len();
     let is_touched = |k: usize| {
         let (one, other) = (&near[k], &far[k]);
@@ -133,7 +133,7 @@ fn are_at_once(near: &[Crossing], far: &[Crossing], changed: &[Guard]) -> bool {
 
 /// The parts in which two words differ, as they are cyclically: what the first has alone, and the
 /// second.
-fn differing(one: &[Guard], other: &[Guard]) -> [Vec<Guard>; 2] {
+fn differing_parts(one: &[Guard], other: &[Guard]) -> [Vec<Guard>; 2] {
     let turns = |word: &[Guard]| if word.len() > MAX_LETTERS { 1 } else { word.len().max(1) };
     let mut best: Option<[Vec<Guard>; 2]> = None;
     for k in 0..turns(one) {

@@ -59,7 +59,9 @@ impl Cause {
     pub(super) fn of<T: Number>(run: &Run<'_, T>, system: &System) -> Option<Self> {
         let name = |it: &What<T>| Kind::of(it).name(system).to_owned();
         match run.ending()? {
-            Ending::BeyondGuard => Some(Self::BeyondGuard { event: name(&run.beyond()?) }),
+            Ending::BeyondGuard => {
+                Some(Self::BeyondGuard { event: name(&run.event_beyond_guard()?) })
+            }
             Ending::Undecided => {
                 let searched = run.searched().value().to_f64();
                 if run.overflows() {
@@ -69,7 +71,7 @@ impl Cause {
                 if !events.is_empty() {
                     return Some(Self::Order { events, searched });
                 }
-                let event = run.doubtful().as_ref().map(name);
+                let event = run.doubtful_event().as_ref().map(name);
                 let resolution = run.resolution().map(size).filter(|_| event.is_some());
                 Some(Self::Guard { event, resolution, searched })
             }

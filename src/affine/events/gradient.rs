@@ -108,13 +108,13 @@ impl<'a, T: Number> Walks<'a, T> {
 
     /// The derivatives of the start, as numbers of another kind.
     pub fn of_start<V>(&self, number: impl Fn(&(T, T::Bound)) -> V) -> Vec<ByName<V>> {
-        let one = |it: &OneName<'_, T>| it.named(std::slice::from_ref(&it.start), &number);
+        let one = |it: &OneName<'_, T>| it.by_name(std::slice::from_ref(&it.start), &number);
         self.0.iter().map(one).collect()
     }
 
     /// The derivatives of the last event, as numbers of another kind.
     pub fn of_last<V>(&self, number: impl Fn(&(T, T::Bound)) -> V) -> Vec<ByName<V>> {
-        self.0.iter().map(|it| it.named(&it.last, &number)).collect()
+        self.0.iter().map(|it| it.by_name(&it.last, &number)).collect()
     }
 
     /// Adds the sizes of the last event's derivatives, and says whether more bits may give it some,
@@ -149,7 +149,11 @@ impl<T: Number> OneName<'_, T> {
         needs
     }
 
-    fn named<V>(&self, all: &[Derivatives<T>], number: &impl Fn(&(T, T::Bound)) -> V) -> ByName<V> {
+    fn by_name<V>(
+        &self,
+        all: &[Derivatives<T>],
+        number: &impl Fn(&(T, T::Bound)) -> V,
+    ) -> ByName<V> {
         let gradient = |it: &Derivatives<T>| {
             it.as_ref().map_err(|error| *error).map(|it| Gradient {
                 time: number(&it.time),

@@ -6,7 +6,7 @@
 
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment, Passed, PerGuard};
 use crate::affine::guards::row::ModalRow;
-use crate::affine::guards::track::{SearchWork, Track, live, outward};
+use crate::affine::guards::track::{SearchWork, Track, live_tracks, outward};
 use crate::numeric::number::{Bound, Number};
 
 /// The number of Taylor terms that are summed to guess at a crossing, at most.
@@ -50,7 +50,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
         let mut all: PerGuard<GuardCrossing<T>> = PerGuard::new();
-        for (n, track) in live(tracks).filter(|(n, _)| !passed.has(*n, at.time)) {
+        for (n, track) in live_tracks(tracks).filter(|(n, _)| !passed.has(*n, at.time)) {
             all.extend(self.rises(n, track, at));
         }
         let first = all.iter().reduce(|a, b| if b.after < a.after { b } else { a })?;
@@ -62,7 +62,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         }
         let end = at.time + T::exact(first.within);
         let is_open = |n: usize| all.iter().all(|it| it.guard != n) && !passed.has(n, end);
-        for (n, track) in live(tracks).filter(|(n, _)| is_open(*n)) {
+        for (n, track) in live_tracks(tracks).filter(|(n, _)| is_open(*n)) {
             let bound = self.upper_bound(n, track, at, first.within);
             let below = bound <= at.slack[n] * 4.0;
             if !below {

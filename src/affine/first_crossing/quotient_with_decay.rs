@@ -37,7 +37,7 @@ impl DecayTerm {
     /// The term's value at a time.
     #[inline]
     fn at(&self, time: f64) -> f64 {
-        self.value * fallen(self.rate * time)
+        self.value * decaying_exponential(self.rate * time)
     }
 
     /// Adds an upper bound of the term up to a time to Bernstein coefficients.
@@ -45,7 +45,7 @@ impl DecayTerm {
     fn raise<const N: usize>(&self, hull: &mut [f64; N], time: f64) {
         let degree = (N - 1) as f64;
         let step = self.rate * time / degree;
-        let share = fallen(step);
+        let share = decaying_exponential(step);
         let falls = powers::<N>(share);
         if self.value > 0.0 {
             let value = self.value * (1.0 + DECAY_ERROR);
@@ -61,7 +61,7 @@ impl DecayTerm {
 
 /// exp(-x) for an x that is not negative; what is no number stays so.
 #[inline]
-fn fallen(x: f64) -> f64 {
+fn decaying_exponential(x: f64) -> f64 {
     /// An exponent from which on the exponential is below half of the smallest number.
     const MAX_EXPONENT: f64 = 746.0;
     if x >= MAX_EXPONENT { 0.0 } else { exp(-x) }

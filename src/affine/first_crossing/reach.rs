@@ -169,7 +169,7 @@ fn enclose<T: Number>(
                 let from = row.first_column(k + 1);
                 let slope = row.first_orders(&left.modal.y, from)[1].bound() * track.outward;
                 let rate = (part.norms[1] / part.norms[0]).to_f64();
-                let length = held_back(-own, rate, value, slope);
+                let length = held_back_time(-own, rate, value, slope);
                 if length > reach.length {
                     (reach.cut, reach.length) = (k + 1, length.min(longest));
                 }
@@ -191,7 +191,7 @@ fn enclose<T: Number>(
 /// it: until it is twice as large as the rest has become. The next piece is short relative to the
 /// decay time.
 #[inline]
-fn held_back<B: Bound>(decay: B, rate: f64, value: B, slope: B) -> f64 {
+fn held_back_time<B: Bound>(decay: B, rate: f64, value: B, slope: B) -> f64 {
     let until = |rest: B| libm::log((decay / (rest * 2.0)).to_f64()) / rate;
     let length = until(value.abs());
     if length > 0.0 { until(value.abs() + slope.abs() * length) } else { 0.0 }

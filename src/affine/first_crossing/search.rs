@@ -16,7 +16,7 @@ use super::hull::{Lengths, SignOnPiece};
 use super::reach::Reach;
 use super::taylor::FailedAttempts;
 use crate::affine::guards::point::{Ends, GuardedPoint, GuardedSegment, Passed, PerGuard};
-use crate::affine::guards::track::{SearchWork, Track, live};
+use crate::affine::guards::track::{SearchWork, Track, live_tracks};
 use crate::numeric::number::{Bound, Number};
 use std::ops::ControlFlow;
 
@@ -55,7 +55,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let span = [ends.left.time, limit];
         // After a crossing of a watched guard the piece in which it lies is continued.
         let mut is_ahead = ends.left.time < ends.passed.until;
-        let guards = live(tracks).count().max(1) as u64;
+        let guards = live_tracks(tracks).count().max(1) as u64;
         let mut work_left = (MAX_PIECES / guards).max(MIN_PIECES);
         while work_left > 0 {
             work_left -= 1;
@@ -67,7 +67,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             }
             self.measure_norms(&mut ends.left);
             if let Some(crossing) = self.first_proved(tracks, &ends.left, failed_attempts, work) {
-                return self.settled_by(&crossing, tracks, ends, span, work);
+                return self.settle_by(&crossing, tracks, ends, span, work);
             }
             let known = if is_ahead { ends.passed.guards } else { 0 };
             let reaches = self.reaches(tracks, &ends.left, known);
@@ -120,7 +120,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     ) -> ControlFlow<SearchOutcome, f64> {
         let left = &ends.left;
         let is_finite = |n: usize| (left.orders[n][0].bound().abs() + left.slack[n]).is_finite();
-        if !live(tracks).all(|(n, _)| is_finite(n)) {
+        if !live_tracks(tracks).all(|(n, _)| is_finite(n)) {
             // Values that overflow prove nothing.
             return ControlFlow::Break(SearchOutcome::GivenUp);
         }
@@ -130,7 +130,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         self.measure_norms(&mut ends.left);
         match self.rising(tracks, &ends.left, &ends.passed, work) {
             Some(crossing) => {
-                ControlFlow::Break(self.settled_by(&crossing, tracks, ends, span, work))
+                ControlFlow::Break(self.settle_by(&crossing, tracks, ends, span, work))
             }
             None => ControlFlow::Continue(0.25),
         }
@@ -165,7 +165,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// Brings the left end to a crossing that is proved, if that is not after the span's end. It is
     /// not before the span's begin, the event before it, whatever rounding says.
     #[inline]
-    fn settled_by(
+    fn settle_by(
         &self,
         crossing: &FirstCrossing<T>,
         tracks: &[Track],
@@ -173,7 +173,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         span: [T; 2],
         work: &mut SearchWork,
     ) -> SearchOutcome {
-        match self.settled(tracks, &mut ends.left, crossing, span, work) {
+        match self.settle(tracks, &mut ends.left, crossing, span, work) {
             true => SearchOutcome::Crossing(crossing.guards),
             false => SearchOutcome::NoCrossing,
         }
@@ -207,7 +207,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     ) -> bool {
         let left = &ends.left;
         let mut length = most;
-        for (n, track) in live(tracks) {
+        for (n, track) in live_tracks(tracks) {
             if reaches[n].length.is_nan() || reaches[n].length <= 0.0 {
                 return false;
             }
@@ -255,7 +255,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let until = ends.right.time;
         let lengths = Lengths::of(until - ends.left.time);
         let (mut share, mut guards): (Option<f64>, u64) = (None, 0);
-        for (n, track) in live(tracks) {
+        for (n, track) in live_tracks(tracks) {
             if ends.passed.has(n, until) {
                 guards |= 1 << n;
                 continue;

@@ -39,7 +39,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// Brings a point to the crossing, to the last digit; whether that is not after `limit`. It is
     /// not before `from`. Of the guards only the first that crosses is evaluated there.
     #[inline]
-    pub(super) fn settled(
+    pub(super) fn settle(
         &self,
         tracks: &[Track],
         point: &mut GuardedPoint<T>,

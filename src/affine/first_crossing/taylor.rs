@@ -10,7 +10,7 @@ use super::quotient::{Quotient, WINDOW};
 use super::reach::rise;
 use crate::affine::closed_form::bound::ORDERS;
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
-use crate::affine::guards::track::{SearchWork, Track, live, outward};
+use crate::affine::guards::track::{SearchWork, Track, live_tracks, outward};
 use crate::numeric::number::{Bound, Number};
 
 /// The terms of the shorter polynomial: derivatives, the value and the one that is bounded
@@ -130,7 +130,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let room = guard.crosses(after, last)?;
         let end = (1.0 + room) * after;
         let mut guards = 1 << n;
-        for (other, track) in live(tracks).filter(|(other, _)| *other != n) {
+        for (other, track) in live_tracks(tracks).filter(|(other, _)| *other != n) {
             if self.rows[other].twin == self.rows[n].twin && track.outward == tracks[n].outward {
                 guards |= 1 << other;
             } else if !self.stays_negative::<N>(other, track, at, end) {
@@ -204,7 +204,7 @@ impl<T: Number> GuardedSegment<'_, T> {
 #[inline]
 fn nearest<T: Number>(tracks: &[Track], at: &GuardedPoint<T>) -> Option<(usize, f64)> {
     let mut nearest = (usize::MAX, f64::INFINITY);
-    for (n, track) in live(tracks) {
+    for (n, track) in live_tracks(tracks) {
         let root = rough_root(track, &at.orders[n]);
         if root < nearest.1 {
             nearest = (n, root);

@@ -13,7 +13,7 @@ use super::taylor::{
     positive_root, rough_root,
 };
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
-use crate::affine::guards::track::{SearchWork, Track, live, outward};
+use crate::affine::guards::track::{SearchWork, Track, live_tracks, outward};
 use crate::numeric::number::{Bound, Number};
 
 impl<T: Number> GuardedSegment<'_, T> {
@@ -32,7 +32,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         }
         let is_later = at.time > T::zero();
         let begins_below = |(n, track): (usize, &Track)| self.decay_rate(n, track, at).is_some();
-        if !live(tracks).any(begins_below)
+        if !live_tracks(tracks).any(begins_below)
             || !failed_attempts.is_due(Attempt::WithoutDecay, is_later)
         {
             return None;
@@ -85,7 +85,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     ) -> Option<(usize, f64, f64)> {
         let mut nearest = None;
         let mut earliest = f64::INFINITY;
-        for (n, track) in live(tracks) {
+        for (n, track) in live_tracks(tracks) {
             let (root, found) = match self.decay_rate(n, track, at) {
                 Some(_) => {
                     let row = &self.rows[n];
@@ -119,7 +119,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             .crosses(after, self.rest_bound(n, SHORT_TERMS - 1, at, (1.0 + WINDOW) * after))?;
         let end = (1.0 + room) * after;
         let mut guards = 1 << n;
-        for (other, track) in live(tracks).filter(|(other, _)| *other != n) {
+        for (other, track) in live_tracks(tracks).filter(|(other, _)| *other != n) {
             if self.rows[other].twin == self.rows[n].twin && track.outward == tracks[n].outward {
                 guards |= 1 << other;
                 continue;

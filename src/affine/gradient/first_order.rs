@@ -59,7 +59,7 @@ impl VariedRow<'_> {
         with_derivative(self.row, self.rate)
     }
 
-    fn nearby(&self) -> Option<Residues> {
+    fn nearby_residues(&self) -> Option<Residues> {
         residues(self.nearby?)
     }
 
@@ -75,7 +75,8 @@ impl VariedRow<'_> {
         if !first.contains(&self.first().ok_or(NoGradient::Unknown)?) {
             return Ok(false);
         }
-        let holds = nearby.zip(self.nearby()).is_some_and(|(space, row)| space.contains(&row));
+        let holds =
+            nearby.zip(self.nearby_residues()).is_some_and(|(space, row)| space.contains(&row));
         if holds { Ok(true) } else { Err(NoGradient::HigherOrder) }
     }
 }
@@ -166,7 +167,7 @@ impl FirstOrder {
         if order == Some(0) {
             return Ok(order);
         }
-        let beside = self.nearby.as_ref().zip(row.nearby());
+        let beside = self.nearby.as_ref().zip(row.nearby_residues());
         let holds = beside.is_some_and(|(zeros, row)| {
             let beside = zeros.multiplicity(&row, mode);
             beside.is_none_or(|beside| order.is_some_and(|order| beside >= order))
@@ -190,7 +191,7 @@ impl FirstOrder {
     /// The zeros at an instant of the segment, or at its entry, where a guard fires.
     pub fn with_guard(&self, guard: &VariedRow<'_>, at_entry: bool) -> Option<InstantZeros> {
         let first = self.first.with(at_entry, &[of_value(guard.row)?, guard.first()?]);
-        let nearby = self.nearby.as_ref().zip(guard.nearby());
+        let nearby = self.nearby.as_ref().zip(guard.nearby_residues());
         Some(InstantZeros { first, nearby: nearby.map(|(it, row)| it.with(at_entry, &[row])) })
     }
 

@@ -129,7 +129,7 @@ impl<'a, T: Number> Walk<'a, T> {
     /// # Errors
     /// An event that has none, and each after it.
     pub fn step(&mut self, event: &Event<T>, run: &Run<'_, T>) -> Result<Gradient<T>, NoGradient> {
-        if run.touched().is_some() {
+        if run.touched_event().is_some() {
             self.refused = self.refused.or(Some(NoGradient::Touch));
         } else if run.work().undecidable > 0 {
             self.refused = self.refused.or(Some(NoGradient::Undecided));

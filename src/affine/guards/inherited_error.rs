@@ -46,7 +46,12 @@ impl<B: Bound> InheritedError<B> {
 
     /// A bound of the row's error at a time, which is not negative. Between two times it is at most
     /// the larger of theirs, because decays and polynomials of positive terms are convex.
-    pub fn by<T: Number<Bound = B>>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>, time: f64) -> B {
+    pub fn bound<T: Number<Bound = B>>(
+        &self,
+        flow: &ModeFlow<T>,
+        row: &ModalRow<T>,
+        time: f64,
+    ) -> B {
         let norms = flow.decayed(&self.norms, time);
         (self.orders[0] + self.polynomial(1, time)) * OUTWARD_FACTOR + row.bound(0, &norms, time)
     }
@@ -54,7 +59,12 @@ impl<B: Bound> InheritedError<B> {
     /// A bound of the row's error at a time, which is not negative, where so many of its first
     /// Taylor terms at entry are zeros and are left out: the rest of a block that is no polynomial
     /// is an integral of the derivative that follows those. The bound increases with the time.
-    pub fn without<T: Number<Bound = B>>(&self, zeros: usize, row: &ModalRow<T>, time: f64) -> B {
+    pub fn bound_without_zeros<T: Number<Bound = B>>(
+        &self,
+        zeros: usize,
+        row: &ModalRow<T>,
+        time: f64,
+    ) -> B {
         let norms = row.bound(zeros, &self.norms, time);
         let others = (1..=zeros).fold(norms, |sum, k| sum * time / k as f64);
         (self.polynomial(zeros, time) + others) * OUTWARD_FACTOR

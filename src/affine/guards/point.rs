@@ -73,7 +73,7 @@ pub struct GuardedPoint<T: Number> {
 
 impl<'a, T: Number> GuardedSegment<'a, T> {
     /// A segment of a mode that is not entered yet.
-    pub fn before(flow: &'a ModeFlow<T>, rows: &'a [ModalRow<T>]) -> Self {
+    pub fn before_entry(flow: &'a ModeFlow<T>, rows: &'a [ModalRow<T>]) -> Self {
         Self {
             flow,
             rows,
@@ -287,7 +287,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         for n in guards {
             let lost = self.rows[n].bound(0, &followed.lost, point.time.to_f64());
             let rest = T::Bound::UNDERFLOW * LARGEST_DIMENSION as f64;
-            let off = self.rows[n].off(&point.modal.sizes);
+            let off = self.rows[n].value_error(&point.modal.sizes);
             point.slack[n] += self.inherited_by(n, point.time) + lost + rest + off;
         }
     }
@@ -313,14 +313,14 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         let (row, own, time) = (&self.rows[n], &followed.inherited[n], time.to_f64());
         let zeros = self.zeros[n];
         if !has_series(zeros) {
-            return own.by(self.flow, row, time);
+            return own.bound(self.flow, row, time);
         }
         if self.is_by_series(n, time) {
-            return own.without(zeros, row, time);
+            return own.bound_without_zeros(zeros, row, time);
         }
         // Between a time of the series and this one the closed form's bound is at most the larger
         // of those at entry and here.
-        own.by(self.flow, row, time).max(own.by(self.flow, row, 0.0))
+        own.bound(self.flow, row, time).max(own.bound(self.flow, row, 0.0))
     }
 }
 

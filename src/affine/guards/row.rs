@@ -82,7 +82,9 @@ impl<T: Number> ModalRow<T> {
             let norms = bound::norms::<T::Bound>(block, part);
             if norms.iter().any(|it| *it > 0.0) {
                 let subspace = smallest_subspace(flow, n, part);
-                modal.add_part((n, subspace), &flow.blocks[n], norms, |j| off(&row, block, j));
+                modal.add_part((n, subspace), &flow.blocks[n], norms, |j| {
+                    factor_error(&row, block, j)
+                });
             }
         }
         modal.decay_rate = modal.parts.first().and_then(RowPart::decay_rate);
@@ -211,7 +213,7 @@ impl<T: Number> ModalRow<T> {
 
     /// A bound of the error of the row's value by the errors of its factors, from the sizes of the
     /// co-ordinates.
-    pub fn off(&self, y: &Vector<T::Bound>) -> T::Bound {
+    pub fn value_error(&self, y: &Vector<T::Bound>) -> T::Bound {
         self.columns.iter().map(|it| it.off * y[it.at]).sum()
     }
 
@@ -262,7 +264,7 @@ fn smallest_subspace<T: Number>(flow: &ModeFlow<T>, n: usize, part: &[Vec<BigRea
 }
 
 /// A bound of the error of a row's factor of a block's co-ordinate.
-fn off<B: Bound>(row: &[BigReal], block: &modal::Block, j: usize) -> B {
+fn factor_error<B: Bound>(row: &[BigReal], block: &modal::Block, j: usize) -> B {
     let term = |(it, off): (&BigReal, &Vec<ScaledF64>)| it.bound::<ScaledF64>().abs() * off[j];
     let sum: ScaledF64 = row.iter().zip(&block.off[0]).map(term).sum();
     sum.rounded()

@@ -46,6 +46,6 @@ pub fn outward<T: Number>(orders: &[T; 4], track: &Track) -> [T; 4] {
 
 /// The guards that can cross, with their numbers.
 #[inline]
-pub fn live(tracks: &[Track]) -> impl Iterator<Item = (usize, &Track)> {
+pub fn live_tracks(tracks: &[Track]) -> impl Iterator<Item = (usize, &Track)> {
     tracks.iter().enumerate().filter(|(_, track)| track.live)
 }

@@ -133,9 +133,10 @@ fn connected_blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> {
         let clusters = clusters(roots, time_scale);
         clusters.iter().map(|it| block(&matrix, it, time_scale)).collect()
     };
-    let blocks =
-        eigenvalues(exact, bits).and_then(taken_apart).unwrap_or_else(|| vec![whole(&matrix)]);
-    let spread = spread(&blocks);
+    let blocks = eigenvalues(exact, bits)
+        .and_then(taken_apart)
+        .unwrap_or_else(|| vec![whole_block(&matrix)]);
+    let spread = error_spread(&blocks);
     let finished = |it| unscaled(measured(it, &matrix, time_scale, &spread), &scales);
     blocks.into_iter().map(finished).collect()
 }
@@ -166,7 +167,7 @@ fn unscaled(mut block: Block, scales: &[isize]) -> Block {
 }
 
 /// The sum over all blocks of the sizes of X W, by which an error in one entry spreads to others.
-fn spread(blocks: &[Block]) -> Vec<Vec<ScaledF64>> {
+fn error_spread(blocks: &[Block]) -> Vec<Vec<ScaledF64>> {
     let sizes = |it: &BigMatrix| -> Vec<Vec<ScaledF64>> {
         it.iter().map(|row| row.iter().map(|it| it.bound::<ScaledF64>().abs()).collect()).collect()
     };
@@ -212,7 +213,7 @@ fn measured(
     block
 }
 
-fn whole(matrix: &BigMatrix) -> Block {
+fn whole_block(matrix: &BigMatrix) -> Block {
     let unit = identity(matrix.len());
     let off = [Vec::new(), Vec::new()];
     Block { kind: Kind::Cluster, columns: unit.clone(), rows: unit, matrix: matrix.clone(), off }
@@ -223,7 +224,7 @@ fn clusters(roots: Vec<Eigenvalue>, time_scale: f64) -> Vec<Vec<Eigenvalue>> {
     let mut clusters: Vec<Vec<Eigenvalue>> = Vec::new();
     for root in roots {
         let near =
-            |cluster: &Vec<Eigenvalue>| cluster.iter().any(|it| close(it, &root, time_scale));
+            |cluster: &Vec<Eigenvalue>| cluster.iter().any(|it| are_close(it, &root, time_scale));
         let (joined, apart): (Vec<_>, Vec<_>) = clusters.into_iter().partition(near);
         clusters = apart;
         clusters.push(joined.into_iter().flatten().chain([root]).collect());
@@ -232,7 +233,7 @@ fn clusters(roots: Vec<Eigenvalue>, time_scale: f64) -> Vec<Vec<Eigenvalue>> {
 }
 
 /// Whether two eigenvalues, or the one and the other's conjugate, are close.
-fn close(a: &Eigenvalue, b: &Eigenvalue, time_scale: f64) -> bool {
+fn are_close(a: &Eigenvalue, b: &Eigenvalue, time_scale: f64) -> bool {
     let gap = (&a.value - &b.value).norm().to_f64();
     is_close(gap, a, b, time_scale)
 }
@@ -268,7 +269,7 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue], time_scale: f64) -> Option<
         .for_each(|it| *it = BigReal::zero());
     let off = [Vec::new(), Vec::new()];
     let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner, off };
-    let block = named(block, cluster);
+    let block = with_kind(block, cluster);
     let of_several = matches!(block.kind, Kind::Cluster).then_some(&block);
     Some(of_several.and_then(|it| triangular(it, cluster, time_scale)).unwrap_or(block))
 }
@@ -340,7 +341,7 @@ fn factor(matrix: &BigMatrix, root: &Eigenvalue) -> BigMatrix {
 }
 
 /// The block in the form of the kind that its eigenvalues have.
-fn named(mut block: Block, cluster: &[Eigenvalue]) -> Block {
+fn with_kind(mut block: Block, cluster: &[Eigenvalue]) -> Block {
     let [root] = cluster else { return block };
     if root.is_real() {
         let rate = root.value.re.clone();

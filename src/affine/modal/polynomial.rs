@@ -42,7 +42,7 @@ pub fn eigenvalues(matrix: &[Row], bits: usize) -> Option<Vec<Eigenvalue>> {
     let mut roots = Vec::new();
     for (n, factor) in squarefree(&whole).into_iter().enumerate() {
         let mut values = Vec::new();
-        for part in shared(factor, &parts) {
+        for part in common_factors(factor, &parts) {
             values.extend(simple_roots(&part, bits)?);
         }
         let size = |it: &BigComplex| it.norm_square();
@@ -54,7 +54,7 @@ pub fn eigenvalues(matrix: &[Row], bits: usize) -> Option<Vec<Eigenvalue>> {
 
 /// The factors that a polynomial, which has each root once, has in common with others, of which
 /// every root is one.
-fn shared(mut polynomial: Polynomial, others: &[Polynomial]) -> Vec<Polynomial> {
+fn common_factors(mut polynomial: Polynomial, others: &[Polynomial]) -> Vec<Polynomial> {
     let mut factors = Vec::new();
     for other in others {
         let common = greatest_common_divisor(&polynomial, other);

@@ -21,7 +21,7 @@ const COUPLING_PER_RATE: f64 = 1.0 / 1024.0;
 
 /// The exponent of two of the rounding that is left of a zero of the triangular matrix, relative to
 /// its largest entry: it is far below half of the bits.
-fn nothing(matrix: &BigMatrix) -> isize {
+fn zero_exponent(matrix: &BigMatrix) -> isize {
     /// The bits that the invariant spaces of close eigenvalues lose.
     const SEPARATION_LOSS_BITS: isize = 20;
     SEPARATION_LOSS_BITS - matrix.first().map_or(0, |row| row[0].bits() as isize) / 2
@@ -46,12 +46,12 @@ struct Place {
 /// The block in quasi-triangular co-ordinates; none if its logarithmic norm is small already, or if
 /// the precision does not separate the invariant spaces.
 pub(super) fn triangular(block: &Block, cluster: &[Eigenvalue], time_scale: f64) -> Option<Block> {
-    let wanted = wanted(cluster, time_scale);
+    let wanted = wanted_couplings(cluster, time_scale);
     // Bounds of what decays are to decay nearly as fast.
     let decay = slowest_decay(cluster);
     let largest = if decay > 0.0 { -(1.0 - COUPLING_PER_SPREAD) * decay } else { wanted };
     let is_small = logarithmic_norm(&block.matrix) <= largest;
-    if is_small || least(&block.matrix) < MIN_COUPLING * norm(&block.matrix) {
+    if is_small || smallest_entry(&block.matrix) < MIN_COUPLING * norm(&block.matrix) {
         return None;
     }
     let (mut basis, places) = split_off(&block.matrix, cluster)?;
@@ -81,7 +81,7 @@ fn split_off(matrix: &BigMatrix, cluster: &[Eigenvalue]) -> Option<(BigMatrix, V
         let at = places.last().map_or(0, |last| last.at + last.size);
         let rest: BigMatrix = now[at..].iter().map(|row| row[at..].to_vec()).collect();
         let invariant = invariant(&rest, root, norm(matrix))?;
-        let turn = embedded(size, at, &completed(&invariant)?);
+        let turn = embedded(size, at, &complete_basis(&invariant)?);
         basis = product(&basis, &turn);
         now = product(&product(&inverse(&turn)?, &now), &turn);
         places.push(Place { at, size: invariant.len(), rotates: !root.is_real() && steep(root) });
@@ -101,7 +101,7 @@ fn invariant(matrix: &BigMatrix, root: &Eigenvalue, size: f64) -> Option<Vec<Vec
     let step = if root.is_real() { 1 } else { 2 };
     let own = BigReal::exact(size);
     let power = if step == 2 { &own * &own } else { own };
-    let nothing = power.scaled(nothing(matrix));
+    let nothing = power.scaled(zero_exponent(matrix));
     let noise = annihilator.iter_mut().flatten().filter(|it| it.abs() <= nothing);
     noise.for_each(|it| *it = BigReal::zero());
     let nullities = (step..=matrix.len()).step_by(step);
@@ -119,7 +119,7 @@ fn invariant(matrix: &BigMatrix, root: &Eigenvalue, size: f64) -> Option<Vec<Vec
 }
 
 /// A square matrix whose first columns are these, and whose others are unit vectors.
-fn completed(first: &[Vec<BigReal>]) -> Option<BigMatrix> {
+fn complete_basis(first: &[Vec<BigReal>]) -> Option<BigMatrix> {
     let size = first.first()?.len();
     let mut reduced: Vec<Vec<BigReal>> = first.to_vec();
     let mut taken = vec![false; size];
@@ -144,7 +144,7 @@ fn completed(first: &[Vec<BigReal>]) -> Option<BigMatrix> {
 }
 
 /// The smallest size of an entry that is not zero.
-fn least(matrix: &BigMatrix) -> f64 {
+fn smallest_entry(matrix: &BigMatrix) -> f64 {
     let sizes = matrix.iter().flatten().map(|it| it.to_f64().abs());
     sizes.filter(|it| *it > 0.0).fold(f64::INFINITY, f64::min)
 }
@@ -190,7 +190,7 @@ fn in_basis(block: &Block, basis: &BigMatrix) -> Option<Block> {
 /// entries stand there.
 fn clear_below(matrix: &mut BigMatrix, places: &[Place]) -> Option<()> {
     // The entries may be beyond the exponents of f64.
-    let nothing = largest(matrix).scaled(nothing(matrix));
+    let nothing = largest(matrix).scaled(zero_exponent(matrix));
     for place in places {
         for row in &mut matrix[place.at + place.size..] {
             for entry in &mut row[place.at..place.at + place.size] {
@@ -206,7 +206,7 @@ fn clear_below(matrix: &mut BigMatrix, places: &[Place]) -> Option<()> {
 
 /// The couplings at which bounds grow little faster than the motion. Where everything decays they
 /// are far below the slowest rate, unless that is tiny, so that bounds decay nearly as fast.
-fn wanted(cluster: &[Eigenvalue], time_scale: f64) -> f64 {
+fn wanted_couplings(cluster: &[Eigenvalue], time_scale: f64) -> f64 {
     let values = || cluster.iter().map(|it| &it.value);
     /// A share of the fastest rate below which a decay counts for none.
     const MIN_DECAY_SHARE: f64 = COUPLING_PER_RATE * COUPLING_PER_RATE;

@@ -274,7 +274,7 @@ impl SystemFile {
             let what = format!("{name} is no state: accepted are {}", known.join(", "));
             return Err(SystemError::at(place, &what));
         }
-        self.enter_start(name, Scalar::typed(value), place);
+        self.enter_start(name, Scalar::from_text(value), place);
         Ok(())
     }
 

@@ -18,7 +18,7 @@ pub(super) enum Scalar {
 
 impl Scalar {
     /// The number of a text, or else the text as an expression.
-    pub fn typed(text: &str) -> Self {
+    pub fn from_text(text: &str) -> Self {
         if let Ok(integer) = text.parse() {
             return Self::Integer(integer);
         }

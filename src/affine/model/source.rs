@@ -50,7 +50,7 @@ impl SourceText {
     pub fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, SystemError> {
         toml::from_str(&self.text).map_err(|error| match error.span() {
             Some(span) => {
-                SystemError::at(&self.place(&span), &self.explained(error.message(), &span))
+                SystemError::at(&self.place(&span), &self.explain(error.message(), &span))
             }
             None => SystemError::at(self.file.as_deref().unwrap_or("text"), error.message()),
         })
@@ -67,9 +67,9 @@ impl SourceText {
     }
 
     /// The message of the TOML reader, with the line of the file that it means.
-    fn explained(&self, message: &str, span: &Range<usize>) -> String {
+    fn explain(&self, message: &str, span: &Range<usize>) -> String {
         let message = match message.strip_prefix("missing field `") {
-            Some(key) => missing(key.trim_end_matches('`')),
+            Some(key) => missing_key(key.trim_end_matches('`')),
             None => {
                 let message = message.replace("invalid type: ", "not accepted: ");
                 message.replace("expected a sequence", "accepted is an array")
@@ -82,7 +82,7 @@ impl SourceText {
 }
 
 /// The message for a key that is missing.
-fn missing(key: &str) -> String {
+fn missing_key(key: &str) -> String {
     let accepted = match key {
         "schema" => "1",
         "states" => "an array of names, such as [\"x\", \"v\"]",

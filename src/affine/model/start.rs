@@ -15,14 +15,14 @@ impl System {
     }
 
     /// The states that hang on others, each after those, but for those that are held.
-    fn following(&self, held: &[usize]) -> impl Iterator<Item = &StartRow> {
+    fn dependent_states(&self, held: &[usize]) -> impl Iterator<Item = &StartRow> {
         self.start_rows.iter().filter(|it| !held.contains(&it.state))
     }
 
     /// Sets the states of a start that hang on others, but for those that are held.
     pub(in crate::affine) fn follow_start(&self, start: &mut StartPoint, held: &[usize]) {
         let states = self.states.len();
-        for StartRow { state, row } in self.following(held) {
+        for StartRow { state, row } in self.dependent_states(held) {
             let Some((others, own)) = row.split_at_checked(states) else { continue };
             let mut entry = [0, 1, 2].map(|n| own.get(n).cloned().unwrap_or_default());
             for (factor, other) in others.iter().zip(&start.state).filter(|it| !it.0.is_zero()) {
@@ -53,7 +53,7 @@ impl System {
         let unit = |n: usize| if n == of { Rational::ONE } else { Rational::ZERO };
         let mut changes: Vec<Rational> = (0..self.states.len()).map(unit).collect();
         if self.follows_start(start, held) {
-            for StartRow { state, row } in self.following(held) {
+            for StartRow { state, row } in self.dependent_states(held) {
                 let terms = row.iter().zip(&changes).filter(|(factor, _)| !factor.is_zero());
                 let sum = terms.map(|(factor, change)| factor * change);
                 let sum = sum.fold(Rational::ZERO, |sum, term| sum + term);

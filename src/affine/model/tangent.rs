@@ -118,18 +118,18 @@ impl SystemFile {
     pub fn tangent(&self, by: &Name) -> Result<Tangent, SystemError> {
         self.check_name(by)?;
         let System { modes, forcing, start, start_modes, .. } = self.derivatives(by)?;
-        let (name, nearby) = (by.clone(), self.nearby(by));
+        let (name, nearby) = (by.clone(), self.nearby_system(by));
         Ok(Tangent { name, modes, forcing, start, start_modes, nearby })
     }
 
     /// The system for another value of a name. What is zero for both values by the model is so for
     /// all but a few; how far apart they are does not matter.
-    fn nearby(&self, by: &Name) -> Option<Box<System>> {
+    fn nearby_system(&self, by: &Name) -> Option<Box<System>> {
         let moved = |sign: i32| {
             let mut file = self.clone();
             if let Name::Parameter(name) = by {
                 let parameter = file.parameters.get_mut(name)?;
-                parameter.value = Scalar::Exact(apart(&parameter.value.number()?, sign));
+                parameter.value = Scalar::Exact(other_value(&parameter.value.number()?, sign));
             }
             let mut system = file.system().ok()?;
             if let Some(mut start) = system.start.take() {
@@ -194,7 +194,7 @@ impl System {
 }
 
 /// Another value than this, by a share of it that no model has.
-fn apart(value: &Rational, sign: i32) -> Rational {
+fn other_value(value: &Rational, sign: i32) -> Rational {
     /// A prime, which no model's share has.
     const DENOMINATOR: i32 = 1_048_583;
     let size = if value.is_zero() { Rational::ONE } else { value.abs() };
@@ -205,7 +205,7 @@ fn apart(value: &Rational, sign: i32) -> Rational {
 fn move_start(start: &mut StartPoint, states: &[String], by: &Name, sign: i32) {
     let Some(entry) = by.start_index(states) else { return };
     if let Some([.., one]) = start.state.get_mut(entry) {
-        *one = apart(one, sign);
+        *one = other_value(one, sign);
     }
 }
 

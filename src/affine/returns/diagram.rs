@@ -105,7 +105,7 @@ impl ReturnDiagram {
         match self.follow {
             Follow::Reset => {
                 let alone = |value: &f64| {
-                    let step = self.followed(*value, &solver(value)?, &mut None)?;
+                    let step = self.follow_value(*value, &solver(value)?, &mut None)?;
                     seen();
                     Ok(step)
                 };
@@ -116,13 +116,13 @@ impl ReturnDiagram {
                 }
                 Ok(steps)
             }
-            Follow::Carry => self.carried(values, solver, seen),
+            Follow::Carry => self.carried_steps(values, solver, seen),
         }
     }
 
     /// The steps of values that each begin where the last one ended: the systems of a block are
     /// prepared while the block before it is followed.
-    fn carried(
+    fn carried_steps(
         &self,
         values: &[f64],
         solver: impl Fn(&f64) -> Result<Solver<f64>, ValueError> + Sync + Send,
@@ -133,7 +133,7 @@ impl ReturnDiagram {
         let mut last = None;
         let mut follow = |values: &[f64], solvers: Vec<Result<Solver<f64>, ValueError>>| {
             for (value, solver) in values.iter().zip(solvers) {
-                steps.push(self.followed(*value, &solver?, &mut last)?);
+                steps.push(self.follow_value(*value, &solver?, &mut last)?);
                 seen();
             }
             Ok(())
@@ -151,7 +151,7 @@ impl ReturnDiagram {
 
     /// The step of a value from where the last one ended, which this one takes the place of unless
     /// it is left out; without a last one, from the start of its system.
-    fn followed(
+    fn follow_value(
         &self,
         value: f64,
         solver: &Solver<f64>,
@@ -163,7 +163,7 @@ impl ReturnDiagram {
                 None => map,
             };
             let from = match &*last {
-                Some(last) => map.taken_up(last),
+                Some(last) => map.take_up(last),
                 None => solver.place(solver.system().start()?)?,
             };
             Ok((map, from))
@@ -171,7 +171,7 @@ impl ReturnDiagram {
         let (map, from) = begun.map_err(|error| ValueError { value, error })?;
         let (step, place) = self.step(value, &map, &from);
         if let Some(place) = place {
-            *last = Some(map.carried(&place));
+            *last = Some(map.carry(&place));
         }
         Ok(step)
     }

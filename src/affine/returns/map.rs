@@ -33,7 +33,7 @@ impl<'a, T: Number> SectionMap<'a, T> {
     /// A strobe of a system without forcing, and an event that the system has not.
     pub fn new(solver: &'a Solver<T>, section: &Section) -> Result<Self, SystemError> {
         let system = solver.system();
-        let resolved = section.resolved(system)?;
+        let resolved = section.resolve(system)?;
         let angle = match resolved.returns {
             Returning::Strobe(angle) => angle,
             Returning::Events(_) => 0.0,
@@ -187,7 +187,7 @@ pub(in crate::affine) struct Carried {
 
 impl SectionMap<'_, f64> {
     /// The place of a return, for a system that differs in its parameters.
-    pub(in crate::affine) fn carried(&self, place: &Place<f64>) -> Carried {
+    pub(in crate::affine) fn carry(&self, place: &Place<f64>) -> Carried {
         let place = self.rebased(place);
         let share = self.share_of_period(&place);
         Carried { place, share }
@@ -195,7 +195,7 @@ impl SectionMap<'_, f64> {
 
     /// The place in this map's system: mode and state stay, with what the model has made zero there
     /// before, and so does the forcing angle.
-    pub(in crate::affine) fn taken_up(&self, carried: &Carried) -> Place<f64> {
+    pub(in crate::affine) fn take_up(&self, carried: &Carried) -> Place<f64> {
         let time = self.time_at_share(carried.share);
         carried.place.moved_to(time, carried.place.state.clone())
     }

@@ -42,8 +42,11 @@ pub fn multipliers(returns: &[Columns], flow: Option<&[f64]>) -> Option<Vec<[f64
         all.extend(space);
         space = orthonormal(all, ALIGNMENT_TOLERANCE).split_off(1);
     }
-    let mut values =
-        if space.is_empty() { Vec::new() } else { spectrum(&around(returns, &space)?)? };
+    let mut values = if space.is_empty() {
+        Vec::new()
+    } else {
+        spectrum(&product_of_returns(returns, &space)?)?
+    };
     values.resize(states, [0.0; 2]);
     let modulus = |[re, im]: &[f64; 2]| libm::hypot(*re, *im);
     values.sort_by(|a, b| modulus(b).total_cmp(&modulus(a)).then(b[1].total_cmp(&a[1])));
@@ -51,7 +54,7 @@ pub fn multipliers(returns: &[Columns], flow: Option<&[f64]>) -> Option<Vec<[f64
 }
 
 /// The product of all returns on a space, in its own co-ordinates, exactly.
-fn around(returns: &[Columns], space: &Columns) -> Option<Vec<Row>> {
+fn product_of_returns(returns: &[Columns], space: &Columns) -> Option<Vec<Row>> {
     let share = returns.len().div_ceil(MAX_FACTORS);
     let factors = returns.chunks(share).map(|chunk| {
         let mut factor = chunk[0].clone();

@@ -8,7 +8,7 @@ use super::shooting::{Change, Derivative, Image, MAX_COORDINATES, ReturnMap, Sho
 use super::walk::{NoReturn, Return};
 use crate::affine::model::system::System;
 use crate::affine::run::place::Place;
-use crate::dynamics::orbit::newton::{least, solved};
+use crate::dynamics::orbit::newton::{minimal_orbit, solve};
 use std::fmt;
 
 /// The largest period that is looked for, in returns.
@@ -111,9 +111,9 @@ impl SectionMap<'_, f64> {
         if !(1..=LARGEST_PERIOD).contains(&period) {
             return Err(NoOrbit::Period(period));
         }
-        let shots = Shots::along(self, &self.rebased(guess), period).map_err(NoOrbit::NoReturn)?;
-        let shots = solved(self, shots).map_err(|it| NoOrbit::Stalled(it.residual))?;
-        let shots = least(self, shots);
+        let shots = Shots::follow(self, &self.rebased(guess), period).map_err(NoOrbit::NoReturn)?;
+        let shots = solve(self, shots).map_err(|it| NoOrbit::Stalled(it.residual))?;
+        let shots = minimal_orbit(self, shots);
         let orbit = self.of_shots(&shots).ok_or(NoOrbit::NoDerivative(shots.residual))?;
         Ok((orbit, shots.points))
     }
@@ -209,7 +209,7 @@ impl ReturnMap for SectionMap<'_, f64> {
         Ok(Image { derivative, segments: passage.events.len() + 1, point: passage.image, way })
     }
 
-    fn apart(&self, from: &Place<f64>, to: &Place<f64>) -> Change {
+    fn change_between(&self, from: &Place<f64>, to: &Place<f64>) -> Change {
         let mut change = [0.0; MAX_COORDINATES];
         for (n, (from, to)) in from.state.iter().zip(&to.state).enumerate() {
             change[n] = if self.is_drift(n) { 0.0 } else { to - from };

@@ -62,11 +62,11 @@ impl Section {
     /// A system without forcing: one of its events has to be named.
     pub fn usual(system: &System) -> Result<Self, SystemError> {
         let section = Self::strobe(0.0);
-        section.resolved(system).map(|_| section)
+        section.resolve(system).map(|_| section)
     }
 
     /// The section among the events of a system.
-    pub(super) fn resolved(&self, system: &System) -> Result<Resolved, SystemError> {
+    pub(super) fn resolve(&self, system: &System) -> Result<Resolved, SystemError> {
         let returns = match &self.cut {
             Cut::Strobe(_) if system.forcing.is_none() => {
                 let what = format!(

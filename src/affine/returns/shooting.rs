@@ -36,7 +36,7 @@ pub trait ReturnMap {
     fn image(&self, point: &Self::Point) -> Result<Image<Self::Point, Self::Way>, NoReturn>;
 
     /// The change from one point to another.
-    fn apart(&self, from: &Self::Point, to: &Self::Point) -> Change;
+    fn change_between(&self, from: &Self::Point, to: &Self::Point) -> Change;
 
     /// A point with a change, on the piece of another point.
     fn moved(&self, point: &Self::Point, change: &Change, piece: &Self::Point) -> Self::Point;
@@ -76,7 +76,7 @@ pub struct Shots<P, W> {
 
 impl<P: Clone, W: Clone> Shots<P, W> {
     /// The motion that begins at a point, for so many returns.
-    pub fn along<M>(map: &M, first: &P, returns: u32) -> Result<Self, NoReturn>
+    pub fn follow<M>(map: &M, first: &P, returns: u32) -> Result<Self, NoReturn>
     where
         M: ReturnMap<Point = P, Way = W>,
     {
@@ -87,7 +87,7 @@ impl<P: Clone, W: Clone> Shots<P, W> {
             images.push(image);
         }
         points.truncate(returns as usize);
-        Ok(Self::joined(map, points, images))
+        Ok(Self::join(map, points, images))
     }
 
     /// These points, each with its image; none where a motion does not return.
@@ -96,10 +96,10 @@ impl<P: Clone, W: Clone> Shots<P, W> {
         M: ReturnMap<Point = P, Way = W>,
     {
         let images = points.iter().map(|it| map.image(it).ok()).collect::<Option<Vec<_>>>()?;
-        Some(Self::joined(map, points, images)).filter(|it| it.residual.is_finite())
+        Some(Self::join(map, points, images)).filter(|it| it.residual.is_finite())
     }
 
-    fn joined<M>(map: &M, points: Vec<P>, images: Vec<Image<P, W>>) -> Self
+    fn join<M>(map: &M, points: Vec<P>, images: Vec<Image<P, W>>) -> Self
     where
         M: ReturnMap<Point = P, Way = W>,
     {
@@ -107,7 +107,7 @@ impl<P: Clone, W: Clone> Shots<P, W> {
             Self { points, images, defects: Vec::new(), residual: 0.0, is_joined: true };
         for (k, image) in shots.images.iter().enumerate() {
             let next = &shots.points[(k + 1) % shots.points.len()];
-            let defect = map.apart(next, &image.point);
+            let defect = map.change_between(next, &image.point);
             let size = map.size(next, &defect);
             if size > shots.residual || size.is_nan() {
                 shots.residual = size;
@@ -164,7 +164,7 @@ impl<P: Clone, W: Clone> Shots<P, W> {
     {
         let pairs = self.points.iter().zip(other.iter().cycle());
         let apart = pairs.map(|(one, other)| match map.are_on_one_piece(one, other) {
-            true => map.size(one, &map.apart(one, other)),
+            true => map.size(one, &map.change_between(one, other)),
             false => f64::INFINITY,
         });
         apart.fold(0.0, f64::max)
@@ -199,14 +199,14 @@ impl<M: ReturnMap> Shooting<M> for Shots<M::Point, M::Way> {
         Self::of(map, self.points[..count].to_vec())
     }
 
-    fn apart(&self, map: &M, other: &Self) -> f64 {
+    fn orbit_distance(&self, map: &M, other: &Self) -> f64 {
         self.distance(map, &other.points)
     }
 
     fn half_way(&self, map: &M, other: &Self) -> Option<Self> {
         let pairs = self.points.iter().zip(other.points.iter().cycle());
         let between = pairs.map(|(one, other)| {
-            let half = map.apart(one, other).map(|it| 0.5 * it);
+            let half = map.change_between(one, other).map(|it| 0.5 * it);
             map.moved(one, &half, one)
         });
         Self::of(map, between.collect())

@@ -89,7 +89,7 @@ impl<T: Number> Solver<T> {
             state: begin.state,
             tracks: Vec::new(),
             ends: Ends::default(),
-            segment: GuardedSegment::before(&self.modes[mode].flow, &self.modes[mode].guards),
+            segment: GuardedSegment::before_entry(&self.modes[mode].flow, &self.modes[mode].guards),
             failed_attempts: vec![FailedAttempts::default(); self.modes.len()],
             restitution: None,
             limit_ahead: None,

@@ -16,16 +16,16 @@ impl<T: Number> Run<'_, T> {
     pub fn tie(&self) -> Vec<What<T>> {
         let ended_so = self.ending() == Some(&Ending::Undecided) && self.enclosure.is_some();
         let tie = self.tie.filter(|_| ended_so);
-        let events = tie.map(|(mode, guards)| bits(guards).map(move |n| self.what(mode, n)));
+        let events = tie.map(|(mode, guards)| bits(guards).map(move |n| self.event_of(mode, n)));
         events.into_iter().flatten().collect()
     }
 
     /// Passes the crossing of the guards with these bits: watched ones become events, and an
     /// `until` ends the mode.
-    pub(super) fn crossed(&mut self, guards: u64) {
+    pub(super) fn pass_crossing(&mut self, guards: u64) {
         let mode = self.graph.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
-        let Some((time, state)) = self.present() else { return self.end(Ending::Undecided) };
+        let Some((time, state)) = self.present_state() else { return self.end(Ending::Undecided) };
         let zero = self.zero_guards(guards, &state);
         let point = zero.point;
         // A guard with a rational point tells more about the others than the first of them does.
@@ -34,13 +34,13 @@ impl<T: Number> Run<'_, T> {
         let errors = self.errors_at(mode, guards, &time, &state);
         let error = errors.as_ref().map_or(T::Bound::ZERO, Enclosure::time);
         let exactly_tied = self.exactly_tied(mode, first, error);
-        let tied = self.graph.tied(self.node, first, false) | exactly_tied;
+        let tied = self.graph.tied_guards(self.node, first, false) | exactly_tied;
         if guards & !tied != 0 {
             self.work.undecidable += 1;
             self.tie = Some((mode, guards));
         }
         for n in bits(guards & !low_bits(until)) {
-            self.watched(mode, n, zero, time, &state, errors.as_ref());
+            self.watched_event(mode, n, zero, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
         }
         let back_inside = guards & self.returning;
@@ -59,7 +59,7 @@ impl<T: Number> Run<'_, T> {
             }
             return;
         }
-        let guards = self.graph.tied(self.node, zero, false) | exactly_tied;
+        let guards = self.graph.tied_guards(self.node, zero, false) | exactly_tied;
         let zero = self.zero_guards(guards, &state);
         if self.solver.backward {
             (self.entered, self.state, self.enclosure) = (time, state, errors);
@@ -108,7 +108,7 @@ impl<T: Number> Run<'_, T> {
     }
 
     #[inline]
-    fn watched(
+    fn watched_event(
         &mut self,
         mode: usize,
         n: usize,

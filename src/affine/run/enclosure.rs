@@ -62,19 +62,19 @@ impl<T: Number> EnclosedCrossing<'_, T> {
     /// The change of the guard by an error at the entry that is `later` at the crossing. What it
     /// changes in first orders that were taken for zeros does not move the crossing; the others are
     /// then summed, because their difference to the whole loses all digits after a short time.
-    fn moved(&self, entry: &Vector<T::Bound>, later: &Vector<T::Bound>) -> T::Bound {
+    fn guard_change(&self, entry: &Vector<T::Bound>, later: &Vector<T::Bound>) -> T::Bound {
         let (flow, dimension) = (self.flow, self.flow.dimension);
         let order = |k: usize| self.guard.orders[k].map(Number::bound);
         if self.zeros == 0 {
             return dot(&order(0), &flow.modal_rounded(later), dimension);
         }
         let modal = flow.modal_rounded(entry);
-        self.summed(|k| dot(&order(k), &modal, dimension))
+        self.taylor_sum(|k| dot(&order(k), &modal, dimension))
     }
 
     /// A bound of the error of all such changes as they are computed, from the sizes of errors at
     /// the entry, and of what those at the crossing are summed from.
-    fn moved_off(&self, entry: &Vector<T::Bound>, later: &Vector<T::Bound>) -> T::Bound {
+    fn guard_change_error(&self, entry: &Vector<T::Bound>, later: &Vector<T::Bound>) -> T::Bound {
         if self.zeros == 0 {
             let sizes = self.flow.modal_sizes(later);
             return row_size(&self.guard.orders[0], &sizes) * COLUMN_ROUNDING;
@@ -84,12 +84,12 @@ impl<T: Number> EnclosedCrossing<'_, T> {
         let norms = self.flow.norms_of_bounds(&modal);
         let last = self.guard.bound(ORDERS - 1, &norms, elapsed);
         let rest = (1..ORDERS).fold(last, |term, k| term * elapsed / k as f64);
-        self.summed(|k| row_size(&self.guard.orders[k], &modal)) * COLUMN_ROUNDING + rest
+        self.taylor_sum(|k| row_size(&self.guard.orders[k], &modal)) * COLUMN_ROUNDING + rest
     }
 
     /// The sum of the Taylor terms at the crossing with orders that were not taken for zeros, but
     /// for the last one that is kept.
-    fn summed(&self, order: impl Fn(usize) -> T::Bound) -> T::Bound {
+    fn taylor_sum(&self, order: impl Fn(usize) -> T::Bound) -> T::Bound {
         let elapsed = self.elapsed.to_f64();
         let own = |k: usize| if k < self.zeros { T::Bound::ZERO } else { order(k) };
         (1..ORDERS - 1).rev().fold(T::Bound::ZERO, |sum, k| (sum + own(k)) * elapsed / k as f64)
@@ -127,7 +127,7 @@ impl<B: Bound> Enclosure<B> {
     }
 
     /// Bounds of the error of a row at any time after the entry.
-    pub fn along<T: Number<Bound = B>>(
+    pub fn error_along<T: Number<Bound = B>>(
         &self,
         flow: &ModeFlow<T>,
         row: &ModalRow<T>,
@@ -147,7 +147,11 @@ impl<B: Bound> Enclosure<B> {
 
     /// The errors at a fixed time after the entry, and the sizes of what their entries are summed
     /// from.
-    fn later<T: Number<Bound = B>>(&self, flow: &ModeFlow<T>, elapsed: T) -> (Self, Vector<B>) {
+    fn error_after<T: Number<Bound = B>>(
+        &self,
+        flow: &ModeFlow<T>,
+        elapsed: T,
+    ) -> (Self, Vector<B>) {
         let transition = flow.transition(elapsed);
         let mut sizes = [B::ZERO; LARGEST_DIMENSION];
         for (error, own) in self.state().into_iter().zip(&transition) {
@@ -172,7 +176,7 @@ impl<B: Bound> Enclosure<B> {
         state: &Vector<T>,
         elapsed: T,
     ) -> Self {
-        let (mut later, sizes) = self.later(flow, elapsed);
+        let (mut later, sizes) = self.error_after(flow, elapsed);
         let rates = rates(flow, matrix, state);
         let rounded = T::unit() * 4.0 * elapsed.bound().abs();
         let shift = self.time();
@@ -194,7 +198,7 @@ impl<B: Bound> Enclosure<B> {
         let order = |k: usize| dot(&guard.orders[k], y, flow.dimension).bound();
         let (slope, bend) = (order(1), order(2));
         let slope_row = guard.orders[1].map(Number::bound);
-        let (mut later, sizes) = self.later(flow, crossing.elapsed);
+        let (mut later, sizes) = self.error_after(flow, crossing.elapsed);
         let rates = rates(flow, crossing.matrix, &crossing.state);
         let margin = sum_rounding::<T>(flow.dimension);
         let modal_sizes = flow.modal_sizes(&sizes);
@@ -203,12 +207,12 @@ impl<B: Bound> Enclosure<B> {
         let mut shift = B::ZERO;
         for (column, entry) in later.columns.iter_mut().zip(&self.columns) {
             let own = flow.modal_rounded(&column.state);
-            let delay = -crossing.moved(&entry.state, &column.state) / slope;
+            let delay = -crossing.guard_change(&entry.state, &column.state) / slope;
             slope_error += dot(&slope_row, &own, flow.dimension).abs();
             shift += delay.abs();
             column.delayed(delay, &rates);
         }
-        let slack = crossing.slack + crossing.moved_off(&self.state(), &sizes);
+        let slack = crossing.slack + crossing.guard_change_error(&self.state(), &sizes);
         let rounded = slack / slope.abs() + T::unit() * 4.0 * crossing.elapsed.bound().abs();
         // The second order of the crossing's time, and of the flow over it.
         let whole = shift + rounded;

@@ -28,8 +28,8 @@ impl<T: Number> Run<'_, T> {
     /// follows its errors, as exact arithmetic alone can tell: none up to the events that have
     /// been returned.
     #[must_use]
-    pub fn touched(&self) -> Option<What<T>> {
-        self.touch.map(|(mode, guard)| self.what(mode, guard))
+    pub fn touched_event(&self) -> Option<What<T>> {
+        self.touch.map(|(mode, guard)| self.event_of(mode, guard))
     }
 
     /// Remembers the first guard that never crosses but touches zero, up to a time after the entry

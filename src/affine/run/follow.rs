@@ -102,7 +102,7 @@ impl<T: Number> Follower<'_, T> {
             _ => return false,
         };
         let zero = ZeroGuards { guards: 1 << guard, point: None };
-        let zero = ZeroGuards { guards: graph.tied(node, zero, at_entry), point: None };
+        let zero = ZeroGuards { guards: graph.tied_guards(node, zero, at_entry), point: None };
         let Followed::Until(until, mode) = event else {
             (self.zeros, self.known) = (graph.zeros_with(node, zero, at_entry), None);
             return true;

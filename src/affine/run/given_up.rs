@@ -6,7 +6,7 @@ use super::enclosure::Enclosure;
 use crate::affine::first_crossing::search::SearchOutcome;
 use crate::affine::guards::point::{Ends, GuardedPoint};
 use crate::affine::guards::row::ModalRow;
-use crate::affine::guards::track::{SearchWork, Track, live};
+use crate::affine::guards::track::{SearchWork, Track, live_tracks};
 use crate::affine::solver::event::{Ending, Event, What};
 use crate::numeric::number::Number;
 
@@ -115,7 +115,7 @@ impl<T: Number> Run<'_, T> {
             let value = ends.left.orders[n][0].bound() * track.outward;
             value < ends.left.slack[n] * -4.0
         };
-        let is_clear = live(&tracks).all(is_inside);
+        let is_clear = live_tracks(&tracks).all(is_inside);
         is_clear.then_some(SearchStart { point: ends.left, tracks })
     }
 }

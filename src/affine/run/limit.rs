@@ -91,7 +91,7 @@ impl<T: Number> Run<'_, T> {
 
     /// Remembers a limit at the instant of the event just passed, which leaves its guard and the
     /// rate of that at zero, if the event would be the next one again.
-    pub(super) fn rest(&mut self, mode: usize, jump: &Jump<'_, T>) {
+    pub(super) fn remember_rest(&mut self, mode: usize, jump: &Jump<'_, T>) {
         let is_next = self.at_entry != 0 && self.at_entry.trailing_zeros() as usize == jump.until;
         if is_next && self.goes_on_after(mode, jump.until) {
             self.approach(jump, None);

@@ -135,7 +135,7 @@ impl<'a, T: Number> Run<'a, T> {
     }
 
     /// The event that a guard of a mode makes.
-    fn what(&self, mode: usize, guard: usize) -> What<T> {
+    fn event_of(&self, mode: usize, guard: usize) -> What<T> {
         match guard.checked_sub(self.solver.system.modes[mode].until.len()) {
             Some(watch) => What::Watch(mode, watch),
             None => What::Until(mode, guard),
@@ -227,7 +227,7 @@ impl<'a, T: Number> Run<'a, T> {
         let inherited = self
             .enclosure
             .as_ref()
-            .map(|errors| guards.iter().map(|row| errors.along(flow, row)).collect());
+            .map(|errors| guards.iter().map(|row| errors.error_along(flow, row)).collect());
         self.segment.enter(flow, guards, &self.tracks, inherited);
         self.segment.begin(&mut self.ends.left);
         self.ends.passed = Passed::none();
@@ -279,7 +279,7 @@ impl<'a, T: Number> Run<'a, T> {
         }
         if self.at_entry != 0 {
             let zero = ZeroGuards { guards: self.at_entry, point: None };
-            let guards = self.graph.tied(self.node, zero, true);
+            let guards = self.graph.tied_guards(self.node, zero, true);
             let until = self.at_entry.trailing_zeros() as usize;
             let zero = ZeroGuards { guards, point: None };
             self.fire(Firing { until, zero, at_entry: true }, self.entered, self.state);
@@ -299,7 +299,7 @@ impl<'a, T: Number> Run<'a, T> {
                 let elapsed = self.ends.left.time + self.ends.left.to_crossing;
                 self.remember_touch(mode, elapsed);
                 let before = self.errors_before(mode, guards);
-                self.crossed(guards);
+                self.pass_crossing(guards);
                 if before.is_some() && self.is_open() {
                     self.enclosure = before;
                 }
@@ -349,7 +349,7 @@ impl<'a, T: Number> Run<'a, T> {
 
     /// Time and state at which the search has arrived; none where the state has overflowed.
     #[inline]
-    fn present(&self) -> Option<(Time<T>, Vector<T>)> {
+    fn present_state(&self) -> Option<(Time<T>, Vector<T>)> {
         self.time_and_state_at(&self.ends.left)
     }
 

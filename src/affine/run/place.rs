@@ -111,7 +111,7 @@ impl<T: Number> Run<'_, T> {
     /// The structural zeros at a point of the segment where these guards, as bits, are zero.
     fn zeros_along(&mut self, guards: u64) -> ZeroSpace {
         let zero = ZeroGuards { guards, point: None };
-        let tied = self.graph.tied(self.node, zero, false);
+        let tied = self.graph.tied_guards(self.node, zero, false);
         self.graph.zeros_with(self.node, ZeroGuards { guards: tied, point: None }, false)
     }
 

@@ -37,13 +37,13 @@ impl<B: Bound> Enclosure<B> {
         self.columns.sort_by(|a, b| share(b).total_cmp(&share(a)));
         let small = self.columns.split_off(KEPT_COLUMNS);
         let sizes = largest_entries(&small);
-        let boxed = boxed(small.iter().map(|it| scaled(it, &sizes)).collect());
+        let boxed = box_columns(small.iter().map(|it| scaled(it, &sizes)).collect());
         self.columns.extend(boxed.iter().map(|axis| unscaled(axis, &sizes)));
     }
 }
 
 /// The columns of a box that holds all sums of these.
-fn boxed(mut rest: Vec<Scaled>) -> Vec<Scaled> {
+fn box_columns(mut rest: Vec<Scaled>) -> Vec<Scaled> {
     let mut axes = Vec::new();
     for _ in 0..COLUMN_ENTRIES {
         let largest = rest.iter().copied().max_by(|a, b| square(a).total_cmp(&square(b)));

@@ -82,7 +82,7 @@ impl<T: Number> Run<'_, T> {
             // Up to a limit there is no other event; rounding has made one.
             self.end(Ending::Undecided);
         } else if rests && self.graph.node(next).mode == mode {
-            self.rest(mode, &jump);
+            self.remember_rest(mode, &jump);
         }
         if self.events_in_instant >= MAX_SIMULTANEOUS_EVENTS {
             self.end(Ending::NoProgress);

@@ -9,9 +9,9 @@ use crate::numeric::number::{Bound, Number};
 impl<T: Number> Run<'_, T> {
     /// The event whose guard rounding left open by itself, in a run that ended so.
     #[must_use]
-    pub fn doubtful(&self) -> Option<What<T>> {
+    pub fn doubtful_event(&self) -> Option<What<T>> {
         let (mode, guard) = self.doubt.filter(|_| self.enclosure.is_some())?;
-        Some(self.what(mode, guard))
+        Some(self.event_of(mode, guard))
     }
 
     /// Remembers the mode of the first guard that rounding left open: its number is one of that
@@ -51,19 +51,19 @@ impl<T: Number> Run<'_, T> {
             true => it.bound().is_finite(),
             false => it.bound().abs() <= MAX_SIZE,
         };
-        let is_large = || self.present().is_none_or(|(_, state)| !state.iter().all(within));
+        let is_large = || self.present_state().is_none_or(|(_, state)| !state.iter().all(within));
         self.ending() == Some(&Ending::Undecided) && is_large()
     }
 
     /// The event of the present mode whose guard was positive at its entry, in a run that ended so.
     #[must_use]
-    pub fn beyond(&self) -> Option<What<T>> {
+    pub fn event_beyond_guard(&self) -> Option<What<T>> {
         let node = self.graph.node(self.node);
         let is_beyond = |n: &usize| {
             self.at_entry >> n & 1 == 1 && node.multiplicities.get(*n) == Some(&Some(0))
         };
         let is_so = self.ending() == Some(&Ending::BeyondGuard);
         let guard = (0..u64::BITS as usize).find(is_beyond).filter(|_| is_so);
-        guard.map(|guard| self.what(node.mode, guard))
+        guard.map(|guard| self.event_of(node.mode, guard))
     }
 }

@@ -95,7 +95,7 @@ impl Chain {
     }
 
     /// The row's value on the whole segment, if it is known that it stands still.
-    pub fn still(&self, entries: &Entries) -> Option<Rational> {
+    pub fn constant_value(&self, entries: &Entries) -> Option<Rational> {
         let is_zero = |row: &Row| product(row, entries).is_some_and(|it| it.is_zero());
         let is_still = self.is_known(entries) && self.rows[1..].iter().all(is_zero);
         if is_still { self.value(entries) } else { None }
@@ -144,7 +144,7 @@ impl Chain {
     /// The row's value at an instant after the entry, where all that it needs is known: of what
     /// stands still no instant is needed.
     pub fn at(&self, entries: &Entries, instant: Option<&Instant>) -> Option<Rational> {
-        if let Some(value) = self.still(entries) {
+        if let Some(value) = self.constant_value(entries) {
             return Some(value);
         }
         let values = instant.and_then(|_| self.values(entries))?;

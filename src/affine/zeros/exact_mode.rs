@@ -45,7 +45,7 @@ impl TurningGuard {
     /// stands still.
     pub fn circle(&self, entries: &Entries) -> Option<Circle> {
         let [a, b] = &self.turn;
-        Circle::with([a, b], &self.rest.still(entries)?)
+        Circle::with([a, b], &self.rest.constant_value(entries)?)
     }
 }
 

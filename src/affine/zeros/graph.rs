@@ -128,7 +128,7 @@ impl ZeroGraph {
 
     /// The guards that are zero at an event because the given ones are, which are included.
     #[inline]
-    pub fn tied(&mut self, node: usize, zero: ZeroGuards, at_entry: bool) -> u64 {
+    pub fn tied_guards(&mut self, node: usize, zero: ZeroGuards, at_entry: bool) -> u64 {
         self.zeros_there(node, zero, at_entry)[0]
     }
 
@@ -160,7 +160,7 @@ impl ZeroGraph {
         let node = &mut nodes[node];
         let known = node.arrivals.iter().position(|(it, _)| *it == firing);
         let at = known.unwrap_or_else(|| {
-            node.arrivals.push((firing, arrived(modes, node, firing)));
+            node.arrivals.push((firing, arrival_of(modes, node, firing)));
             node.arrivals.len() - 1
         });
         &mut node.arrivals[at].1
@@ -217,7 +217,7 @@ impl Node {
     }
 }
 
-fn arrived(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
+fn arrival_of(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
     let own = &modes[node.mode];
     let mut zeros = with_rows(node.zeros_at(firing.at_entry), own, firing.zero);
     let limit = firing.until.checked_sub(own.resets.len() / 2);

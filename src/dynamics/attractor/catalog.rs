@@ -32,7 +32,7 @@ impl<M: Motions> Catalog<M> {
             Err(label) => return label,
         };
         for extension in 0..=EXTENSIONS {
-            match self.recognised(&from, extension) {
+            match self.recognise(&from, extension) {
                 Ok(last) => from = last,
                 Err(stop) => return self.label_of(stop).unwrap_or(Label::Unresolved),
             }
@@ -71,10 +71,10 @@ impl<M: Motions> Catalog<M> {
         let mut batch = 1;
         while !open.is_empty() {
             let rest = open.split_off(batch.min(open.len()));
-            let settled = parallel::map(&open, |(_, place)| self.settled(place));
+            let settled = parallel::map(&open, |(_, place)| self.settle(place));
             let before = self.known.len();
             for ((index, _), outcome) in open.iter().zip(settled) {
-                labels[*index] = self.adopted(outcome);
+                labels[*index] = self.adopt(outcome);
             }
             seen(open.len() as u64);
             batch = (2 * batch).min(MAX_BATCH_STARTS);
@@ -87,16 +87,16 @@ impl<M: Motions> Catalog<M> {
     }
 
     /// The attractor on which a motion settles.
-    fn settled(&self, from: &M::Place) -> Settled<M::Coordinates> {
+    fn settle(&self, from: &M::Place) -> Settled<M::Coordinates> {
         let Self { motions, known, limits } = self;
         let search = AttractorSearch { motions, known, limits: *limits };
         let mut from = from.clone();
         for extension in 0..=EXTENSIONS {
-            match self.recognised(&from, extension) {
+            match self.recognise(&from, extension) {
                 Ok(last) => from = last,
-                Err(stop) => return search.stopped(stop),
+                Err(stop) => return search.outcome_of_stop(stop),
             }
-            if let Some(settled) = search.identified(&from, extension == EXTENSIONS) {
+            if let Some(settled) = search.identify(&from, extension == EXTENSIONS) {
                 return settled;
             }
         }
@@ -104,7 +104,7 @@ impl<M: Motions> Catalog<M> {
     }
 
     /// The label of what was settled; an attractor not known before is added.
-    fn adopted(&mut self, settled: Settled<M::Coordinates>) -> Label {
+    fn adopt(&mut self, settled: Settled<M::Coordinates>) -> Label {
         let new = match settled {
             Settled::Label(label) => return label,
             Settled::New(new) => *new,
@@ -144,8 +144,8 @@ impl<M: Motions> Catalog<M> {
 
     /// Follows a motion until it is recognised, for its transient or an extension of that; where it
     /// is then if it is not.
-    fn recognised(&self, from: &M::Place, extension: u32) -> Result<M::Place, StopOf<M>> {
-        self.motions.recognised(&self.known, from, self.limits.transient << extension)
+    fn recognise(&self, from: &M::Place, extension: u32) -> Result<M::Place, StopOf<M>> {
+        self.motions.recognise(&self.known, from, self.limits.transient << extension)
     }
 }
 

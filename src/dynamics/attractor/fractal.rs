@@ -66,7 +66,7 @@ impl Uncertainty {
         self.exponent + errors * self.error < 1.0
     }
 
-    fn fitted(scales: Vec<Scale>, saturated: f64) -> Self {
+    fn fit(scales: Vec<Scale>, saturated: f64) -> Self {
         let (exponent, error) = slope(&scales, saturated).unwrap_or((f64::NAN, f64::NAN));
         Self { scales, exponent, error }
     }
@@ -97,7 +97,7 @@ pub fn uncertainty_of(
         let indices: Vec<u64> =
             (0..u64::from(starts)).map(|k| u64::from(scale) * u64::from(starts) + k).collect();
         let triples = parallel::map(&indices, |index| {
-            let [p, y] = spread(*index, window);
+            let [p, y] = spread_point(*index, window);
             [0.0, -1.0, 1.0].map(|side| label([p + side * epsilon * width, y, q]))
         });
         triples.iter().for_each(|triple| *counts.entry(triple[0]).or_insert(0) += 1);
@@ -105,7 +105,7 @@ pub fn uncertainty_of(
         let uncertain = uncertain.count() as u64;
         seen.push(Scale { epsilon, starts: u64::from(starts), uncertain });
     }
-    Uncertainty::fitted(seen, saturation(&counts))
+    Uncertainty::fit(seen, saturation(&counts))
 }
 
 /// The uncertainty exponent from the labels of a grid, at distances of 1, 2, 4... up to an eighth
@@ -136,7 +136,7 @@ pub fn uncertainty_of_labels(labels: &[Label], columns: usize) -> Uncertainty {
     }
     let mut counts = BTreeMap::new();
     labels.iter().for_each(|label| *counts.entry(*label).or_insert(0) += 1);
-    Uncertainty::fitted(scales, saturation(&counts))
+    Uncertainty::fit(scales, saturation(&counts))
 }
 
 /// Basin entropy in boxes of `side` by `side` cells; cells that fill no box are left out.
@@ -210,7 +210,7 @@ fn slope(scales: &[Scale], saturated: f64) -> Option<(f64, f64)> {
 }
 
 /// An evenly spread sequence in the window (Roberts' generalised golden ratio, 2018).
-fn spread(index: u64, window: &Window) -> [f64; 2] {
+fn spread_point(index: u64, window: &Window) -> [f64; 2] {
     /// The real root of x^3 = x + 1.
     const PLASTIC_NUMBER: f64 = 1.324_717_957_244_746;
     let part = |step: f64| (0.5 + index as f64 * step).fract();

@@ -4,9 +4,9 @@
 //!   multipliers are inside the unit circle, and there is a neighbourhood from which all sampled
 //!   points return closer: evidence, not proof (`trap_search.rs`).
 //! - **Chaotic**: the largest exponent is above zero by more than [`MIN_STANDARD_ERRORS`] standard
-//! errors over a run of 2^17 strobes that met no orbit. Another motion is on the same attractor
-//! when 48 strobes in a row lie in the cells of that run (`cells.rs`); so its bands are one
-//! attractor.
+//!   errors over a run of 2^17 strobes that met no orbit. Another motion is on the same attractor
+//!   when 48 strobes in a row lie in the cells of that run (`cells.rs`); so its bands are one
+//!   attractor.
 //! - **Quasi-periodic**: neither, with a largest exponent and a contraction below 1e-3.
 //! - **Escaping**: a phase that provably never ends: the mass never returns or the slider never
 //!   stops.

@@ -76,7 +76,7 @@ pub(crate) trait Motions: Sized + Sync {
 
     /// Follows a motion until it is recognised, for at most so many returns; where it is then if it
     /// is not.
-    fn recognised(
+    fn recognise(
         &self,
         known: &[KnownAttractor<Self::Coordinates>],
         from: &Self::Place,
@@ -87,7 +87,7 @@ pub(crate) trait Motions: Sized + Sync {
         self.follow(from, returns, &mut { see })
     }
 
-    /// [`Self::recognised`] of many motions. `seen` is told how many more have got a label.
+    /// [`Self::recognise`] of many motions. `seen` is told how many more have got a label.
     fn recognised_all(
         &self,
         known: &[KnownAttractor<Self::Coordinates>],
@@ -96,7 +96,7 @@ pub(crate) trait Motions: Sized + Sync {
         seen: &(dyn Fn(u64) + Sync),
     ) -> Vec<Result<Self::Place, StopOf<Self>>> {
         parallel::map(from, |it| {
-            let outcome = self.recognised(known, it, returns);
+            let outcome = self.recognise(known, it, returns);
             let label = outcome.as_ref().err().and_then(|it| it.label(self.coordinates(), known));
             seen(u64::from(label.is_some()));
             outcome

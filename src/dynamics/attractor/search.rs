@@ -52,15 +52,15 @@ type Found<M, T> = Result<Option<T>, StopOf<M>>;
 impl<M: Motions> AttractorSearch<'_, M> {
     /// The outcome of the search; none where it does not show so early. The `last` look takes
     /// orbits of long periods too.
-    pub fn identified(&self, from: &M::Place, last: bool) -> Option<Settled<M::Coordinates>> {
-        self.looked_at(from, last).unwrap_or_else(|stop| match self.stopped(stop) {
+    pub fn identify(&self, from: &M::Place, last: bool) -> Option<Settled<M::Coordinates>> {
+        self.look_at(from, last).unwrap_or_else(|stop| match self.outcome_of_stop(stop) {
             Settled::Label(Label::Unresolved) => None,
             settled => Some(settled),
         })
     }
 
     /// The outcome of a motion that leads to no further return.
-    pub fn stopped(&self, stop: StopOf<M>) -> Settled<M::Coordinates> {
+    pub fn outcome_of_stop(&self, stop: StopOf<M>) -> Settled<M::Coordinates> {
         match (stop.label(self.motions.coordinates(), self.known), stop) {
             (Some(label), _) | (None, Stop::Label(label)) => Settled::Label(label),
             (None, Stop::Rest(point)) => {
@@ -70,7 +70,7 @@ impl<M: Motions> AttractorSearch<'_, M> {
         }
     }
 
-    fn looked_at(&self, from: &M::Place, last: bool) -> Found<M, Settled<M::Coordinates>> {
+    fn look_at(&self, from: &M::Place, last: bool) -> Found<M, Settled<M::Coordinates>> {
         let short = self.limits.max_period.min(MAX_FIRST_PERIOD);
         if let Some(orbit) = self.orbit_from(from, short)? {
             return Ok(Some(orbit));
@@ -138,7 +138,7 @@ impl<M: Motions> AttractorSearch<'_, M> {
     ) -> Found<M, usize> {
         // Of a motion whose start is a return, that is one of so many.
         let further = returns - u64::from(M::FIRST_RETURN_IS_START);
-        match self.motions.recognised(known, from, further) {
+        match self.motions.recognise(known, from, further) {
             Ok(_) => Ok(None),
             Err(Stop::Label(Label::Attractor(place))) => Ok(Some(place)),
             Err(stop) => Err(stop),

@@ -214,7 +214,7 @@ impl Motions for StrobeMotions {
         Attractor::of_run(kind, run, means)
     }
 
-    fn recognised(
+    fn recognise(
         &self,
         known: &[Known],
         from: &Entry,

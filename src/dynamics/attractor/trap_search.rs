@@ -123,7 +123,7 @@ fn transposed<const N: usize>(m: &[[f64; N]; N]) -> [[f64; N]; N] {
 fn net(metric: &[Vec<f64>], axes: &[Vec<f64>], directions: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let upper = upper_factor(metric, axes)?;
     let along = |direction: &Vec<f64>| {
-        let factors = solved(&upper, direction);
+        let factors = solve(&upper, direction);
         let entry = |n| axes.iter().zip(&factors).map(|(axis, by)| axis[n] * by).sum();
         (0..metric.len()).map(entry).collect()
     };
@@ -147,7 +147,7 @@ fn upper_factor(metric: &[Vec<f64>], axes: &[Vec<f64>]) -> Option<Vec<Vec<f64>>>
 }
 
 /// x with U x = right.
-fn solved(upper: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
+fn solve(upper: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let mut x = vec![0.0; right.len()];
     for i in (0..right.len()).rev() {
         let rest = right[i] - ((i + 1)..right.len()).map(|k| upper[i][k] * x[k]).sum::<f64>();

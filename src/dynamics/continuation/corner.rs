@@ -26,10 +26,10 @@ impl FamilyCurve {
         base: &ContinuationPoint,
         distance: f64,
     ) -> Option<Corner<ContinuationPoint>> {
-        let (before, rest) = self.approached(base, distance);
+        let (before, rest) = self.approach(base, distance);
         let mut best: Option<Corner<_>> = None;
         for step in PROBE_DISTANCES {
-            let Some(beyond) = self.beyond(&before, step) else { continue };
+            let Some(beyond) = self.point_beyond(&before, step) else { continue };
             let error = rest * before.tangent.rate.abs() + self.seen_from(&beyond, step, &before);
             if best.as_ref().is_none_or(|it| error < it.error) {
                 best = Some(Corner { before: before.clone(), beyond: Some(beyond), error });
@@ -44,21 +44,21 @@ impl FamilyCurve {
     /// How far off the corner is found from beyond, and rounding.
     fn seen_from(&self, beyond: &ContinuationPoint, step: f64, before: &ContinuationPoint) -> f64 {
         let back = ContinuationPoint { tangent: beyond.tangent.turned(), ..beyond.clone() };
-        let (after, rest) = self.approached(&back, 2.0 * step);
+        let (after, rest) = self.approach(&back, 2.0 * step);
         let apart = (after.value - before.value).abs() + rest * after.tangent.rate.abs();
         apart + self.uncertainty(before)
     }
 
     /// The last orbit of a point's piece along the curve, and how much further the corner may be.
-    fn approached(&self, base: &ContinuationPoint, distance: f64) -> (ContinuationPoint, f64) {
+    fn approach(&self, base: &ContinuationPoint, distance: f64) -> (ContinuationPoint, f64) {
         last_along(base, distance, CORNER_TOLERANCE, &|before, step| {
-            self.corrected(before, step).filter(|it| it.is_on_piece_of(before))
+            self.corrected_point(before, step).filter(|it| it.is_on_piece_of(before))
         })
     }
 
     /// The curve a step beyond the corner at `before`. Its direction there is that of the other
     /// piece's derivative; of the two ways along it one leads to an orbit of that piece.
-    fn beyond(&self, before: &ContinuationPoint, step: f64) -> Option<ContinuationPoint> {
+    fn point_beyond(&self, before: &ContinuationPoint, step: f64) -> Option<ContinuationPoint> {
         let value = before.value + step * before.tangent.rate;
         let tangents = self.probes(before, step).into_iter().flat_map(|probe| {
             let forward = self.tangent(&probe, value, &before.tangent);
@@ -69,7 +69,7 @@ impl FamilyCurve {
         tangents.reverse();
         tangents.into_iter().find_map(|tangent| {
             let base = ContinuationPoint { tangent, ..before.clone() };
-            let mut point = self.corrected(&base, step)?;
+            let mut point = self.corrected_point(&base, step)?;
             if point.is_on_piece_of(before) {
                 return None;
             }

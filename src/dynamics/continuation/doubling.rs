@@ -3,7 +3,7 @@
 use super::point::{BranchTangent, ContinuationPoint, FamilyCurve};
 use super::{Bifurcation, Branch, Family};
 use crate::dynamics::linear::{IDENTITY, adjugate, norm};
-use crate::dynamics::orbit::newton::solved;
+use crate::dynamics::orbit::newton::solve;
 use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size};
 use crate::dynamics::strobe::StrobePoint;
 
@@ -44,20 +44,20 @@ impl Doubling {
         told: &mut dyn FnMut(f64),
     ) -> Option<Self> {
         let curve = FamilyCurve::new(family, from, to);
-        let doubled = curve.doubled(flip)?;
+        let doubled = curve.doubled_orbit(flip)?;
         let criticality = curve.criticality(flip, &doubled)?;
-        let branch = Branch::along(&curve, [from, to], doubled, told);
+        let branch = Branch::follow_from(&curve, [from, to], doubled, told);
         Some(Self { criticality, branch })
     }
 }
 
 impl FamilyCurve {
-    fn doubled(&self, flip: &Bifurcation) -> Option<ContinuationPoint> {
+    fn doubled_orbit(&self, flip: &Bifurcation) -> Option<ContinuationPoint> {
         let map = self.family.map(flip.value).ok()?;
         let single = ShootingIterate::of(&map, &flip.orbit.points)?;
         let first = flipped(&single)?;
         let none = vec![[0.0; 3]; single.points.len()];
-        let there = single.spread(first, &none);
+        let there = single.spread_changes(first, &none);
         let back = there.iter().map(|it| it.map(|x| -x));
         let scale = (1.0 + size(&single.points[0])) / size(&first);
         let points: Vec<StrobePoint> =
@@ -72,7 +72,7 @@ impl FamilyCurve {
             orbit,
         };
         AMPLITUDES.iter().find_map(|amplitude| {
-            let point = self.corrected(&base, *amplitude)?;
+            let point = self.corrected_point(&base, *amplitude)?;
             (point.iterate.width() > 0.1 * amplitude).then_some(point)
         })
     }
@@ -81,7 +81,7 @@ impl FamilyCurve {
         let offset = doubled.value - flip.value;
         let below = |value: f64| {
             let map = self.family.map(value).ok()?;
-            let iterate = solved(&map, ShootingIterate::of(&map, &flip.orbit.points)?).ok()?;
+            let iterate = solve(&map, ShootingIterate::of(&map, &flip.orbit.points)?).ok()?;
             let multipliers = Orbit::of(&iterate).multipliers;
             Some(multipliers.iter().filter(|it| it[1] == 0.0 && it[0] < -1.0).count())
         };
@@ -96,7 +96,7 @@ impl FamilyCurve {
 /// The direction that once around turns into its opposite: any column of the adjugate of M + 1, of
 /// which the largest has lost least.
 fn flipped(iterate: &ShootingIterate) -> Option<StrobePoint> {
-    let Around { matrix, .. } = iterate.around(&iterate.defects);
+    let Around { matrix, .. } = iterate.recurrence(&iterate.defects);
     let plus: [StrobePoint; 3] =
         std::array::from_fn(|i| std::array::from_fn(|j| matrix[i][j] + IDENTITY[i][j]));
     let adjugate = adjugate(&plus);

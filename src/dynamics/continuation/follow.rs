@@ -5,7 +5,7 @@ use super::steps::{Corner, Noted, OrbitCurve, OrbitPoint};
 use super::{Bifurcation, BifurcationKind, BranchPoint};
 use crate::dynamics::linear::ReIm;
 use crate::dynamics::orbit::ShootingIterate;
-use crate::dynamics::orbit::newton::{Shooting, polished};
+use crate::dynamics::orbit::newton::{Shooting, polish};
 
 impl OrbitPoint for ContinuationPoint {
     fn value(&self) -> f64 {
@@ -42,8 +42,12 @@ impl OrbitCurve for FamilyCurve {
     type Bifurcation = Bifurcation;
     type Kept = BranchPoint;
 
-    fn corrected(&self, base: &ContinuationPoint, distance: f64) -> Option<ContinuationPoint> {
-        Self::corrected(self, base, distance)
+    fn corrected_point(
+        &self,
+        base: &ContinuationPoint,
+        distance: f64,
+    ) -> Option<ContinuationPoint> {
+        Self::corrected_point(self, base, distance)
     }
 
     fn cosine(&self, point: &ContinuationPoint, next: &ContinuationPoint) -> f64 {
@@ -60,7 +64,7 @@ impl OrbitCurve for FamilyCurve {
         let between: Vec<_> =
             pairs.map(|(a, b)| std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))).collect();
         let map = self.family.map(value).ok()?;
-        let iterate = polished(&map, ShootingIterate::of(&map, &between)?);
+        let iterate = polish(&map, ShootingIterate::of(&map, &between)?);
         iterate.is_closed().then(|| self.point(value, iterate, &next.tangent))
     }
 
@@ -104,7 +108,7 @@ impl OrbitCurve for FamilyCurve {
         Bifurcation { kind, value, error, turns, orbit, beyond: None }
     }
 
-    fn kept(&self, point: &ContinuationPoint) -> BranchPoint {
+    fn kept_point(&self, point: &ContinuationPoint) -> BranchPoint {
         BranchPoint { value: point.value, orbit: point.orbit.clone() }
     }
 

@@ -218,11 +218,11 @@ impl Branch {
             rate: curve.unit * (to - from).signum(),
         };
         let first = curve.point(from, iterate, &towards);
-        Ok(Self::along(&curve, [from, to], first, told))
+        Ok(Self::follow_from(&curve, [from, to], first, told))
     }
 
     /// The branch from a point of a curve on.
-    fn along(
+    fn follow_from(
         curve: &FamilyCurve,
         ends: [f64; 2],
         first: ContinuationPoint,

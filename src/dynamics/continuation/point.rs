@@ -47,7 +47,7 @@ impl FamilyCurve {
     }
 
     /// The orbit at a distance along the tangent of `base`.
-    pub(super) fn corrected(
+    pub(super) fn corrected_point(
         &self,
         base: &ContinuationPoint,
         distance: f64,
@@ -58,7 +58,7 @@ impl FamilyCurve {
         let mut best: Option<(f64, ShootingIterate)> = None;
         for _ in 0..ITERATIONS {
             let iterate = ShootingIterate::of(&self.family.map(value).ok()?, &strobes)?;
-            let left = self.along(base, &iterate, value) - distance;
+            let left = self.distance_along(base, &iterate, value) - distance;
             let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
             let closed = in_place && iterate.is_closed();
             match &best {
@@ -66,12 +66,13 @@ impl FamilyCurve {
                 None if !closed => {}
                 _ => best = Some((value, iterate.clone())),
             }
-            let bordered = self.bordered(&iterate, value, &base.tangent, &base.iterate);
+            let bordered = self.bordered_system(&iterate, value, &base.tangent, &base.iterate);
             let [p, y, q] = bordered.offset.map(|x| -x);
             let [dp, dy, dq, step] = solve(bordered.matrix, [p, y, q, -left]);
             let step = step * self.unit;
             let offsets = offsets(&iterate.defects, &bordered.slopes, step);
-            strobes = shifted(&iterate.points, &iterate.spread([dp, dy, dq], &offsets), 1.0);
+            strobes =
+                shifted(&iterate.points, &iterate.spread_changes([dp, dy, dq], &offsets), 1.0);
             value += step;
         }
         let (value, iterate) = best?;
@@ -98,11 +99,11 @@ impl FamilyCurve {
         value: f64,
         along: &BranchTangent,
     ) -> BranchTangent {
-        let bordered = self.bordered(iterate, value, along, iterate);
+        let bordered = self.bordered_system(iterate, value, along, iterate);
         let [p, y, q, rate] = solve(bordered.matrix, [0.0, 0.0, 0.0, 1.0]);
         let rate = rate * self.unit;
         let none = vec![[0.0; 3]; iterate.points.len()];
-        let points = iterate.spread([p, y, q], &offsets(&none, &bordered.slopes, rate));
+        let points = iterate.spread_changes([p, y, q], &offsets(&none, &bordered.slopes, rate));
         let mut tangent = BranchTangent { points, rate };
         let length = self.product(&tangent, &tangent, iterate).sqrt();
         if length > 0.0 && length.is_finite() {
@@ -113,7 +114,12 @@ impl FamilyCurve {
     }
 
     /// The distance along the tangent of `base` at which an iterate lies.
-    fn along(&self, base: &ContinuationPoint, iterate: &ShootingIterate, value: f64) -> f64 {
+    fn distance_along(
+        &self,
+        base: &ContinuationPoint,
+        iterate: &ShootingIterate,
+        value: f64,
+    ) -> f64 {
         let moved: StrobePoint =
             std::array::from_fn(|i| iterate.points[0][i] - base.iterate.points[0][i]);
         let weight = weight(&base.iterate);
@@ -131,7 +137,7 @@ impl FamilyCurve {
         weight(at) * dot(&a.points[0], &b.points[0]) + a.rate / self.unit * (b.rate / self.unit)
     }
 
-    fn bordered(
+    fn bordered_system(
         &self,
         iterate: &ShootingIterate,
         value: f64,
@@ -139,8 +145,8 @@ impl FamilyCurve {
         weighed: &ShootingIterate,
     ) -> Bordered {
         let slopes = self.family.slopes(value, iterate, self.unit.min(1.0));
-        let Around { matrix: around, offset } = iterate.around(&iterate.defects);
-        let Around { offset: by_value, .. } = iterate.around(&slopes);
+        let Around { matrix: around, offset } = iterate.recurrence(&iterate.defects);
+        let Around { offset: by_value, .. } = iterate.recurrence(&slopes);
         let mut matrix = [[0.0; 4]; 4];
         for i in 0..3 {
             for j in 0..3 {
@@ -156,7 +162,7 @@ impl FamilyCurve {
     /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve.
     pub(super) fn uncertainty(&self, point: &ContinuationPoint) -> f64 {
         let Bordered { matrix, .. } =
-            self.bordered(&point.iterate, point.value, &point.tangent, &point.iterate);
+            self.bordered_system(&point.iterate, point.value, &point.tangent, &point.iterate);
         let by_row = (0..3).map(|row| {
             let mut right = [0.0; 4];
             right[row] = 1.0;

@@ -81,7 +81,7 @@ pub(crate) trait OrbitCurve {
     type Kept;
 
     /// The orbit at a distance along the tangent of `base`.
-    fn corrected(&self, base: &Self::Point, distance: f64) -> Option<Self::Point>;
+    fn corrected_point(&self, base: &Self::Point, distance: f64) -> Option<Self::Point>;
 
     /// The cosine between the directions of two points, measured at the first.
     fn cosine(&self, point: &Self::Point, next: &Self::Point) -> f64;
@@ -106,7 +106,7 @@ pub(crate) trait OrbitCurve {
 
     fn bifurcation(&self, noted: Noted<Self::Point>) -> Self::Bifurcation;
 
-    fn kept(&self, point: &Self::Point) -> Self::Kept;
+    fn kept_point(&self, point: &Self::Point) -> Self::Kept;
 
     /// Whether a step passes where the branch began, in the same direction.
     fn is_back(&self, step: [&Self::Point; 2], start: &Self::Point) -> bool;
@@ -123,7 +123,7 @@ pub(crate) trait OrbitCurve {
         distance: f64,
         test: &dyn Fn(&Self::Point) -> f64,
     ) -> Option<LocatedPoint<Self::Point>> {
-        zero_along(base, distance, &|at| self.corrected(base, at), test)
+        zero_along(base, distance, &|at| self.corrected_point(base, at), test)
     }
 
     /// Bound on the error of the parameter's value at a located point.
@@ -136,7 +136,7 @@ pub(crate) trait OrbitCurve {
     fn halving(&self, point: &Self::Point, next: &Self::Point) -> Option<Noted<Self::Point>> {
         let single = self.half(point, next)?;
         let located = FLIP_DISTANCES.iter().find_map(|distance| {
-            let start = self.corrected(&single, -distance)?;
+            let start = self.corrected_point(&single, -distance)?;
             self.located(&start, 2.0 * distance, &OrbitPoint::flip)
         })?;
         let error = self.error(&located);
@@ -209,7 +209,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
     fn step(&mut self, point: &C::Point, step: &mut f64) -> Step<C::Point> {
         loop {
             let distance = *step;
-            let attempt = self.curve.corrected(point, distance);
+            let attempt = self.curve.corrected_point(point, distance);
             let other_piece = attempt.as_ref().is_some_and(|it| !it.is_on_piece_of(point));
             let smooth = attempt.filter(|it| self.is_smooth(point, it, distance));
             if let Some(next) = smooth {
@@ -299,7 +299,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
     }
 
     fn keep(&mut self, point: &C::Point) {
-        self.points.push(self.curve.kept(point));
+        self.points.push(self.curve.kept_point(point));
     }
 
     /// Bifurcations between two points of one piece.

@@ -68,7 +68,7 @@ pub fn follow<'a, W: Watcher + Send>(
     #[cfg(feature = "lanes")]
     return follow_by(Instructions::widest(), count, begin).0;
     #[cfg(not(feature = "lanes"))]
-    on_all_threads(count, |next| one_by_one(next, &begin)).0
+    on_all_threads(count, |next| follow_one_by_one(next, &begin)).0
 }
 
 /// Follows the motions as [`follow`] does, by these instructions, and counts how their phases were
@@ -81,7 +81,7 @@ pub fn follow_by<'a, W: Watcher + Send>(
 ) -> (Vec<W>, Tally) {
     on_all_threads(count, |next| match instructions.permit() {
         Some(permit) => scheduler::LaneScheduler::new(permit).follow(next, &begin),
-        None => one_by_one(next, &begin),
+        None => follow_one_by_one(next, &begin),
     })
 }
 
@@ -97,7 +97,7 @@ struct Done<W> {
     tally: Tally,
 }
 
-fn one_by_one<'a, W: Watcher>(
+fn follow_one_by_one<'a, W: Watcher>(
     next: &mut dyn FnMut() -> Option<usize>,
     begin: &impl Fn(usize) -> Member<'a, W>,
 ) -> Done<W> {

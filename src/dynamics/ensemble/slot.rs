@@ -102,7 +102,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
     #[inline]
     pub fn advance(&mut self, task: LaneTask, lane: usize, end: &PhaseEnds) -> Option<LaneTask> {
         if end.proved[lane] != 1.0 {
-            return task.again().or_else(|| self.pass_alone());
+            return task.finer_task().or_else(|| self.pass_alone());
         }
         if task.is_strobe() {
             let Some(strobe) = self.strobe(task, lane, end) else { return self.pass_alone() };
@@ -110,18 +110,18 @@ impl<'a, W: Watcher> Slot<'a, W> {
                 return None;
             }
             return match self.next {
-                Some(next) => self.onwards(task, next),
+                Some(next) => self.task_after(task, next),
                 None => self.pass_alone(),
             };
         }
         self.tally.in_lanes += 1;
-        let next = self.landed(task, lane, end);
-        self.onwards(task, next)
+        let next = self.land(task, lane, end);
+        self.task_after(task, next)
     }
 
     /// The next strobe in the phase, or the phase after it.
     #[inline]
-    fn onwards(&mut self, task: LaneTask, next: Entry) -> Option<LaneTask> {
+    fn task_after(&mut self, task: LaneTask, next: Entry) -> Option<LaneTask> {
         // As a segment shows them: what is due when the phase ends belongs to the next one.
         while next.instant > self.cursor.due {
             if self.cursor.due > self.cursor.entry.instant {
@@ -139,7 +139,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
 
     /// What begins at a switch, with what is known there imposed ([`crate::run::switch`]).
     #[inline]
-    fn landed(&self, task: LaneTask, lane: usize, end: &PhaseEnds) -> Entry {
+    fn land(&self, task: LaneTask, lane: usize, end: &PhaseEnds) -> Entry {
         let Entry { instant, drift, .. } = self.cursor.entry;
         let constants = self.cursor.model.constants();
         let angle = TwoWord { high: end.angle[lane], low: end.angle_low[lane] };

@@ -12,7 +12,7 @@ mod shooting;
 use super::strobe::{StrobeMap, StrobePoint};
 use crate::error::InputError;
 use crate::phase::Phase;
-use newton::{Unsolved, least, solved};
+use newton::{Unsolved, minimal_orbit, solve};
 pub use scan::scan;
 pub(crate) use shooting::{Around, ShootingIterate, size};
 use std::fmt;
@@ -46,7 +46,7 @@ impl Orbit {
     /// [`NoOrbit`] says why none was reached and how close it came.
     pub fn find(map: &StrobeMap, guess: StrobePoint, period: u32) -> Result<Self, NoOrbit> {
         let iterate = ShootingIterate::shot(map, guess, period)?;
-        Ok(Self::of(&least(map, solved(map, iterate)?)))
+        Ok(Self::of(&minimal_orbit(map, solve(map, iterate)?)))
     }
 
     /// The orbit of a converged iterate.

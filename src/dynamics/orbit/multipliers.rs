@@ -15,7 +15,7 @@ pub(crate) struct Invariants {
 
 impl Invariants {
     pub(crate) fn of(iterate: &ShootingIterate) -> Self {
-        let around = around(iterate);
+        let around = derivative_around(iterate);
         let reversed = iterate
             .jacobians
             .iter()
@@ -32,11 +32,11 @@ pub(super) fn of(iterate: &ShootingIterate) -> [ReIm; 3] {
         let [first, second] = roots(sum, pairs);
         [first, second, [0.0; 2]]
     } else {
-        eigenvalues(&around(iterate))
+        eigenvalues(&derivative_around(iterate))
     }
 }
 
-fn around(iterate: &ShootingIterate) -> Jacobian {
+fn derivative_around(iterate: &ShootingIterate) -> Jacobian {
     iterate.jacobians.iter().fold(IDENTITY, |before, jacobian| product(jacobian, &before))
 }
 

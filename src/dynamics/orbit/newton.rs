@@ -32,7 +32,7 @@ pub(crate) trait Shooting<M>: Clone {
     fn first(&self, map: &M, count: usize) -> Option<Self>;
 
     /// The largest distance to the points of another orbit, which may close sooner.
-    fn apart(&self, map: &M, other: &Self) -> f64;
+    fn orbit_distance(&self, map: &M, other: &Self) -> f64;
 
     /// The points half way to those of another orbit, which may close sooner.
     fn half_way(&self, map: &M, other: &Self) -> Option<Self>;
@@ -40,7 +40,7 @@ pub(crate) trait Shooting<M>: Clone {
 
 /// The closed points that are reached from these, or the least residual that was, and whether it
 /// still fell.
-pub(crate) fn solved<M, S: Shooting<M>>(map: &M, start: S) -> Result<S, Unsolved> {
+pub(crate) fn solve<M, S: Shooting<M>>(map: &M, start: S) -> Result<S, Unsolved> {
     let mut best = start.clone();
     let mut shots = start;
     let mut wild = 0;
@@ -49,7 +49,7 @@ pub(crate) fn solved<M, S: Shooting<M>>(map: &M, start: S) -> Result<S, Unsolved
             best = shots.clone();
         }
         if best.is_closed() {
-            return Ok(polished(map, best));
+            return Ok(polish(map, best));
         }
         let next = damped(map, &shots).or_else(|| {
             wild += 1;
@@ -83,7 +83,7 @@ fn damped<M, S: Shooting<M>>(map: &M, shots: &S) -> Option<S> {
 }
 
 /// Newton's steps as long as they gain anything.
-pub(crate) fn polished<M, S: Shooting<M>>(map: &M, start: S) -> S {
+pub(crate) fn polish<M, S: Shooting<M>>(map: &M, start: S) -> S {
     let mut best = start.clone();
     let mut shots = start;
     let mut idle = 0;
@@ -101,7 +101,7 @@ pub(crate) fn polished<M, S: Shooting<M>>(map: &M, start: S) -> S {
 }
 
 /// The orbit with the least number of points that it needs.
-pub(crate) fn least<M, S: Shooting<M>>(map: &M, orbit: S) -> S {
+pub(crate) fn minimal_orbit<M, S: Shooting<M>>(map: &M, orbit: S) -> S {
     let period = orbit.period();
     let divisors = (1..=period / 2).filter(|it| period.is_multiple_of(*it));
     let mut shorter = divisors.filter_map(|it| shortened(map, &orbit, it));
@@ -111,11 +111,11 @@ pub(crate) fn least<M, S: Shooting<M>>(map: &M, orbit: S) -> S {
 /// The orbit of `count` points that cannot be told from this one.
 fn shortened<M, S: Shooting<M>>(map: &M, orbit: &S, count: usize) -> Option<S> {
     let first = orbit.first(map, count)?;
-    if orbit.apart(map, &first) > MAX_ORBIT_DISTANCE {
+    if orbit.orbit_distance(map, &first) > MAX_ORBIT_DISTANCE {
         return None;
     }
-    let shorter = solved(map, first).ok()?;
-    if orbit.apart(map, &shorter) > MAX_ORBIT_DISTANCE {
+    let shorter = solve(map, first).ok()?;
+    if orbit.orbit_distance(map, &shorter) > MAX_ORBIT_DISTANCE {
         return None;
     }
     // Two that differ have something between them that does not close.

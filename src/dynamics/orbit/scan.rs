@@ -35,7 +35,7 @@ pub fn scan(map: &StrobeMap, period: u32, told: &mut dyn FnMut(f64)) -> Vec<Orbi
         }
     }
     let mut found: Vec<_> = found.into_iter().map(|it| from_least(map, it)).collect();
-    found.sort_by(|a, b| rank(a).preferred(&rank(b), period));
+    found.sort_by(|a, b| rank(a).preference(&rank(b), period));
     found
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Rank {
 impl Rank {
     /// The order of preference in a search for orbits of this period: first the orbits of exactly
     /// this period, then those of its divisors, the longest first.
-    pub(crate) fn preferred(&self, other: &Self, period: u32) -> Ordering {
+    pub(crate) fn preference(&self, other: &Self, period: u32) -> Ordering {
         let is_shorter = |it: &Self| it.period != period as usize;
         is_shorter(self)
             .cmp(&is_shorter(other))
@@ -105,12 +105,12 @@ fn guesses(map: &StrobeMap, start: StrobePoint, period: u32) -> Vec<StrobePoint>
     let settled = map.strobes(entry, SETTLING_PERIODS + watched).skip(SETTLING_PERIODS as usize);
     let strobes: Vec<_> = settled.map(|strobe| strobe.point()).collect();
     let returns = strobes.iter().zip(strobes.iter().skip(period as usize));
-    let closest = returns.min_by(|(a, b), (c, d)| apart(a, b).total_cmp(&apart(c, d)));
+    let closest = returns.min_by(|(a, b), (c, d)| distance(a, b).total_cmp(&distance(c, d)));
     let settled = strobes.first().copied();
     [Some(start), settled, closest.map(|(from, _)| *from)].into_iter().flatten().collect()
 }
 
-fn apart(a: &StrobePoint, b: &StrobePoint) -> f64 {
+fn distance(a: &StrobePoint, b: &StrobePoint) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
@@ -124,7 +124,7 @@ pub(crate) fn are_one<P>(one: &[P], other: &[P], is_near: impl Fn(&P, &P) -> boo
 
 fn is_same(a: &Orbit, b: &Orbit) -> bool {
     are_one(&a.points, &b.points, |a, b| {
-        apart(a, b) <= ORBIT_TOLERANCE * (1.0 + apart(a, &[0.0; 3]))
+        distance(a, b) <= ORBIT_TOLERANCE * (1.0 + distance(a, &[0.0; 3]))
     })
 }
 

@@ -84,7 +84,7 @@ impl ShootingIterate {
 
     /// Once around for changes of the first strobe, each strobe's defect (or whatever stands in its
     /// place) being added on the way.
-    pub(crate) fn around(&self, defects: &[StrobePoint]) -> Around {
+    pub(crate) fn recurrence(&self, defects: &[StrobePoint]) -> Around {
         let mut around = Around { matrix: IDENTITY, offset: [0.0; 3] };
         for (jacobian, defect) in self.jacobians.iter().zip(defects) {
             around.matrix = product(jacobian, &around.matrix);
@@ -95,7 +95,11 @@ impl ShootingIterate {
     }
 
     /// The changes of all strobes that follow from that of the first.
-    pub(crate) fn spread(&self, first: StrobePoint, defects: &[StrobePoint]) -> Vec<StrobePoint> {
+    pub(crate) fn spread_changes(
+        &self,
+        first: StrobePoint,
+        defects: &[StrobePoint],
+    ) -> Vec<StrobePoint> {
         let mut changes = vec![first];
         for (jacobian, defect) in self.jacobians.iter().zip(defects).take(self.points.len() - 1) {
             let carried = apply(jacobian, &changes[changes.len() - 1]);
@@ -106,12 +110,12 @@ impl ShootingIterate {
 
     /// Newton's step for all strobes.
     pub(crate) fn newton_step(&self) -> Vec<StrobePoint> {
-        let Around { matrix, offset } = self.around(&self.defects);
+        let Around { matrix, offset } = self.recurrence(&self.defects);
         let less_identity = std::array::from_fn(|row| {
             std::array::from_fn(|column| matrix[row][column] - IDENTITY[row][column])
         });
         let first = solve(less_identity, offset.map(|x| -x));
-        self.spread(first, &self.defects)
+        self.spread_changes(first, &self.defects)
     }
 
     /// The phases of the whole orbit: one that goes on over a strobe, the first one's too, is one.
@@ -182,7 +186,7 @@ impl Shooting<StrobeMap> for ShootingIterate {
         Self::of(map, &self.points[..count])
     }
 
-    fn apart(&self, _: &StrobeMap, other: &Self) -> f64 {
+    fn orbit_distance(&self, _: &StrobeMap, other: &Self) -> f64 {
         self.distance(other)
     }
 

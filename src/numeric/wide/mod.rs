@@ -80,7 +80,7 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
     }
 
     /// A whole number.
-    fn whole(value: u64) -> Self {
+    fn from_whole(value: u64) -> Self {
         Self::rounded(false, 64, &mut [value])
     }
 
@@ -108,7 +108,7 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
     }
 
     /// The sum, or the difference, of the sizes of two ordinary numbers; the first is the larger.
-    fn joined(large: &Self, small: &Self, is_sum: bool) -> Self {
+    fn join(large: &Self, small: &Self, is_sum: bool) -> Self {
         let apart = (large.exponent - small.exponent) as u64;
         if apart >= 64 * (WORDS as u64 + 1) {
             return *large;
@@ -189,8 +189,8 @@ impl<const WORDS: usize, const BITS: usize> Add for Wide<WORDS, BITS> {
         let is_sum = self.is_negative == other.is_negative;
         match self.compare_sizes(&other) {
             Ordering::Equal if !is_sum => Self::ZERO,
-            Ordering::Less => Self::joined(&other, &self, is_sum),
-            _ => Self::joined(&self, &other, is_sum),
+            Ordering::Less => Self::join(&other, &self, is_sum),
+            _ => Self::join(&self, &other, is_sum),
         }
     }
 }
@@ -315,7 +315,7 @@ impl<const WORDS: usize, const BITS: usize> Number for Wide<WORDS, BITS> {
     }
 
     fn one() -> Self {
-        Self::whole(1)
+        Self::from_whole(1)
     }
 
     fn abs(self) -> Self {

@@ -7,7 +7,7 @@ use crate::affine::model::scalar::{Assignment, Condition, Scalar};
 use crate::affine::model::system::System;
 
 /// The indices of the states that the file says are drifts; none where it does not say.
-pub(super) fn declared(
+pub(super) fn declared_drifts(
     file: &SystemFile,
     system: &System,
 ) -> Result<Option<Vec<usize>>, SystemError> {
@@ -24,7 +24,7 @@ pub(super) fn declared(
             return refuse(&format!("{name} is there twice"));
         }
         if let Some(place) = system.dependent_on(n) {
-            let written = written(file, system, place).unwrap_or_default();
+            let written = written_text(file, system, place).unwrap_or_default();
             return refuse(&system.no_drift(n, place, written));
         }
         drift.push(n);
@@ -33,7 +33,7 @@ pub(super) fn declared(
 }
 
 /// An expression as it is written, where it is a text.
-fn written<'a>(file: &'a SystemFile, system: &System, place: Place) -> Option<&'a str> {
+fn written_text<'a>(file: &'a SystemFile, system: &System, place: Place) -> Option<&'a str> {
     let modes = &file.tables.mode;
     let assigned = |it: &'a Assignment, n: usize| match it {
         Assignment::Text(text) => {

@@ -117,7 +117,7 @@ fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
     }
     // The derivatives of coefficients say nothing of what depends on what.
     if by.is_none() {
-        system.drift = drift::declared(file, &system)?;
+        system.drift = drift::declared_drifts(file, &system)?;
     }
     Ok(system)
 }

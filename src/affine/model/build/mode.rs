@@ -115,7 +115,7 @@ impl ModeReader<'_> {
         let states = form.0.len() - 3;
         let forced = self.omega.is_some();
         let kept = |(index, it)| {
-            (forced || index < states || index == states + 2).then(|| names.wanted(it))
+            (forced || index < states || index == states + 2).then(|| names.value_or_rate(it))
         };
         Ok(form.0.into_iter().enumerate().filter_map(kept).collect())
     }
@@ -167,7 +167,7 @@ impl ModeReader<'_> {
         dimension: usize,
     ) -> Result<Vec<Row>, SystemError> {
         // What a reset leaves as it is does so whatever the parameters are.
-        let one = names.wanted(Dual::ONE);
+        let one = names.value_or_rate(Dual::ONE);
         let unit = |index| {
             let mut row = vec![Rational::ZERO; dimension];
             row[index] = one.clone();

@@ -105,11 +105,11 @@ impl<'a> Names<'a> {
             let form = Form::number(self.states.len(), value.clone());
             self.values.insert(name.to_owned(), form);
         }
-        Ok(Some(Forcing { omega: self.wanted(omega), phi: self.wanted(phi) }))
+        Ok(Some(Forcing { omega: self.value_or_rate(omega), phi: self.value_or_rate(phi) }))
     }
 
     /// The value of a coefficient, or its derivative where that is what is read.
-    pub(super) fn wanted(&self, coefficient: Dual) -> Rational {
+    pub(super) fn value_or_rate(&self, coefficient: Dual) -> Rational {
         if self.by.is_some() { coefficient.rate } else { coefficient.value }
     }
 

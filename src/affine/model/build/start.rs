@@ -24,7 +24,7 @@ pub(super) fn read(
         Some(GivenParameter { value, place }) => names.constant_at("t", value, place)?,
         _ => Dual::ZERO,
     };
-    let time = names.wanted(time);
+    let time = names.value_or_rate(time);
     let states = names.states.clone();
     let mut forms = Vec::with_capacity(states.len());
     for name in &states {
@@ -41,7 +41,7 @@ pub(super) fn read(
         let accepted = [names.file.source.keys_of_a_start(), &states.join(", ")].concat();
         return Err(SystemError::at(place, &format!("{key} is no state: accepted are {accepted}")));
     }
-    let (entries, order) = resolved(names, &forms).map_err(|n| {
+    let (entries, order) = resolve(names, &forms).map_err(|n| {
         let place = &table.entries[&states[n]].place;
         let what = "a start that hangs on itself, by way of other states or not, is not accepted";
         SystemError::at(place, &format!("{}: {what}", states[n]))
@@ -50,7 +50,8 @@ pub(super) fn read(
         state: n,
         row: forms[n].0.iter().map(|it| it.value.clone()).collect(),
     };
-    let state = entries.into_iter().map(|it| it.map(|number| names.wanted(number))).collect();
+    let state =
+        entries.into_iter().map(|it| it.map(|number| names.value_or_rate(number))).collect();
     Ok((StartPoint { mode, time, state }, order.into_iter().map(row).collect()))
 }
 
@@ -76,7 +77,7 @@ fn mode(table: &StartTable, places: &BTreeMap<String, usize>) -> Result<usize, S
 
 /// The entries of the states, and those that hang on others in an order in which each has its
 /// others before it; the first state of a circle where there is one.
-fn resolved(names: &Names, forms: &[Form]) -> Result<(Vec<Entry>, Vec<usize>), usize> {
+fn resolve(names: &Names, forms: &[Form]) -> Result<(Vec<Entry>, Vec<usize>), usize> {
     let mut known: Vec<Option<Entry>> = vec![None; forms.len()];
     let mut order = Vec::new();
     while let Some(open) = known.iter().position(Option::is_none) {

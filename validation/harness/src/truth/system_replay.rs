@@ -95,7 +95,7 @@ impl SystemReplay<'_> {
                 return Err(format!("has more than {MAX_EVENTS} events; it needs tables"));
             }
         }
-        if let Some(What::Until(mode, until)) = run.beyond() {
+        if let Some(What::Until(mode, until)) = run.event_beyond_guard() {
             let mode = &self.case.system.modes[mode];
             let ended = self.elapsed(&events[events.len() - 1].time).value();
             return Err(format!(
