@@ -255,11 +255,11 @@ const GRAZES: [Grazes; 14] = [
 /// Two phases from starts whose guard's crest is planted from 1e-8 below its threshold to 1e-8
 /// above it, at all decades down to rounding: the rounding rooms decide which of them are touches.
 fn count_grazes(grazes: &Grazes) -> Counters {
-    /// Enough for each term of a rounding room to decide some of them.
-    const GRAZES: usize = 2000;
+    /// The number of grazes of a kind, enough for each term of a rounding room to decide some of them.
+    const GRAZES_PER_KIND: usize = 2000;
     let mut draw = Draw(11);
     let mut sum = Counters::default();
-    for _ in 0..GRAZES {
+    for _ in 0..GRAZES_PER_KIND {
         let drawn = (grazes.model)(&mut draw);
         let crest = Crest {
             elapsed: draw.between(0.5, 8.0) / drawn.omega.max(1.0),

@@ -18,8 +18,8 @@ const MAX_RUN_TIME: f64 = 200.0;
 /// closed forms claim 10 eps for a phase of at most one forcing period, and an event adds as much.
 const ROUNDING_TOLERANCE: f64 = 32.0 * f64::EPSILON;
 
-/// What products that underflow may lose of a state: the smallest normal number times a/omega^2 <=
-/// 1e21.
+/// The largest loss of a state by products that underflow: the smallest normal number times
+/// a/omega^2 <= 1e21.
 const UNDERFLOW_TOLERANCE: f64 = 1e-285;
 
 /// Phases of a case that are decided again in 106 bits, where any are.
@@ -28,10 +28,10 @@ const MAX_JUDGED_PHASES: usize = 6;
 /// Evaluations of the judge for one phase.
 const JUDGE_EVALUATIONS: usize = 2000;
 
-/// One case in so many of those drawn from everything is judged.
+/// The number of cases drawn from everything of which one is judged.
 const CASES_PER_JUDGED: u64 = 16;
 
-/// How far an event may be off, in units of what rounding of the guard moves it by: the search
+/// The largest error of an event, in units of what rounding of the guard moves it by: the search
 /// allows itself as much again, and the guards of the two arithmetics differ by some roundings of
 /// the parameters' products.
 const MAX_EVENT_WIDTHS: f64 = 8.0;

@@ -22,7 +22,7 @@ pub(crate) enum Damping {
     },
 }
 
-/// From here on the free oscillation is taken apart into two exponentials.
+/// The damping from which on the free oscillation is taken apart into two exponentials.
 const MIN_SPLIT_DAMPING: f64 = 1.25;
 
 impl Damping {

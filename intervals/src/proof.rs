@@ -60,8 +60,8 @@ pub enum Verdict {
     },
 }
 
-/// How many times the slack a guard may be off where the solver says that it is on its threshold:
-/// the solver accepts one slack in what it computes, and that errs by less than another.
+/// The largest distance of a guard from its threshold, in slacks, where the solver says that it is
+/// on it: the solver accepts one slack in what it computes, and that errs by less than another.
 pub const MAX_SLACKS: f64 = 2.0;
 
 /// The number of pieces after which a phase is left undecided.

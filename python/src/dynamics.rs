@@ -96,7 +96,7 @@ pub(crate) fn lyapunov(
     let all = transient + periods;
     let (omega, period) = (model.parameters().omega, model.period());
     let found = attended(py, &Progress { told, all }, |stop| {
-        Spectrum::told(model, *entry, transient, periods, &mut |segment| {
+        Spectrum::observe(model, *entry, transient, periods, &mut |segment| {
             let passed = segment.entry().instant.since(&entry.instant, omega).value() / period;
             stop.reached(passed as u64);
         })

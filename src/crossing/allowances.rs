@@ -18,7 +18,7 @@ pub const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
 /// another order, and the decision is not to depend on that.
 pub const LANE_TIE_TOLERANCE: f64 = 16.0 * FOUR_ULPS;
 
-/// What each step of a contact that is followed in steps may round off, in eps of its parts.
+/// The rounding of each step of a contact that is followed in steps, in eps of its parts.
 pub const STEP_ROUNDINGS: f64 = 16.0;
 
 /// The largest length of the last step, in lengths of the others.

@@ -115,7 +115,7 @@ fn the_room_of_a_long_contact_has_the_weights_of_its_coefficients() {
 /// with its size.
 #[test]
 fn a_contact_rests_on_one_side_where_both_signs_are_beyond_rounding() {
-    const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+    const ROUNDING_TOLERANCE: f64 = 16.0 * f64::EPSILON;
     // The faster decay has the rate 2.
     let (a, b, xi, omega, fast) = (0.01, 0.5, 1.25, 0.7, 2.0);
     let constants = Constants::new(&Parameters { a, b, xi, omega, ..Parameters::default() });
@@ -132,9 +132,9 @@ fn a_contact_rests_on_one_side_where_both_signs_are_beyond_rounding() {
         };
         for sign in [1.0, -1.0] {
             let x = 0.01 * sign;
-            let rate = |share: f64| -fast * x + share * sign * ROUNDINGS * rates;
+            let rate = |share: f64| -fast * x + share * sign * ROUNDING_TOLERANCE * rates;
             assert!(!rests(x, rate(0.97)) && rests(x, rate(1.03)), "the rate, {sign} {y}");
-            let x = |share: f64| share * sign * ROUNDINGS * terms;
+            let x = |share: f64| share * sign * ROUNDING_TOLERANCE * terms;
             let (less, more) = (rests(x(0.97), 1e-3 * sign), rests(x(1.03), 1e-3 * sign));
             assert!(!less && more, "the value, {sign} {y}");
         }

@@ -135,9 +135,9 @@ fn polished_by<G: Guarded, const N: usize>(
     cubic: &CubicStep,
     series: &Series<f64, N>,
 ) -> Option<Root> {
-    /// What Newton's last step may change the slope by: it is put right to fifth order, which
-    /// leaves REACH^4/24 = 3e-8 of that, so that the force of an impact keeps its digits; the time
-    /// is settled by twice as many.
+    /// The largest relative change of the slope by Newton's last step: it is put right to fifth
+    /// order, which leaves REACH^4/24 = 3e-8 of that, so that the force of an impact keeps its
+    /// digits; the time is settled by twice as many.
     const SLOPE_CHANGE_TOLERANCE: f64 = 1e-9;
     let CubicStep { mut step, rises, .. } = *cubic;
     let corridor = phase.corridor();

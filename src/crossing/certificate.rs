@@ -88,10 +88,11 @@ impl Piece {
         let (below, above) = (in_order(pairs, lowest), in_order(pairs, highest));
         let size = below.iter().chain(&above).fold(0.0_f64, |size, c| size.larger(c.abs()));
         // Eight roundings more for each division.
-        let slack = slack + 8.0 * f64::from(DIVISIONS + 1) * f64::EPSILON * size;
+        let slack = slack + 8.0 * f64::from(HULL_DIVISIONS + 1) * f64::EPSILON * size;
         let over = Excess(above.map(|coefficient| coefficient - corridor.high));
         let under = Excess(below.map(|coefficient| corridor.low - coefficient));
-        over.is_negative(ends, slack, DIVISIONS) && under.is_negative(ends, slack, DIVISIONS)
+        over.is_negative(ends, slack, HULL_DIVISIONS)
+            && under.is_negative(ends, slack, HULL_DIVISIONS)
     }
 
     /// The middle coefficients of the polynomials that bound the guard from below and from above.
@@ -160,8 +161,9 @@ fn mix<T: Real>(from: T, to: T, share: f64) -> T {
     from.same(1.0 - share).times_plus(from, from.same(share) * to)
 }
 
-/// How often a bounding polynomial is divided: each time its hull comes four times nearer to it.
-const DIVISIONS: i32 = 3;
+/// The number of times that a bounding polynomial is divided: each time its hull comes four times
+/// nearer to it.
+const HULL_DIVISIONS: i32 = 3;
 
 /// The Bernstein coefficients of a bounding polynomial's excess.
 struct Excess([f64; 9]);

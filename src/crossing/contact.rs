@@ -44,7 +44,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// A bound of the eighth derivative of the free part from `at` on: x^2 + x'^2 never grows, of
     /// no derivative.
     pub(super) fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
-        /// The recurrence rounds in each of its eight steps, and the sums here round as well.
+        /// The roundings of the recurrence, one in each of its eight steps, and of the sums here.
         const RECURRENCE_ROUNDINGS: f64 = 16.0;
         /// The squares of two numbers whose sum is smaller may underflow.
         const MIN_SQUARABLE_SUM: f64 = 1e-140;
@@ -237,7 +237,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
     }
 
     fn stage(&self) -> f64 {
-        /// Over so many decay times the trial force loses three to four of its sixteen digits.
+        /// The length of a stage in decay times, over which the trial force loses three to four of
+        /// its sixteen digits.
         const STAGE_DECAY_TIMES: f64 = 8.0;
         if self.dies_out_next_to_a_threshold() {
             STAGE_DECAY_TIMES / self.constants.borrow().decays().0

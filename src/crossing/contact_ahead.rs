@@ -52,6 +52,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// steady state beyond a threshold by its last digit is beyond it, so b itself gets no room:
     /// 1 - b is exact for b of at least 1/2, and else half a unit of what fits into it.
     fn fits(&self, up: f64, down: f64) -> bool {
+        /// The factor that allows for the rounding of the two forces.
         const ROUNDING_FACTOR: f64 = 1.0 - 4.0 * f64::EPSILON;
         let b = self.constants.borrow().b;
         ROUNDING_FACTOR * up <= 1.0 - b && ROUNDING_FACTOR * down <= b
@@ -62,7 +63,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// so, because x' < 0 would need x > 0. Then the trial force stays on one side of its steady
     /// state.
     pub(super) fn rests_on_one_side(&self, left: &Point<f64>, split: &Split) -> bool {
-        const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+        /// The rounding of a sum from which on its sign is believed, beside its terms.
+        const ROUNDING_TOLERANCE: f64 = 16.0 * f64::EPSILON;
         let Constants { a, b, xi, two_xi, omega, .. } = *self.constants.borrow();
         if xi < 1.0 {
             return false;
@@ -73,7 +75,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         let level = (b - self.reference).abs();
         let terms = guard.largest_term + guard.orders[0].abs() + level + a + split.amplitude;
         let rates = two_xi * terms + left.state.y.abs() + omega * split.amplitude;
-        let (sure, sure_rate) = (ROUNDINGS * terms, ROUNDINGS * rates);
+        let (sure, sure_rate) = (ROUNDING_TOLERANCE * terms, ROUNDING_TOLERANCE * rates);
         let above = x > sure && fast * x + rate > sure_rate;
         let below = x < -sure && fast * x + rate < -sure_rate;
         if !(above || below) {
@@ -93,6 +95,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// part moves no faster than its amplitude times omega, around which the free part keeps
     /// within its own energy norm: that carries where the forcing is slow.
     fn calm_time(&self, left: &Point<f64>, split: &Split) -> f64 {
+        /// The least distance of the trial force from its thresholds, far above rounding.
         const FORCE_TOLERANCE: f64 = 1e-12;
         let Constants { a, b, two_xi, omega, .. } = *self.constants.borrow();
         let f = left.guard.orders[0] + self.reference;
@@ -107,6 +110,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// The first place where a cubic from `left` leaves the corridor, if that is soon.
     #[inline(always)]
     fn early_exit(&self, left: &Point<f64>) -> Option<f64> {
+        /// The longest time for which a cubic is followed, in the shortest time of the contact.
         const CUBIC_REACH: f64 = 0.4;
         let [f, f1, f2, f3] = left.guard.orders;
         let horizon = CUBIC_REACH / self.fastest_rate();
@@ -136,6 +140,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// under strong damping, as its fast part lives and dies.
     #[inline(always)]
     fn exit(&self, steps: &Steps, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
+        /// The number of short steps while the fast part lives.
         const QUICK_STEPS: usize = 16;
         // exp(-40) is below the rounding of what it is added to.
         const NEGLIGIBLE_DECAY_TIMES: f64 = 40.0;

@@ -43,8 +43,8 @@ impl Piece {
     }
 }
 
-/// How many places of a piece are compared when its crest is looked for, in steps of a 32nd of its
-/// length; none is next to an end.
+/// The number of places of a piece that are compared when its crest is looked for, in steps of a
+/// 32nd of its length; none is next to an end.
 const CREST_PLACES: usize = 27;
 
 /// The share of a piece's length at which one of those places is.

@@ -70,7 +70,7 @@ pub struct PieceEnd {
 
 impl FreeParts {
     fn after(&self, step: &FreeStep, shape: &FreeShape) -> Self {
-        const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+        const ROUNDING_TOLERANCE: f64 = 8.0 * f64::EPSILON;
         let FreeShape { curvature, strength, grain, .. } = *shape;
         let FreeStep { length, sin, cos, decay, speed, sag, fall, drop } = *step;
         let (lift, gain) = (0.5 * length * curvature, length * curvature);
@@ -84,7 +84,7 @@ impl FreeParts {
             bow: self.bow * cos + self.quarter * sin,
             quarter: self.quarter * cos - self.bow * sin,
             lasting: self.lasting * decay,
-            room: self.room + ROUNDINGS * (terms + strength * fall + self.lasting.abs()),
+            room: self.room + ROUNDING_TOLERANCE * (terms + strength * fall + self.lasting.abs()),
         }
     }
 
@@ -146,7 +146,8 @@ struct Crests {
 /// Pieces after which the stretch is left to divisions.
 const MAX_PIECES: usize = 12;
 
-const BELOW_ZERO: Corridor = Corridor { low: f64::NEG_INFINITY, high: 0.0 };
+/// The corridor of a guard that is negative inside.
+const NEGATIVE_CORRIDOR: Corridor = Corridor { low: f64::NEG_INFINITY, high: 0.0 };
 
 impl<'a> PiecewiseCertificate<'a> {
     /// A certificate for guards of this shape, with steps of these lengths.
@@ -158,6 +159,7 @@ impl<'a> PiecewiseCertificate<'a> {
     /// parts may be far larger than their sum: a touch that only their rounding hides is left to
     /// shorter pieces, which are certified by evaluations alone.
     pub fn proof(self, left: PieceEnd, right: PieceEnd, ends: ThresholdEnds, slack: f64) -> Proof {
+        /// The widest rounding room in which a touch is decided, in slacks.
         const MAX_TOUCH_SLACKS: f64 = 16.0;
         match self.verdict(left, right, ends) {
             (Proof::Touches, room) if room > MAX_TOUCH_SLACKS * slack => Proof::Open,
@@ -257,7 +259,7 @@ impl<'a> PiecewiseCertificate<'a> {
     fn crests(&self, near: &FreeParts, far: &FreeParts) -> Crests {
         /// The sums of values, and of slopes over the length, round a few times. An evaluation's
         /// own room leaves that out: its parts have cancelled before they were rounded.
-        const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+        const ROUNDING_TOLERANCE: f64 = 8.0 * f64::EPSILON;
         let FreeShape { curvature, grain, strength, per_omega2, rate, .. } = *self.shape;
         let line = self.line.unwrap_or_else(|| Chord::above(near, far, rate));
         let amplitude = strength * per_omega2;
@@ -271,7 +273,7 @@ impl<'a> PiecewiseCertificate<'a> {
         let values = values.max(far.value.abs() + line.at(far.elapsed).abs());
         let slopes = near.slope.abs().max(far.slope.abs()) + line.slope.abs() + grain;
         let over_length = (far.elapsed - near.elapsed) * slopes;
-        let rounding = ROUNDINGS * (values + over_length + amplitude);
+        let rounding = ROUNDING_TOLERANCE * (values + over_length + amplitude);
         Crests { here: here + amplitude, most: most + amplitude, rounding }
     }
 
@@ -288,7 +290,7 @@ impl<'a> PiecewiseCertificate<'a> {
             eighth: (0.0, strength * omega6 + lift),
         };
         let slack = left.parts.room.max(right.parts.room);
-        piece.verdict(&BELOW_ZERO, ends, slack)
+        piece.verdict(&NEGATIVE_CORRIDOR, ends, slack)
     }
 
     fn end(&self, parts: FreeParts) -> PieceEnd {

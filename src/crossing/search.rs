@@ -295,6 +295,7 @@ fn divide<G: Guarded>(
 /// Whether most of a piece's rounding room comes from one of its ends, from what dies out in it or
 /// grows: then a touch may be decided on the part next to the other.
 fn is_uneven(left: &Point<f64>, right: &Point<f64>) -> bool {
+    /// The ratio of the terms at a piece's ends from which on its rounding room is uneven.
     const UNEVEN_RATIO: f64 = 16.0;
     let [left, right] = [left, right].map(|end| end.guard.largest_term);
     left > UNEVEN_RATIO * right || right > UNEVEN_RATIO * left
@@ -303,7 +304,9 @@ fn is_uneven(left: &Point<f64>, right: &Point<f64>) -> bool {
 /// A place well inside a piece: what a phase proposes, unless rounding puts it at an end or many
 /// divisions have led nowhere.
 fn between(left: f64, proposed: f64, right: f64, divisions: usize) -> f64 {
+    /// The least distance of a place from a piece's ends, as a share of its length.
     const END_MARGIN: f64 = 1e-7;
+    /// The number of divisions in which a phase's proposal is taken; halving follows.
     const MAX_PROPOSALS: usize = 16;
     let margin = END_MARGIN * (right - left);
     let inside = proposed > left + margin && proposed < right - margin;

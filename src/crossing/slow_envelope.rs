@@ -180,6 +180,7 @@ impl SlowEnvelope {
         mut inside: bool,
         limit: f64,
     ) -> Option<f64> {
+        /// The number of steps after which the guess is given up.
         const MAX_STEPS: usize = 40;
         // At larger angles one leap more, with an evaluation, is worth its cost.
         const MAX_LEAP_RADIANS: f64 = 1e6;

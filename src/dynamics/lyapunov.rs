@@ -81,12 +81,12 @@ impl Spectrum {
     /// Where a phase that never ends is reached they are those of that phase, which are known.
     #[must_use]
     pub fn of(model: &Model, from: Entry, transient: u64, periods: u64) -> Self {
-        Self::told(model, from, transient, periods, &mut |_| ())
+        Self::observe(model, from, transient, periods, &mut |_| ())
     }
 
-    /// [`Spectrum::of`], but `seen` is told of every phase that has been followed.
+    /// Like [`Spectrum::of`], and `seen` is called with every phase that has been followed.
     #[must_use]
-    pub fn told(
+    pub fn observe(
         model: &Model,
         from: Entry,
         transient: u64,

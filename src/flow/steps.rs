@@ -133,6 +133,7 @@ const GUESS_STEP_RADIANS: f64 = 0.5;
 /// strong and so fast that the cubic between two places would err by more than a thousandth of the
 /// corridor.
 fn contact_look(parameters: &Parameters) -> f64 {
+    /// The largest error of the cubic between two places, beside the corridor.
     const GUESS_TOLERANCE: f64 = 1e-3;
     let Parameters { a, xi, omega, .. } = *parameters;
     let amplitude = Steady::new(a, xi, omega).amplitude;

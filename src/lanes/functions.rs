@@ -16,9 +16,9 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, LN_2, LOG2_E};
 /// Arguments of sine and cosine up to this size are accepted.
 pub const MAX_ARGUMENT: f64 = 1e5;
 
-/// What one word leaves of pi/2.
+/// The rest of pi/2 after its first word.
 const FRAC_PI_2_LOW: f64 = 6.123_233_995_736_766e-17;
-/// What one word leaves of ln 2.
+/// The rest of ln 2 after its first word.
 const LN_2_LOW: f64 = exponential::LN_2.low;
 
 /// Sine and cosine, radians.
@@ -68,6 +68,7 @@ pub fn sin_cos<S: Simd>(x: Wide<S>) -> (Wide<S>, Wide<S>) {
 /// exp(-z) for z >= 0; zero below the normal numbers.
 #[inline(always)]
 fn exp_of_minus<S: Simd>(z: Wide<S>) -> Wide<S> {
+    /// The largest z at which exp(-z) is a normal number.
     const MAX_EXPONENT: f64 = 708.0;
     let normal = z.below(MAX_EXPONENT);
     let z = normal.choose(z, z.same(0.0));

@@ -47,7 +47,8 @@ struct LoadedLanes<'a, S: Simd> {
     simd: S,
 }
 
-/// Longer phases are left to the scalar solver, whose reduction of the angle knows no bound.
+/// The longest phase in lanes, radians of the faster of forcing and free oscillation: longer ones
+/// are left to the scalar solver, whose reduction of the angle knows no bound.
 const MAX_PHASE_RADIANS: f64 = 1e5;
 
 impl<'a, S: Simd> LoadedLanes<'a, S> {

@@ -84,6 +84,7 @@ fn wrap_again(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
 /// library for any that a run meets.
 #[inline]
 fn add_floor(turns: i128, x: f64) -> (i128, f64) {
+    /// The size below which a number is cast to an i64 and back.
     const MAX_CAST_SIZE: f64 = (1_u64 << 62) as f64;
     if x.abs() < MAX_CAST_SIZE {
         let towards_zero = x as i64;

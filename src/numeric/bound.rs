@@ -365,7 +365,7 @@ impl Bound for ScaledF64 {
     }
 
     fn exp(exponent: f64) -> Self {
-        /// Beyond it an f64 does not tell one power of two from the next.
+        /// The largest exponent at which an f64 tells one power of two from the next.
         const MAX_EXPONENT: f64 = 1e15;
         let powers = (exponent / std::f64::consts::LN_2).round();
         if exponent < -MAX_EXPONENT {

@@ -123,7 +123,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// What is added to the table's entry is below 0.051, and rounded four times.
+    /// The rounding of what is added to the table's entry, which is below 0.051 and rounded four
+    /// times.
     const CORRECTION: f64 = 4.0 * 0.051 * 0.5 * f64::EPSILON;
 
     /// The library's error is below 0.8 units in the last place, ours below half a unit and that.

@@ -22,11 +22,11 @@ pub trait Number:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// How many terms a Taylor series with factorials needs at argument 1 to reach the last digit:
-    /// the least n with 1/(2 n + 1)! below half a unit (9 for f64, 14 for 106 bits).
+    /// The number of terms that a Taylor series with factorials needs at argument 1 to reach the
+    /// last digit: the least n with 1/(2 n + 1)! below half a unit (9 for f64, 14 for 106 bits).
     const TERMS: usize;
 
-    /// How many f64 are summed to a number that has all of its digits.
+    /// The number of f64 that are summed to a number that has all of its digits.
     const WORDS: usize;
 
     /// The numbers in which bounds of errors are kept: f64, unless it has too few exponents.

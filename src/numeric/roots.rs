@@ -87,6 +87,8 @@ impl CubicPolynomial {
     /// that the guard is almost straight. What is left is the third power of 0.02, and is put right
     /// with the series' own remainder.
     pub fn near_zero(&self) -> Option<f64> {
+        /// The largest change of the slope over half the step, beside the slope, at which the
+        /// series is taken.
         const MAX_BEND: f64 = 0.02;
         let inverse = 1.0 / self.slope;
         let newton = -self.value * inverse;

@@ -12,11 +12,12 @@ use std::fmt;
 /// The largest number of f64 whose sum a number is taken for: more than those of 3392 bits.
 const MAX_WORDS: usize = 80;
 
-/// Up to this exponent of two numbers are taken as they are; others are divided by a power of two,
-/// because f64 has no such exponents.
+/// The largest exponent of two of a number that is taken as it is; others are divided by a power of
+/// two, because f64 has no such exponents.
 const MAX_UNSCALED_EXPONENT: i64 = 800;
 
-/// Beyond this exponent of two no digits are printed, because powers of ten become too long.
+/// The largest exponent of two of a number whose digits are printed: powers of ten become too long
+/// beyond it.
 const MAX_PRINTED_EXPONENT: i64 = 4_000_000;
 
 /// The digits of a number that is printed without a precision.

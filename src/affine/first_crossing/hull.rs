@@ -193,11 +193,11 @@ fn relative<B: Bound>(hull: [B; 9]) -> [f64; 9] {
 #[inline]
 fn negative_until(hull: &[f64; 9], mut place: f64) -> f64 {
     const MAX_STEPS: usize = 16;
-    /// A difference of order k is off by 2^k roundings of k sums, and has the weight C(8, k): 3^8
-    /// in all, and eight times that.
-    const ROUNDING: f64 = 8.0 * 6561.0 * f64::EPSILON;
+    /// The rounding of the coefficients, relative to the largest: a difference of order k is off by
+    /// 2^k roundings of k sums, and has the weight C(8, k): 3^8 in all, and eight times that.
+    const ROUNDING_TOLERANCE: f64 = 8.0 * 6561.0 * f64::EPSILON;
     let powers = powers(hull);
-    let rounding = ROUNDING * hull.iter().fold(0.0_f64, |size, it| size.larger(it.abs()));
+    let rounding = ROUNDING_TOLERANCE * hull.iter().fold(0.0_f64, |size, it| size.larger(it.abs()));
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..MAX_STEPS {
         let (value, slope) = value_and_slope(&powers, place);

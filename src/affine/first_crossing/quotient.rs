@@ -16,7 +16,7 @@ pub(super) const WINDOW: f64 = 1.0 / 16.0;
 
 /// The rounding error in f64 of a sum of powers, or of a Bernstein coefficient, relative to the sum
 /// of its terms' sizes: 2N additions and products, twice.
-const ROUNDINGS: f64 = 4.0 * ORDERS as f64 * f64::EPSILON;
+const ROUNDING_TOLERANCE: f64 = 4.0 * ORDERS as f64 * f64::EPSILON;
 
 /// The factor by which a remainder is raised against its rounding.
 const OUTWARD_FACTOR: f64 = 1.0 + 1e-12;
@@ -92,7 +92,7 @@ impl<const N: usize> Quotient<N> {
             divided[k - zeros] = sizes[k] * factor;
         }
         let slack = if zeros == 0 { slack } else { 0.0 };
-        let margin = margin + ROUNDINGS;
+        let margin = margin + ROUNDING_TOLERANCE;
         Self { zeros, coefficients, sizes: divided, margin, slack, lost }
     }
 
@@ -200,6 +200,7 @@ impl<const N: usize> Quotient<N> {
 #[inline(always)]
 pub(super) fn root_by(rough: f64, step: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
     const MAX_STEPS: usize = 8;
+    /// The longest last step, as a share of the root.
     const STEP_TOLERANCE: f64 = 1e-3;
     let mut root = rough;
     for _ in 0..MAX_STEPS {

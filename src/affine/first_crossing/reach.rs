@@ -264,6 +264,7 @@ pub(super) fn part_of<T: Number>(
 /// where they have grown so much that rounding would hide the beginning.
 #[inline]
 fn polynomial_reach<B: Bound>(orders: &[B; 4], zeros: usize, slack: B) -> f64 {
+    /// The growth of the first terms, beside the value, by which rounding would hide the beginning.
     const MAX_GROWTH: f64 = 1e6;
     let [value, slope, bend, third] = *orders;
     let size = value.abs().max(slack);

@@ -23,6 +23,7 @@ use std::ops::ControlFlow;
 /// The largest number of pieces from one event to the next, of all guards together: about a
 /// second's work in 106 bits. A mode of many guards has [`MIN_PIECES`] nevertheless.
 const MAX_PIECES: u64 = 1 << 18;
+/// The least number of pieces from one event to the next, however many guards a mode has.
 const MIN_PIECES: u64 = 1 << 14;
 
 /// The number of pieces that dividing one counts as.

@@ -47,6 +47,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         [from, limit]: [T; 2],
         work: &mut SearchWork,
     ) -> bool {
+        /// The number of evaluations after which the crossing stays where it is.
         const MAX_ROUNDS: usize = 128;
         // A crossing exactly at the limit counts.
         let room = T::of_bound(T::unit() * 4.0 * limit.bound());

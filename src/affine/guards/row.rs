@@ -234,6 +234,7 @@ impl<B: Bound> RowPart<B> {
     /// The rate of a decay: the quotient of two norms, unless they have lost digits to underflow or
     /// have overflown.
     fn decay_rate(&self) -> Option<f64> {
+        /// The norms that have all of their digits: they neither underflow nor overflow.
         const NORM_RANGE: std::ops::Range<f64> = 1e-250..1e250;
         let is_in_range = self.norms[..2].iter().all(|norm| NORM_RANGE.contains(&norm.to_f64()));
         let is_decay = self.growth == BlockGrowth::Decaying && is_in_range;

@@ -297,6 +297,7 @@ fn noise(matrix: &BigMatrix, [columns, rows]: [&BigMatrix; 2], inner: &BigMatrix
 /// more alike: entry i is measured in 2 to the power i. Without them a small coupling would look
 /// like the rounding of a large one. Nothing is scaled where all sizes are alike.
 fn scales(exact: &[Row]) -> Vec<isize> {
+    /// The number of times that all entries are scaled once more.
     const MAX_ROUNDS: usize = 64;
     let power = |number: &Rational| -> Option<isize> {
         let exponent = libm::frexp(number.to_f64()).1;

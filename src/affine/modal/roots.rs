@@ -38,6 +38,7 @@ fn of_quadratic(constant: &Rational, linear: &Rational, bits: usize) -> Vec<BigC
 /// The roots of a polynomial that has each once, and none at zero: Aberth's iteration, all of them
 /// at a time.
 fn roots_away_from_zero(polynomial: &[Rational], bits: usize) -> Option<Vec<BigComplex>> {
+    /// The number of steps of all roots after which the iteration is given up.
     const MAX_ROUNDS: usize = 2000;
     let coefficients: Vec<_> = polynomial.iter().map(|it| BigReal::of(it, bits)).collect();
     let degree = coefficients.len() - 1;

@@ -56,11 +56,12 @@ impl Section {
         Self { every: count.max(1), ..self }
     }
 
-    /// The section of a system that is not told one: the strobe at the angle 0 where it is forced.
+    /// The section of a system where no other is asked for: the strobe at the angle 0 where it is
+    /// forced.
     ///
     /// # Errors
     /// A system without forcing: one of its events has to be named.
-    pub fn usual(system: &System) -> Result<Self, SystemError> {
+    pub fn default_of(system: &System) -> Result<Self, SystemError> {
         let section = Self::strobe(0.0);
         section.resolve(system).map(|_| section)
     }

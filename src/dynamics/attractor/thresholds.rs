@@ -1,8 +1,8 @@
 //! The thresholds of the theory of attractors, which the oscillator's strobes and the returns of
 //! any system share: a strobe is a return too.
 
-/// Attractors are first looked for from a grid of so many by so many starts, whatever grid is asked
-/// for: so they do not depend on it.
+/// The number of starts along each side of the grid from which attractors are first looked for,
+/// whatever grid is asked for: so they do not depend on it.
 pub(crate) const LATTICE_SIDE: u32 = 16;
 /// Starts looked at in one go: what is kept of each until then is ten times its label.
 pub(crate) const BLOCK_STARTS: usize = 1 << 14;
@@ -30,10 +30,10 @@ pub(crate) const DECISION_RETURNS: u64 = 1 << 14;
 pub(crate) const LATE_LOOKS: u32 = 8;
 /// Returns after which chaos that is known to end has to have ended.
 pub(crate) const MAX_ENDING_RETURNS: u64 = 8 * REFERENCE_RETURNS;
-/// A largest exponent, and a contraction, that are no larger are taken for zero.
+/// The largest size of an exponent, or of a contraction, that is taken for zero.
 pub(crate) const NEUTRAL_TOLERANCE: f64 = 1e-3;
-/// With this number of attractors known, only orbits are added: nearly without damping every start
-/// has its own invariant curve.
+/// The number of known attractors from which on only orbits are added: nearly without damping every
+/// start has its own invariant curve.
 pub(crate) const MAX_ATTRACTORS: usize = 64;
 /// The largest number of starts described among those that were not recognised.
 pub(crate) const MAX_EXAMPLES: usize = 3;
@@ -46,13 +46,13 @@ pub(crate) const EXAMPLE_RETURNS: u64 = 1 << 12;
 pub(crate) const CELLS_PER_EXTENT: f64 = 256.0;
 /// Returns of the run that fills the cells.
 pub(crate) const REFERENCE_RETURNS: u64 = 1 << 17;
-/// A motion is on the attractor when so many returns in a row lie in its cells.
+/// The number of returns in a row that lie in the cells of an attractor when a motion is on it.
 pub(crate) const RECURRENCES: u32 = 48;
-/// Two runs are on one attractor when this share of one lies in the cells of the other.
+/// The least share of one run that lies in the cells of another when the two are on one attractor.
 pub(crate) const MIN_COMMON_SHARE: f64 = 0.5;
 
-/// A motion that has entered a trap is taken for one that leads to the trap's orbit after so many
-/// successive turns around the orbit, each of which brings it closer to the orbit.
+/// The number of successive turns around a trap's orbit, each of which brings a motion closer to
+/// it, after which the motion is taken for one that leads to the orbit.
 pub(crate) const CLOSER_TURNS: u32 = 3;
 /// Radii of traps that are tried, largest first: how far one may reach in any direction. In a
 /// larger one the net would be too coarse for a tongue of another basin.
@@ -65,8 +65,8 @@ pub(crate) const DIRECTIONS: u32 = 48;
 pub(crate) const SHELLS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
 /// The number of points of an orbit, roughly, that get a trap at most.
 pub(crate) const MAX_TRAPS: usize = 12;
-/// A motion is at rest on an orbit when the square of its distance is so small a share of the
-/// trap's radius.
+/// The largest square of the distance, as a share of the trap's radius, of a motion that is at rest
+/// on an orbit.
 pub(crate) const REST_TOLERANCE: f64 = 1e-12;
 /// Turns over which is measured how far rounding moves a motion on the orbit. Of an orbit of
 /// hundreds of periods that can be 1e-11, which in a trap of 1e-9 next to a graze is more than that
@@ -74,6 +74,6 @@ pub(crate) const REST_TOLERANCE: f64 = 1e-12;
 pub(crate) const REST_TURNS: u64 = 8;
 /// Multiples of that distance that a motion may be away and still at rest.
 pub(crate) const REST_FACTOR: f64 = 4.0;
-/// The sum of a trap's metric is doubled in length so often: multipliers up to 1 - 1e-8 are summed
-/// up.
-pub(crate) const DOUBLINGS: usize = 32;
+/// The number of times that the sum of a trap's metric is doubled in length: multipliers up to 1 -
+/// 1e-8 are summed up.
+pub(crate) const METRIC_DOUBLINGS: usize = 32;

@@ -12,7 +12,7 @@
 use super::coordinates::Coordinates;
 use super::motions::{Motions, Turn};
 use super::thresholds::{
-    DOUBLINGS, MAX_RADIUS, MAX_TRAPS, RADIUS_HALVINGS, REST_FACTOR, REST_TURNS, SHELLS,
+    MAX_RADIUS, MAX_TRAPS, METRIC_DOUBLINGS, RADIUS_HALVINGS, REST_FACTOR, REST_TURNS, SHELLS,
 };
 use super::trap::Trap;
 use crate::dynamics::linear::product;
@@ -103,7 +103,7 @@ impl<'a, M: Motions> TrapSearch<'a, M> {
 pub(crate) fn metric<const N: usize>(turn: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     let mut sum = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
     let mut power = *turn;
-    for _ in 0..DOUBLINGS {
+    for _ in 0..METRIC_DOUBLINGS {
         let more = product(&transposed(&power), &product(&sum, &power));
         for (row, add) in sum.iter_mut().zip(more) {
             row.iter_mut().zip(add).for_each(|(x, more): (&mut f64, f64)| *x += more);

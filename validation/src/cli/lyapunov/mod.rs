@@ -167,5 +167,5 @@ fn spectrum(transient: u64, periods: u64, problem: &Problem) -> Spectrum {
     let bar = Some(long_work::share_bar());
     let progress = Progress::new(bar, model.parameters().omega, entry.instant, &end);
     let mut seen = |segment: &Segment| progress.at(&segment.entry().instant);
-    Spectrum::told(model, *entry, transient, periods, &mut seen)
+    Spectrum::observe(model, *entry, transient, periods, &mut seen)
 }
