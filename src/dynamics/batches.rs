@@ -237,13 +237,13 @@ mod tests {
     /// run are told.
     fn detections(chance: &mut Chance, step: f64, share: f64) -> f64 {
         let count = MAX_BATCHES as usize;
-        let told = (0..1000).filter(|_| {
+        let detected = (0..1000).filter(|_| {
             let mut draws = chance.normals(count);
             let from = (share * count as f64) as usize;
             draws[from..].iter_mut().for_each(|it| *it += step);
             change(&draws).is_some()
         });
-        told.count() as f64 / 1000.0
+        detected.count() as f64 / 1000.0
     }
 
     /// The power that docs/COMMAND_LINE.md states: a step of 2.5 scatters of the batches at half of

@@ -109,11 +109,11 @@ impl ReturnAttractor {
 /// An orbit, whose points have these places, from its smallest first state on.
 fn from_smallest(map: &SectionMap<'_, f64>, orbit: Orbit, places: &[Place<f64>]) -> Orbit {
     let smallest = |a: &&Place<f64>, b: &&Place<f64>| first(&a.state).total_cmp(&first(&b.state));
-    let told = places
+    let found = places
         .iter()
         .min_by(smallest)
         .and_then(|it| map.orbit(it, u32::try_from(orbit.period()).ok()?).ok());
-    told.filter(|told| told.period() == orbit.period()).unwrap_or(orbit)
+    found.filter(|found| found.period() == orbit.period()).unwrap_or(orbit)
 }
 
 fn first(state: &[f64]) -> f64 {

@@ -32,7 +32,7 @@ pub struct ModeFlow<T: Number> {
     /// The matrix X of all blocks, by columns.
     from_modal: Vec<Vector<T>>,
     /// Bounds of the errors of the entries of X and of W, by columns.
-    off: [Vec<Vector<T::Bound>>; 2],
+    errors: [Vec<Vector<T::Bound>>; 2],
 }
 
 /// Modal co-ordinates that move by themselves: all of a block, or its last ones where these do not
@@ -72,16 +72,16 @@ impl<T: Number> ModeFlow<T> {
             to_modal_sizes: Vec::new(),
             turning: Vec::new(),
             from_modal: Vec::new(),
-            off: [Vec::new(), Vec::new()],
+            errors: [Vec::new(), Vec::new()],
         };
-        let (mut to_modal, mut off) = (Vec::new(), Vec::new());
+        let (mut to_modal, mut errors) = (Vec::new(), Vec::new());
         for block in blocks {
             flow.from_modal.extend(transposed(&block.columns));
             let at = to_modal.len();
             to_modal.extend(block.rows.iter().cloned());
-            let [columns, rows] = &block.off;
-            flow.off[0].extend(by_columns(columns));
-            off.extend(rows.iter().cloned());
+            let [columns, rows] = &block.errors;
+            flow.errors[0].extend(by_columns(columns));
+            errors.extend(rows.iter().cloned());
             flow.blocks.push(FlowBlock::of(block, at));
         }
         let rate = |block: &FlowBlock<T>| {
@@ -90,7 +90,7 @@ impl<T: Number> ModeFlow<T> {
         flow.speed = flow.blocks.iter().map(|it| it.speed).fold(0.0, f64::max);
         flow.longest = 1.0 / flow.blocks.iter().map(rate).fold(0.0, f64::max);
         flow.to_modal = transposed(&to_modal);
-        flow.off[1] = by_columns(&off);
+        flow.errors[1] = by_columns(&errors);
         let rounded = |row: &Vector<T>| row.map(Number::bound);
         flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
         let sizes = |row: &Vector<T::Bound>| row.map(Bound::abs);
@@ -179,8 +179,8 @@ impl<T: Number> ModeFlow<T> {
 
     /// Bounds of the errors that the error of the matrix X makes in the entries of a state, from
     /// the sizes of its modal co-ordinates.
-    pub fn state_off(&self, y: &Vector<T::Bound>) -> Vector<T::Bound> {
-        times(&self.off[0], y)
+    pub fn state_errors(&self, y: &Vector<T::Bound>) -> Vector<T::Bound> {
+        times(&self.errors[0], y)
     }
 
     /// Bounds of the rounding errors of a state's modal co-ordinates, each as the state that
@@ -190,8 +190,8 @@ impl<T: Number> ModeFlow<T> {
         let error = |(n, column): (usize, &Vector<T>)| {
             let terms = self.to_modal.iter().zip(z).map(|(it, z)| (it[n].bound(), z.bound()));
             let size: T::Bound = terms.map(|(factor, entry)| (factor * entry).abs()).sum();
-            let off = self.off[1].iter().zip(z).map(|(it, z)| it[n] * z.bound().abs());
-            let error = margin * size + off.sum::<T::Bound>();
+            let errors = self.errors[1].iter().zip(z).map(|(it, z)| it[n] * z.bound().abs());
+            let error = margin * size + errors.sum::<T::Bound>();
             column.map(|entry| error * entry.bound())
         };
         self.from_modal.iter().enumerate().map(error).collect()

@@ -35,19 +35,19 @@ pub struct BifurcationPoint {
 
 impl BifurcationCurve {
     /// The curves of all bifurcations of a branch, which was followed in the plane's first
-    /// parameter at a value of its second. Two bifurcations on one curve have it once. `told` hears
-    /// how far it has come, 0 to 1.
+    /// parameter at a value of its second. Two bifurcations on one curve have it once. `progress`
+    /// is told how far it has come, 0 to 1.
     #[must_use]
     pub fn all(
         plane: &ReturnPlane<'_>,
         branch: &ReturnBranch,
         second: f64,
-        told: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64),
     ) -> Vec<Self> {
         let mut curves: Vec<(Vec<Traced>, Self)> = Vec::new();
         let count = branch.bifurcations.len() as f64;
         for (n, found) in branch.bifurcations.iter().enumerate() {
-            let mut share = |share: f64| told((n as f64 + share) / count);
+            let mut share = |share: f64| progress((n as f64 + share) / count);
             let tracer = Tracer { plane, sought: Sought::of(found) };
             let start = traced_point(found, second);
             let is_known = curves.iter().any(|(points, curve)| {
@@ -93,18 +93,18 @@ const HALFWAY_POINTS: f64 = 40.0;
 fn whole_curve(
     tracer: &Tracer<'_>,
     start: Traced,
-    told: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64),
 ) -> (Vec<Traced>, [CurveEnding; 2]) {
     let Some(way) = tracer.ways(&start) else { return (vec![start], [CurveEnding::Lost; 2]) };
     let share =
         |half: f64, count: usize| half + 0.5 * count as f64 / (count as f64 + HALFWAY_POINTS);
     let Trace { points: ahead, ending: last } =
-        tracer.trace(&start, way, &mut |count| told(share(0.0, count)));
+        tracer.trace(&start, way, &mut |count| progress(share(0.0, count)));
     if last == CurveEnding::Closed {
         return ([vec![start], ahead].concat(), [last; 2]);
     }
     let Trace { points: mut whole, ending: first } =
-        tracer.trace(&start, way.map(|it| -it), &mut |count| told(share(0.5, count)));
+        tracer.trace(&start, way.map(|it| -it), &mut |count| progress(share(0.5, count)));
     whole.reverse();
     whole.push(start);
     whole.extend(ahead);

@@ -70,7 +70,7 @@ pub struct ReturnBifurcation {
 
 impl ReturnBranch {
     /// Follows the orbit that is found from a place at the value `from`, of `period` returns or a
-    /// divisor of it, until the parameter is `to`. `told` hears how far it has come, 0 to 1.
+    /// divisor of it, until the parameter is `to`. `progress` is told how far it has come, 0 to 1.
     ///
     /// # Errors
     /// [`NoOrbit`] where there is none to begin with.
@@ -79,7 +79,7 @@ impl ReturnBranch {
         guess: &Place<f64>,
         period: u32,
         [from, to]: [f64; 2],
-        told: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64),
     ) -> Result<Self, NoOrbit> {
         let found = family.at(from, |map| Some(map.orbit_with_places(guess, period)));
         let (_, places) = found.ok_or(NoOrbit::Stalled(f64::NAN))??;
@@ -87,7 +87,7 @@ impl ReturnBranch {
         let curve = Curve::new(family, [from, to]).ok_or(none.clone())?;
         let first = curve.first(from, places, (to - from).signum()).ok_or(none)?;
         let FollowedCurve { points, bifurcations, ending } =
-            follow(&curve, [from, to], first, told);
+            follow(&curve, [from, to], first, progress);
         Ok(Self { points, bifurcations, ending })
     }
 

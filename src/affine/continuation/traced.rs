@@ -107,8 +107,8 @@ impl Tracer<'_> {
         })
     }
 
-    /// Follows the curve from a place in a direction; `told` hears how many places there are.
-    pub fn trace(&self, start: &Traced, way: Way, told: &mut dyn FnMut(usize)) -> Trace {
+    /// Follows the curve from a place in a direction; `progress` is told how many places there are.
+    pub fn trace(&self, start: &Traced, way: Way, progress: &mut dyn FnMut(usize)) -> Trace {
         let mut way = way.map(|it| it / length(way));
         let mut points: Vec<Traced> = Vec::new();
         if self.plane.room(start.at, way) <= EDGE_TOLERANCE {
@@ -136,7 +136,7 @@ impl Tracer<'_> {
                 points.push(start.clone());
                 return Trace { points, ending: CurveEnding::Closed };
             }
-            told(points.len());
+            progress(points.len());
             if length(chord) > 0.0 {
                 way = chord.map(|it| it / length(chord));
                 points.push(next);

@@ -124,16 +124,17 @@ impl<T: Number> GuardedSegment<'_, T> {
         let exact = (value.abs() * 2.0 + slack * 8.0) / slope;
         let within = exact.to_f64().max(f64::MIN_POSITIVE);
         let fourth = self.rows[n].bound(4, &at.norms, within);
-        let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
-        let (bend, third) = (bend.abs() + bend_off, third.abs() + third_off);
-        let change = slope_off + (bend + (third * 0.5 + fourth * exact / 6.0) * exact) * exact;
+        let [_, slope_rounding, bend_rounding, third_rounding] = self.order_roundings(n, at);
+        let (bend, third) = (bend.abs() + bend_rounding, third.abs() + third_rounding);
+        let change = slope_rounding + (bend + (third * 0.5 + fourth * exact / 6.0) * exact) * exact;
         let steadily = change < slope * 0.5;
         if !steadily {
             return None;
         }
         let (after, change) = self.root(n, track, at);
         // Where terms of the slope cancel, their rounding is more than that of the value.
-        let moved = (slope_off + (bend_off * 0.5 + third_off * exact / 6.0) * exact) * exact;
+        let moved =
+            (slope_rounding + (bend_rounding * 0.5 + third_rounding * exact / 6.0) * exact) * exact;
         let is_finite = after.to_f64().is_finite();
         let error = ((slack + moved) * 2.0 / slope).to_f64();
         is_finite.then_some(GuardCrossing { guard: n, after, change, within, slope, error })
@@ -188,10 +189,10 @@ impl<T: Number> GuardedSegment<'_, T> {
     ) -> T::Bound {
         let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::bound);
         let fourth = self.rows[n].bound(4, &at.norms, within);
-        let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
-        let slope = slope + slope_off;
+        let [_, slope_rounding, bend_rounding, third_rounding] = self.order_roundings(n, at);
+        let slope = slope + slope_rounding;
         let rest = bend.abs() * 0.5 + (third.abs() / 6.0 + fourth * within / 24.0) * within;
-        let rest = rest + bend_off * 0.5 + third_off * within / 6.0;
+        let rest = rest + bend_rounding * 0.5 + third_rounding * within / 6.0;
         match track.zeros {
             0 => value + (slope.max(T::Bound::ZERO) + rest * within) * within,
             // The guard has left zero for the inside, and does not return so soon.

@@ -50,12 +50,12 @@ pub(super) struct AddedTerm {
     /// root.
     pub bend: f64,
     /// Bounds of the rounding errors of the function's value and slope.
-    pub off: [f64; 2],
+    pub errors: [f64; 2],
 }
 
 impl AddedTerm {
     /// The function that is zero everywhere.
-    pub const ZERO: Self = Self { value: 0.0, slope: 0.0, bend: 0.0, off: [0.0; 2] };
+    pub const ZERO: Self = Self { value: 0.0, slope: 0.0, bend: 0.0, errors: [0.0; 2] };
 }
 
 impl<const N: usize> Quotient<N> {
@@ -133,14 +133,14 @@ impl<const N: usize> Quotient<N> {
         let third = sum(&weighted(&terms.map(f64::abs), &Self::THIRD_FACTORS));
         let remainder = Self::WINDOW_GROWTH * self.remainder(last, &powers);
         let rounding = Self::WINDOW_GROWTH * self.rounding(&powers);
-        let open = value.abs() + remainder + rounding + added.off[0];
+        let open = value.abs() + remainder + rounding + added.errors[0];
         let room = 2.0 * open / slope + 8.0 * f64::EPSILON;
         let window = 2.0 * room;
         // The remainder is r/s^z with |r'| <= (N - 1) |r|/s, and each power has at most N - 2 times
         // its error in its slope.
         let change = window
             * (bend.abs() + 0.5 * window * Self::WINDOW_GROWTH * third + added.bend)
-            + added.off[1]
+            + added.errors[1]
             + (N + self.zeros) as f64 * remainder
             + N as f64 * rounding;
         let is_proved = slope > 0.0 && change < 0.5 * slope && window < WINDOW;

@@ -93,12 +93,12 @@ impl<const N: usize> QuotientWithDecay<N> {
     pub fn crosses(&self, root: f64, last: f64) -> Option<f64> {
         let (decay, turn) = (self.decay.at(root), self.decay.rate * root);
         let most = self.decay.at((1.0 - WINDOW) * root).abs() * (1.0 + DECAY_ERROR);
-        let off = DECAY_ERROR * decay.abs();
+        let error = DECAY_ERROR * decay.abs();
         let added = AddedTerm {
             value: decay,
             slope: -turn * decay,
             bend: turn * turn * most,
-            off: [off, turn * off],
+            errors: [error, turn * error],
         };
         let (room, before) = self.rest.rises(root, last, &added)?;
         self.is_negative(before, last).then_some(room)

@@ -287,8 +287,8 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         for n in guards {
             let lost = self.rows[n].bound(0, &followed.lost, point.time.to_f64());
             let rest = T::Bound::UNDERFLOW * LARGEST_DIMENSION as f64;
-            let off = self.rows[n].value_error(&point.modal.sizes);
-            point.slack[n] += self.inherited_by(n, point.time) + lost + rest + off;
+            let error = self.rows[n].value_error(&point.modal.sizes);
+            point.slack[n] += self.inherited_by(n, point.time) + lost + rest + error;
         }
     }
 

@@ -38,7 +38,7 @@ pub struct RowColumn<T: Number> {
     /// The size of the factor in the value.
     size: T::Bound,
     /// A bound of the error of the factor in the value.
-    off: T::Bound,
+    error: T::Bound,
 }
 
 /// A block's part in a row.
@@ -98,15 +98,15 @@ impl<T: Number> ModalRow<T> {
         (n, subspace): (usize, usize),
         block: &FlowBlock<T>,
         norms: [T::Bound; ORDERS],
-        off: impl Fn(usize) -> T::Bound,
+        error: impl Fn(usize) -> T::Bound,
     ) {
         let first = self.columns.len();
         for at in block.at..block.at + block.size {
             let orders: [T; ORDERS] = std::array::from_fn(|k| self.orders[k][at]);
             let used = orders.iter().any(|it| *it != T::zero());
             if used {
-                let (size, off) = (orders[0].bound().abs(), off(at - block.at));
-                self.columns.push(RowColumn { at, orders, size, off });
+                let (size, error) = (orders[0].bound().abs(), error(at - block.at));
+                self.columns.push(RowColumn { at, orders, size, error });
             }
         }
         let columns = (first, self.columns.len());
@@ -214,7 +214,7 @@ impl<T: Number> ModalRow<T> {
     /// A bound of the error of the row's value by the errors of its factors, from the sizes of the
     /// co-ordinates.
     pub fn value_error(&self, y: &Vector<T::Bound>) -> T::Bound {
-        self.columns.iter().map(|it| it.off * y[it.at]).sum()
+        self.columns.iter().map(|it| it.error * y[it.at]).sum()
     }
 
     /// A derivative, and the sum of the sizes of its terms.
@@ -266,7 +266,8 @@ fn smallest_subspace<T: Number>(flow: &ModeFlow<T>, n: usize, part: &[Vec<BigRea
 
 /// A bound of the error of a row's factor of a block's co-ordinate.
 fn factor_error<B: Bound>(row: &[BigReal], block: &modal::Block, j: usize) -> B {
-    let term = |(it, off): (&BigReal, &Vec<ScaledF64>)| it.bound::<ScaledF64>().abs() * off[j];
-    let sum: ScaledF64 = row.iter().zip(&block.off[0]).map(term).sum();
+    let term =
+        |(it, errors): (&BigReal, &Vec<ScaledF64>)| it.bound::<ScaledF64>().abs() * errors[j];
+    let sum: ScaledF64 = row.iter().zip(&block.errors[0]).map(term).sum();
     sum.rounded()
 }

@@ -43,17 +43,17 @@ impl Block {
     pub(super) fn embedded(self, part: &[usize], size: usize) -> Self {
         let width = self.matrix.len();
         let mut columns = vec![vec![BigReal::zero(); width]; size];
-        let mut columns_off = vec![vec![ScaledF64::ZERO; width]; size];
-        let [own_columns_off, own_rows_off] = self.off;
-        for ((place, row), off) in part.iter().zip(self.columns).zip(own_columns_off) {
-            (columns[*place], columns_off[*place]) = (row, off);
+        let mut column_errors = vec![vec![ScaledF64::ZERO; width]; size];
+        let [own_column_errors, own_row_errors] = self.errors;
+        for ((place, row), errors) in part.iter().zip(self.columns).zip(own_column_errors) {
+            (columns[*place], column_errors[*place]) = (row, errors);
         }
         let rows = self.rows.iter().map(|row| spread_over(part, row, &BigReal::zero(), size));
-        let rows_off = own_rows_off.iter();
-        let rows_off = rows_off.map(|row| spread_over(part, row, &ScaledF64::ZERO, size));
-        let off = [columns_off, rows_off.collect()];
+        let row_errors = own_row_errors.iter();
+        let row_errors = row_errors.map(|row| spread_over(part, row, &ScaledF64::ZERO, size));
+        let errors = [column_errors, row_errors.collect()];
         let rows = rows.collect();
-        Self { kind: self.kind, columns, rows, matrix: self.matrix, off }
+        Self { kind: self.kind, columns, rows, matrix: self.matrix, errors }
     }
 }
 

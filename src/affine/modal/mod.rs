@@ -71,7 +71,7 @@ pub(super) struct Block {
     /// The matrix B.
     pub matrix: BigMatrix,
     /// Bounds of the errors of the entries of X and of W.
-    pub off: [Vec<Vec<ScaledF64>>; 2],
+    pub errors: [Vec<Vec<ScaledF64>>; 2],
 }
 
 impl Block {
@@ -156,7 +156,7 @@ fn unscaled(mut block: Block, scales: &[isize]) -> Block {
     for row in &mut block.rows {
         row.iter_mut().zip(scales).for_each(|(it, scale)| *it = it.scaled(-scale));
     }
-    let [columns, rows] = &mut block.off;
+    let [columns, rows] = &mut block.errors;
     for (row, scale) in columns.iter_mut().zip(scales) {
         row.iter_mut().for_each(|it| *it = it.scaled(*scale as i64));
     }
@@ -209,14 +209,14 @@ fn measured(
     };
     let left = difference(product(matrix, columns), product(columns, inner));
     let right = difference(product(rows, matrix), product(inner, rows));
-    block.off = [spread_by(spread, &left), spread_by(&right, spread)];
+    block.errors = [spread_by(spread, &left), spread_by(&right, spread)];
     block
 }
 
 fn whole_block(matrix: &BigMatrix) -> Block {
     let unit = identity(matrix.len());
-    let off = [Vec::new(), Vec::new()];
-    Block { kind: Kind::Cluster, columns: unit.clone(), rows: unit, matrix: matrix.clone(), off }
+    let errors = [Vec::new(), Vec::new()];
+    Block { kind: Kind::Cluster, columns: unit.clone(), rows: unit, matrix: matrix.clone(), errors }
 }
 
 /// Clusters of eigenvalues, in each of which small distances connect all members.
@@ -267,8 +267,8 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue], time_scale: f64) -> Option<
         .flatten()
         .filter(|it| it.abs() <= nothing)
         .for_each(|it| *it = BigReal::zero());
-    let off = [Vec::new(), Vec::new()];
-    let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner, off };
+    let errors = [Vec::new(), Vec::new()];
+    let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner, errors };
     let block = with_kind(block, cluster);
     let of_several = matches!(block.kind, Kind::Cluster).then_some(&block);
     Some(of_several.and_then(|it| triangular(it, cluster, time_scale)).unwrap_or(block))
@@ -281,13 +281,13 @@ fn noise(matrix: &BigMatrix, [columns, rows]: [&BigMatrix; 2], inner: &BigMatrix
         it.iter().map(|row| row.iter().map(BigReal::abs).collect()).collect()
     };
     let (moved, taken) = (product(rows, matrix), product(inner, rows));
-    let off: BigMatrix = moved
+    let difference: BigMatrix = moved
         .iter()
         .zip(&taken)
         .map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect())
         .collect();
     let terms = product(&product(&sizes(rows), &sizes(matrix)), &sizes(columns));
-    let left = product(&off, &sizes(columns));
+    let left = product(&difference, &sizes(columns));
     let largest_term = largest(&terms);
     let last = -(largest_term.bits() as isize);
     &largest_term.scaled(last + ZERO_ROUNDING_BITS) + &largest(&left).scaled(RESIDUAL_GROWTH_BITS)
@@ -378,8 +378,8 @@ fn rotating(block: &Block, root: &Eigenvalue) -> Option<Block> {
     let rows = product(&inverse(&turned)?, &block.rows);
     let matrix = vec![vec![rate.clone(), frequency.clone()], vec![-frequency, rate.clone()]];
     let kind = Kind::Pair(rate.clone(), frequency.clone());
-    let off = [Vec::new(), Vec::new()];
-    Some(Block { kind, columns, rows, matrix, off })
+    let errors = [Vec::new(), Vec::new()];
+    Some(Block { kind, columns, rows, matrix, errors })
 }
 
 /// The largest row sum of a matrix.

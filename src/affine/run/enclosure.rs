@@ -202,8 +202,8 @@ impl<B: Bound> Enclosure<B> {
         let rates = rates(flow, crossing.matrix, &crossing.state);
         let margin = sum_rounding::<T>(flow.dimension);
         let modal_sizes = flow.modal_sizes(&sizes);
-        let slope_off = row_size(&guard.orders[1], &modal_sizes) * COLUMN_ROUNDING;
-        let mut slope_error = margin * product_size(&guard.orders[1], y) + slope_off;
+        let slope_rounding = row_size(&guard.orders[1], &modal_sizes) * COLUMN_ROUNDING;
+        let mut slope_error = margin * product_size(&guard.orders[1], y) + slope_rounding;
         let mut shift = B::ZERO;
         for (column, entry) in later.columns.iter_mut().zip(&self.columns) {
             let own = flow.modal_rounded(&column.state);
@@ -345,12 +345,12 @@ pub(super) fn roundings<T: Number>(
 ) -> Vector<T::Bound> {
     let margin = sum_rounding::<T>(flow.dimension);
     let later = flow.at(entry, elapsed).sizes;
-    let (now, off) = (flow.sizes(&later), flow.state_off(&later));
+    let (now, errors) = (flow.sizes(&later), flow.state_errors(&later));
     let before = flow.sizes(&entry.sizes);
     std::array::from_fn(|n| {
         // Sums of zeros stay zero.
         let is_there = before[n] > 0.0 || now[n] > 0.0;
         let lost = if is_there { T::Bound::LAST_WORD_UNDERFLOW } else { T::Bound::ZERO };
-        margin * now[n] + off[n] + lost + T::Bound::UNDERFLOW * before[n]
+        margin * now[n] + errors[n] + lost + T::Bound::UNDERFLOW * before[n]
     })
 }

@@ -151,8 +151,8 @@ impl Attractor {
     /// An attractor that is a stable orbit, told from its smallest p on.
     fn periodic(map: &StrobeMap, orbit: Orbit) -> Self {
         let first = orbit.points.iter().copied().min_by(|a, b| a[0].total_cmp(&b[0]));
-        let told = first.and_then(|first| Orbit::find(map, first, orbit.period()).ok());
-        let orbit = told.filter(|told| told.period() == orbit.period()).unwrap_or(orbit);
+        let found = first.and_then(|first| Orbit::find(map, first, orbit.period()).ok());
+        let orbit = found.filter(|found| found.period() == orbit.period()).unwrap_or(orbit);
         let [re, im] = orbit.multipliers[0];
         Self {
             kind: AttractorKind::Periodic,

@@ -72,12 +72,12 @@ impl Basins {
     ) -> Vec<UnresolvedStart> {
         let (motions, limits) = (StrobeMotions { map: *map }, limits.into());
         let starts = self.grid.starts();
-        let told = |place: usize| {
+        let example = |place: usize| {
             let point = starts[place];
             let late = described(&motions, limits, &point);
             let (lyapunov_per_period, recurrence) = (late.exponent, late.recurrence);
             UnresolvedStart { point, lyapunov_per_period, recurrence }
         };
-        examples(&self.labels).into_iter().map(told).collect()
+        examples(&self.labels).into_iter().map(example).collect()
     }
 }

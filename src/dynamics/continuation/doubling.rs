@@ -34,19 +34,19 @@ const AMPLITUDES: [f64; 6] = [1e-4, 3e-5, 3e-4, 1e-3, 3e-3, 1e-5];
 
 impl Doubling {
     /// The doubled branch at a flip, followed until the parameter leaves the interval from `from`
-    /// to `to`; none if no doubled orbit is found. `told` hears where the parameter is in it, 0 to
-    /// 1.
+    /// to `to`; none if no doubled orbit is found. `progress` is told where the parameter is in it,
+    /// 0 to 1.
     pub fn of(
         family: &Family,
         flip: &Bifurcation,
         from: f64,
         to: f64,
-        told: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64),
     ) -> Option<Self> {
         let curve = FamilyCurve::new(family, from, to);
         let doubled = curve.doubled_orbit(flip)?;
         let criticality = curve.criticality(flip, &doubled)?;
-        let branch = Branch::follow_from(&curve, [from, to], doubled, told);
+        let branch = Branch::follow_from(&curve, [from, to], doubled, progress);
         Some(Self { criticality, branch })
     }
 }

@@ -195,8 +195,8 @@ impl fmt::Display for BranchEnding {
 
 impl Branch {
     /// Follows the orbit that is found from `guess` at the value `from`, of `period` forcing
-    /// periods or a divisor of it, until the parameter is `to`. `told` hears how far it has come, 0
-    /// to 1.
+    /// periods or a divisor of it, until the parameter is `to`. `progress` is told how far it has
+    /// come, 0 to 1.
     ///
     /// # Errors
     /// [`NoOrbit`] where there is none to begin with.
@@ -206,7 +206,7 @@ impl Branch {
         period: u32,
         from: f64,
         to: f64,
-        told: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64),
     ) -> Result<Self, NoOrbit> {
         let map = family.map(from).map_err(|it| NoOrbit::from(super::orbit::Reason::Guess(it)))?;
         let orbit = Orbit::find(&map, guess, period)?;
@@ -218,7 +218,7 @@ impl Branch {
             rate: curve.unit * (to - from).signum(),
         };
         let first = curve.point(from, iterate, &towards);
-        Ok(Self::follow_from(&curve, [from, to], first, told))
+        Ok(Self::follow_from(&curve, [from, to], first, progress))
     }
 
     /// The branch from a point of a curve on.
@@ -226,10 +226,10 @@ impl Branch {
         curve: &FamilyCurve,
         ends: [f64; 2],
         first: ContinuationPoint,
-        told: &mut dyn FnMut(f64),
+        progress: &mut dyn FnMut(f64),
     ) -> Self {
         let FollowedCurve { points, bifurcations, ending } =
-            steps::follow(curve, ends, first, told);
+            steps::follow(curve, ends, first, progress);
         Self { points, bifurcations, ending }
     }
 

@@ -152,16 +152,16 @@ pub(crate) struct FollowedCurve<C: OrbitCurve> {
 }
 
 /// Follows a curve from a point until it leaves the interval between two values of the parameter,
-/// or is lost. `told` hears where the parameter is in the interval, 0 to 1.
+/// or is lost. `progress` is told where the parameter is in the interval, 0 to 1.
 pub(crate) fn follow<C: OrbitCurve>(
     curve: &C,
     ends: [f64; 2],
     first: C::Point,
-    told: &mut dyn FnMut(f64),
+    progress: &mut dyn FnMut(f64),
 ) -> FollowedCurve<C> {
     let (points, bifurcations) = (Vec::new(), Vec::new());
     let mut follower = Follower { curve, ends, points, bifurcations };
-    let ending = follower.follow(first, told);
+    let ending = follower.follow(first, progress);
     let Follower { points, bifurcations, .. } = follower;
     FollowedCurve { points, bifurcations, ending }
 }
@@ -178,7 +178,7 @@ struct Follower<'a, C: OrbitCurve> {
 type Step<P> = Result<(P, Option<BranchEnding>), BranchEnding>;
 
 impl<C: OrbitCurve> Follower<'_, C> {
-    fn follow(&mut self, first: C::Point, told: &mut dyn FnMut(f64)) -> BranchEnding {
+    fn follow(&mut self, first: C::Point, progress: &mut dyn FnMut(f64)) -> BranchEnding {
         let start = first.clone();
         let mut point = first;
         self.keep(&point);
@@ -192,7 +192,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
                 Ok(next) => next,
                 Err(ending) => return ending,
             };
-            told(self.share(next.value()).clamp(0.0, 1.0));
+            progress(self.share(next.value()).clamp(0.0, 1.0));
             self.keep(&next);
             if let Some(ending) = ending {
                 return ending;

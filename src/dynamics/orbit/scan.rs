@@ -18,15 +18,15 @@ pub(crate) const ORBIT_TOLERANCE: f64 = 1e-9;
 /// The orbits of `period` forcing periods, or of a divisor of it, that Newton's method reaches from
 /// a grid of starts, from where the motions from there settle, and from their closest returns.
 /// Orbits of the whole period come first; among these, stable ones; then the least leading
-/// multiplier, then the least p. `told` hears how much is done, 0 to 1.
+/// multiplier, then the least p. `progress` is told how much is done, 0 to 1.
 ///
 /// What it finds is there; what it does not find may be there too.
 #[must_use]
-pub fn scan(map: &StrobeMap, period: u32, told: &mut dyn FnMut(f64)) -> Vec<Orbit> {
+pub fn scan(map: &StrobeMap, period: u32, progress: &mut dyn FnMut(f64)) -> Vec<Orbit> {
     let mut found: Vec<Orbit> = Vec::new();
     let starts = starts(map, side(period));
     for (done, start) in starts.iter().enumerate() {
-        told(done as f64 / starts.len() as f64);
+        progress(done as f64 / starts.len() as f64);
         for guess in guesses(map, *start, period) {
             let Ok(orbit) = Orbit::find(map, guess, period) else { continue };
             if !found.iter().any(|it| is_same(it, &orbit)) {
