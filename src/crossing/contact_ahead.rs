@@ -146,17 +146,17 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         const NEGLIGIBLE_DECAY_TIMES: f64 = 40.0;
         let shape = self.shape(0.0, 0.0);
         let mut parts = self.parts(left, split);
-        let mut look = &steps.contact_look;
+        let mut guess_step = &steps.contact_guess_step;
         if let Damping::Over { fast, .. } = self.constants.borrow().damping {
             if fast * left.elapsed > NEGLIGIBLE_DECAY_TIMES {
-                look = &steps.slow_look;
+                guess_step = &steps.slow_guess_step;
             } else {
-                match parts.first_exit(&shape, &steps.quick_look, QUICK_STEPS) {
+                match parts.first_exit(&shape, &steps.quick_guess_step, QUICK_STEPS) {
                     Ok(time) => return Ok(time),
                     Err(further) => parts = further,
                 }
             }
         }
-        parts.first_exit(&shape, look, GUESS_STEPS).map_err(|further| further.elapsed)
+        parts.first_exit(&shape, guess_step, GUESS_STEPS).map_err(|further| further.elapsed)
     }
 }

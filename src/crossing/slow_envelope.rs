@@ -118,7 +118,7 @@ impl SlowEnvelope {
         (place, inside): (EnvelopePlace, bool),
         limit: f64,
     ) -> SearchHint {
-        if let Some(time) = self.guess(&steps.look, place, inside, limit) {
+        if let Some(time) = self.guess(&steps.guess_step, place, inside, limit) {
             return SearchHint::Root(time);
         }
         match self.bound(from) {
@@ -175,7 +175,7 @@ impl SlowEnvelope {
     #[inline(always)]
     fn guess(
         &self,
-        look: &FreeStep,
+        guess_step: &FreeStep,
         mut here: EnvelopePlace,
         mut inside: bool,
         limit: f64,
@@ -191,24 +191,26 @@ impl SlowEnvelope {
                 if (opens - here.elapsed) * self.omega > MAX_LEAP_RADIANS {
                     return None;
                 }
-                if opens > here.elapsed + look.length {
+                if opens > here.elapsed + guess_step.length {
                     here = self.place_at(opens);
                 }
             }
-            let next = here.after(look);
+            let next = here.after(guess_step);
             if here.elapsed.is_nan() || here.elapsed > limit {
                 return None;
             }
             let (value, rate) = self.value_and_rate(&next);
             if value >= 0.0 {
                 if inside {
-                    if look.decay < NEGLIGIBLE_DECAY {
+                    if guess_step.decay < NEGLIGIBLE_DECAY {
                         // The cubic would follow its slope, of which nothing is left at the root.
                         here.lasting = 0.0;
                     }
                     let (last, last_rate) = self.value_and_rate(&here);
-                    let slopes = (last_rate * look.length, rate * look.length);
-                    return Some(here.elapsed + look.length * zero_between(last, value, slopes));
+                    let slopes = (last_rate * guess_step.length, rate * guess_step.length);
+                    return Some(
+                        here.elapsed + guess_step.length * zero_between(last, value, slopes),
+                    );
                 }
             } else {
                 inside = true;

@@ -132,7 +132,7 @@ const GUESS_STEP_RADIANS: f64 = 0.5;
 /// The longest step of a contact's guess: the free oscillation sets it, unless the forced one is so
 /// strong and so fast that the cubic between two places would err by more than a thousandth of the
 /// corridor.
-fn contact_look(parameters: &Parameters) -> f64 {
+fn contact_guess_step(parameters: &Parameters) -> f64 {
     /// The largest error of the cubic between two places, beside the corridor.
     const GUESS_TOLERANCE: f64 = 1e-3;
     let Parameters { a, xi, omega, .. } = *parameters;
@@ -173,15 +173,15 @@ pub struct Steps {
     /// The step over the life of an exponential that pushes outwards.
     pub pushing: FreeStep,
     /// The step from place to place of a guess.
-    pub look: FreeStep,
+    pub guess_step: FreeStep,
     /// The step from piece to piece of a contact's certificate.
     pub contact_piece: ContactStep<f64>,
     /// The step of a contact's guess while a fast part lives, above critical damping.
-    pub quick_look: ContactStep<f64>,
+    pub quick_guess_step: ContactStep<f64>,
     /// The step from place to place of a contact's guess.
-    pub contact_look: ContactStep<f64>,
+    pub contact_guess_step: ContactStep<f64>,
     /// The step of a contact's guess above critical damping, when the fast part has died out.
-    pub slow_look: ContactStep<f64>,
+    pub slow_guess_step: ContactStep<f64>,
     /// The forcing angles at which the force changes its sign.
     pub turning: Turning,
 }
@@ -204,11 +204,11 @@ impl Steps {
             pulling: free_step(0.9 * MAX_PULLING_DECAY_TIMES / rate),
             separation_interval: free_step(SEPARATION_DECAY_TIMES / rate),
             pushing: free_step(0.9 * MAX_PUSHING_DECAY_TIMES / rate),
-            look: free_step(GUESS_STEP_RADIANS / omega),
+            guess_step: free_step(GUESS_STEP_RADIANS / omega),
             contact_piece: ContactStep::new(PIECE_RADIANS / fastest, omega, damping),
-            quick_look: ContactStep::new(GUESS_STEP_RADIANS / quickest, omega, damping),
-            contact_look: ContactStep::new(contact_look(parameters), omega, damping),
-            slow_look: ContactStep::new(GUESS_STEP_RADIANS / slowest, omega, damping),
+            quick_guess_step: ContactStep::new(GUESS_STEP_RADIANS / quickest, omega, damping),
+            contact_guess_step: ContactStep::new(contact_guess_step(parameters), omega, damping),
+            slow_guess_step: ContactStep::new(GUESS_STEP_RADIANS / slowest, omega, damping),
             turning: Turning::new(parameters),
         }
     }

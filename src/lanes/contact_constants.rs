@@ -75,7 +75,7 @@ impl Shape<f64> {
         let full = [GUESS_STEP_RADIANS, PIECE_RADIANS].map(step);
         let first = [GUESS_STEP_RADIANS * pace.early, PIECE_RADIANS * pace.early];
         let early = if pace.early < 1.0 { first.map(step) } else { full };
-        let ([contact_look, piece], [early_contact_look, early_piece]) = (full, early);
+        let ([contact_guess_step, piece], [early_contact_guess_step, early_piece]) = (full, early);
         // Clearly above critical damping the exponentials come from the whole force at the start,
         // and after n doublings the steps have lost less than 2^(n + 2) eps.
         let (roundings, pulls) = match damping {
@@ -86,12 +86,12 @@ impl Shape<f64> {
             steady: steady.orders([1.0, 0.0, 0.0])[0],
             steady_rate: steady.orders([0.0, 1.0, 0.0])[0],
             forced_eighth,
-            contact_look: contact_look.length,
-            contact_look_sin: contact_look.sin,
-            contact_look_cos: contact_look.cos,
-            contact_look_c: contact_look.c,
-            contact_look_s: contact_look.s,
-            contact_look_s_rate: contact_look.s_rate,
+            contact_guess_step: contact_guess_step.length,
+            contact_guess_step_sin: contact_guess_step.sin,
+            contact_guess_step_cos: contact_guess_step.cos,
+            contact_guess_step_c: contact_guess_step.c,
+            contact_guess_step_s: contact_guess_step.s,
+            contact_guess_step_s_rate: contact_guess_step.s_rate,
             piece: piece.length,
             piece_sin: piece.sin,
             piece_cos: piece.cos,
@@ -99,10 +99,10 @@ impl Shape<f64> {
             piece_s: piece.s,
             piece_s_rate: piece.s_rate,
             early: pace.early,
-            early_contact_look_sin: early_contact_look.sin,
-            early_contact_look_cos: early_contact_look.cos,
-            early_contact_look_c: early_contact_look.c,
-            early_contact_look_s_rate: early_contact_look.s_rate,
+            early_contact_guess_step_sin: early_contact_guess_step.sin,
+            early_contact_guess_step_cos: early_contact_guess_step.cos,
+            early_contact_guess_step_c: early_contact_guess_step.c,
+            early_contact_guess_step_s_rate: early_contact_guess_step.s_rate,
             early_piece_sin: early_piece.sin,
             early_piece_cos: early_piece.cos,
             early_piece_c: early_piece.c,

@@ -110,34 +110,34 @@ impl<S: Simd> ContactSteps<S> {
     #[inline(always)]
     pub fn of_guess(shape: &Shape<Wide<S>>, forms: Forms) -> Self {
         let Shape {
-            contact_look,
-            contact_look_sin,
-            contact_look_cos,
-            contact_look_c,
-            contact_look_s,
-            contact_look_s_rate,
+            contact_guess_step,
+            contact_guess_step_sin,
+            contact_guess_step_cos,
+            contact_guess_step_c,
+            contact_guess_step_s,
+            contact_guess_step_s_rate,
             ..
         } = *shape;
         let Shape {
-            early_contact_look_sin,
-            early_contact_look_cos,
-            early_contact_look_c,
-            early_contact_look_s_rate,
+            early_contact_guess_step_sin,
+            early_contact_guess_step_cos,
+            early_contact_guess_step_c,
+            early_contact_guess_step_s_rate,
             ..
         } = *shape;
         let full = ContactStep {
-            length: contact_look,
-            sin: contact_look_sin,
-            cos: contact_look_cos,
-            c: contact_look_c,
-            s: contact_look_s,
-            s_rate: contact_look_s_rate,
+            length: contact_guess_step,
+            sin: contact_guess_step_sin,
+            cos: contact_guess_step_cos,
+            c: contact_guess_step_c,
+            s: contact_guess_step_s,
+            s_rate: contact_guess_step_s_rate,
         };
         let early = [
-            early_contact_look_sin,
-            early_contact_look_cos,
-            early_contact_look_c,
-            early_contact_look_s_rate,
+            early_contact_guess_step_sin,
+            early_contact_guess_step_cos,
+            early_contact_guess_step_c,
+            early_contact_guess_step_s_rate,
         ];
         Self::new(shape, forms, full, early)
     }

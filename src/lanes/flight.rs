@@ -118,12 +118,12 @@ impl<S: Simd> Flight<'_, S> {
     /// The impacts that end the flights.
     #[inline(always)]
     pub fn impact(&self, fineness: Fineness) -> Impact<S> {
-        let Shape { b, two_xi, rate, look, look_decay, .. } = *self.shape;
+        let Shape { b, two_xi, rate, guess_step, guess_step_decay, .. } = *self.shape;
         let (guess, guessed) = self.slow_envelope().first_root();
         // Within the first step of a short-lived exponential: its end, from where the convex h
         // leads back.
-        let hasty = guess.less(look) & look_decay.is(0.0);
-        let guess = hasty.choose(look, guess);
+        let hasty = guess.less(guess_step) & guess_step_decay.is(0.0);
+        let guess = hasty.choose(guess_step, guess);
         let LaneRoot { at, elapsed, step, slope, found, .. } = find(self, guess, guessed);
         let [total, v, _] = at.force;
         let push = Push::new(self.shape.omega, [total - b, v], step);

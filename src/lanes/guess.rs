@@ -44,9 +44,10 @@ impl<S: Simd> LaneEnvelope<'_, S> {
     /// When the guard may first rise to zero, and in which lanes that is told.
     #[inline(always)]
     pub fn first_root(&self) -> (Wide<S>, Mask<S>) {
-        let Shape { look, look_sin, look_cos, look_decay, omega, .. } = *self.shape;
-        let zero = look.same(0.0);
-        let alive = look_decay.above(0.0);
+        let Shape { guess_step, guess_step_sin, guess_step_cos, guess_step_decay, omega, .. } =
+            *self.shape;
+        let zero = guess_step.same(0.0);
+        let alive = guess_step_decay.above(0.0);
         let lasting = alive.choose(self.exponential, zero);
         let mut here = self.place(zero, self.sin, self.cos, lasting);
         here.value = self.first;
@@ -59,10 +60,10 @@ impl<S: Simd> LaneEnvelope<'_, S> {
                 here = self.skip(here, closed);
             }
             let next = self.place(
-                here.elapsed + look,
-                here.sin.times_plus(look_cos, here.cos * look_sin),
-                here.sin.times_from(look_sin, here.cos * look_cos),
-                here.lasting * look_decay,
+                here.elapsed + guess_step,
+                here.sin.times_plus(guess_step_cos, here.cos * guess_step_sin),
+                here.sin.times_from(guess_step_sin, here.cos * guess_step_cos),
+                here.lasting * guess_step_decay,
             );
             let risen = open & !next.value.less(zero);
             chord = (
@@ -80,8 +81,8 @@ impl<S: Simd> LaneEnvelope<'_, S> {
             here = next;
         }
         let (left, right, left_rate, right_rate, from) = chord;
-        let share = zero_between(left, right, (left_rate * look, right_rate * look));
-        (share.times_plus(look, from), found)
+        let share = zero_between(left, right, (left_rate * guess_step, right_rate * guess_step));
+        (share.times_plus(guess_step, from), found)
     }
 
     #[inline(always)]
@@ -109,7 +110,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
     /// longer does.
     #[inline(always)]
     fn skip(&self, here: LanePlace<S>, closed: Mask<S>) -> LanePlace<S> {
-        let Shape { omega, look, .. } = *self.shape;
+        let Shape { omega, guess_step, .. } = *self.shape;
         let value = self.parabola(here.elapsed) + self.amplitude;
         let rising = self.curvature.times_plus(here.elapsed, self.slope);
         let square = (self.curvature * value * 2.0).times_from(value.same(1.0), rising * rising);
@@ -119,7 +120,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
         let above = falling.choose(root - rising, value * -2.0);
         let time = above / falling.choose(self.curvature, rising + root);
         // A NaN is no place further on.
-        let further = closed & look.less(time) & (time * omega).below(MAX_ARGUMENT);
+        let further = closed & guess_step.less(time) & (time * omega).below(MAX_ARGUMENT);
         let opens = further.choose(here.elapsed + time, here.elapsed);
         let (sin, cos) = sin_cos(omega * opens);
         let moved = self.place(

@@ -72,13 +72,13 @@ shape! {
     /// Cosine of that angle.
     settling_cos,
     /// A step of a guess, outside contact.
-    look,
+    guess_step,
     /// Sine of omega times that.
-    look_sin,
+    guess_step_sin,
     /// Cosine of omega times that.
-    look_cos,
-    /// exp(-rate look), zero if there is little left.
-    look_decay,
+    guess_step_cos,
+    /// exp(-rate guess_step), zero if there is little left.
+    guess_step_decay,
     /// Damped frequency; this and the next two are zero at and above critical damping.
     nu,
     /// What rounding took from the damped frequency.
@@ -129,17 +129,17 @@ shape! {
     /// A bound of the eighth derivative of the forced trial force.
     forced_eighth,
     /// A step of a guess in contact.
-    contact_look,
+    contact_guess_step,
     /// Sine of omega times that.
-    contact_look_sin,
+    contact_guess_step_sin,
     /// Cosine of omega times that.
-    contact_look_cos,
+    contact_guess_step_cos,
     /// C of the free oscillation after that step.
-    contact_look_c,
+    contact_guess_step_c,
     /// S of the free oscillation after that step.
-    contact_look_s,
+    contact_guess_step_s,
     /// S' of the free oscillation after that step.
-    contact_look_s_rate,
+    contact_guess_step_s_rate,
     /// A piece of a certificate in contact.
     piece,
     /// Sine of omega times that.
@@ -156,13 +156,13 @@ shape! {
     /// critical damping, where C, S and S' are the slow exponential, zero and the fast one.
     early,
     /// Sine of omega times the first step.
-    early_contact_look_sin,
+    early_contact_guess_step_sin,
     /// Cosine of omega times the first step.
-    early_contact_look_cos,
+    early_contact_guess_step_cos,
     /// C of the free oscillation after the first step.
-    early_contact_look_c,
+    early_contact_guess_step_c,
     /// S' of the free oscillation after the first step.
-    early_contact_look_s_rate,
+    early_contact_guess_step_s_rate,
     /// Sine of omega times the first piece.
     early_piece_sin,
     /// Cosine of omega times the first piece.
@@ -197,9 +197,9 @@ impl Shape<f64> {
         }
         let Steps { turning, separation_interval: interval, .. } = *model.steps();
         let (halfway_sin, halfway_cos) = libm::sincos(0.5 * (turning.angle + std::f64::consts::PI));
-        let (look_sin, look_cos) = libm::sincos(GUESS_STEP_RADIANS);
-        let look = GUESS_STEP_RADIANS / omega;
-        let look_decay = libm::exp(-rate * look);
+        let (guess_step_sin, guess_step_cos) = libm::sincos(GUESS_STEP_RADIANS);
+        let guess_step = GUESS_STEP_RADIANS / omega;
+        let guess_step_decay = libm::exp(-rate * guess_step);
         let pace = omega.max(1.0);
         let phi = model.phi();
         Some(Self {
@@ -223,10 +223,14 @@ impl Shape<f64> {
             halfway_cos,
             settling_sin: interval.sin,
             settling_cos: interval.cos,
-            look,
-            look_sin,
-            look_cos,
-            look_decay: if look_decay < NEGLIGIBLE_DECAY { 0.0 } else { look_decay },
+            guess_step,
+            guess_step_sin,
+            guess_step_cos,
+            guess_step_decay: if guess_step_decay < NEGLIGIBLE_DECAY {
+                0.0
+            } else {
+                guess_step_decay
+            },
             ..Self::of_contact(model.constants())
         })
     }

@@ -147,7 +147,7 @@ impl<S: Simd> Slip<'_, S> {
 
     #[inline(always)]
     fn slow_envelope(&self) -> LaneEnvelope<'_, S> {
-        let Shape { a_over_omega, b, look_decay, .. } = *self.shape;
+        let Shape { a_over_omega, b, guess_step_decay, .. } = *self.shape;
         let Angle { sin, cos, .. } = self.angle;
         let zero = b.same(0.0);
         LaneEnvelope {
@@ -159,7 +159,7 @@ impl<S: Simd> Slip<'_, S> {
             sin: -cos,
             cos: sin,
             exponential: -self.closing,
-            first: look_decay.is(0.0).choose(-self.y, -self.drift_rate),
+            first: guess_step_decay.is(0.0).choose(-self.y, -self.drift_rate),
         }
     }
 }
