@@ -128,7 +128,7 @@ impl Chance {
     }
 }
 
-fn legal(from: Phase, to: Phase) -> bool {
+fn is_legal(from: Phase, to: Phase) -> bool {
     match from {
         Phase::NoContact | Phase::Contact => to != from,
         Phase::Progression => to == Phase::Contact,
@@ -149,7 +149,7 @@ fn complaint(segment: &Segment, last_v: f64) -> Option<String> {
         }
     }
     let Exit::Switch(next) = segment.exit() else { return None };
-    if !legal(segment.phase(), next.phase()) {
+    if !is_legal(segment.phase(), next.phase()) {
         return Some(format!("{} to {}", segment.phase(), next.phase()));
     }
     if d == 0.0 {

@@ -54,7 +54,7 @@ fn the_attractors_of_fig_7() {
         assert_eq!(kinds(&basins), expected, "{omega}");
         assert_eq!(basins.fraction(Label::Unresolved), 0.0);
         for attractor in &basins.attractors {
-            confirmed(&fig7(omega), attractor);
+            confirm(&fig7(omega), attractor);
         }
     }
 }
@@ -64,7 +64,7 @@ const PERIODS: u64 = 36_000;
 
 /// An orbit by following it from one of its strobes, and its exponent from errors carried along;
 /// chaos by an exponent over another part of the run.
-fn confirmed(map: &StrobeMap, attractor: &Attractor) {
+fn confirm(map: &StrobeMap, attractor: &Attractor) {
     let first = attractor.points[0];
     let from = map.entry(first).unwrap();
     let spectrum = Spectrum::of(map.model(), from, 200, PERIODS);

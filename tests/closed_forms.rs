@@ -180,7 +180,7 @@ fn piece(pair: &Pair, draw: &mut Draw) -> (f64, f64) {
 /// What the rounding of a piece's coefficients may be, in eps of the largest term: more in long
 /// pieces of contact, in which each derivative repeats the rounding of the one below it
 /// (`Contact::room`).
-fn allowed(pair: &Pair, left: f64, length: f64) -> f64 {
+fn allowed_rounding(pair: &Pair, left: f64, length: f64) -> f64 {
     let Constants { omega, two_xi, damping, .. } = *pair.rounded.constants();
     let rate = match damping {
         Damping::Over { fast, slow, .. } if fast * left > 1.0 => slow.max(omega),
@@ -220,7 +220,7 @@ fn largest_term_bounds_the_rounding_of_the_coefficients() {
                 }
                 // The certificate adds one eps of the largest coefficient.
                 let rounding = (greatest - size).max(0.0) / largest;
-                worst.see(rounding / allowed(&pair, left.elapsed, length), &pair);
+                worst.see(rounding / allowed_rounding(&pair, left.elapsed, length), &pair);
             }
             worst.hold(1.0, "share of the room", phase, regime.name);
         }

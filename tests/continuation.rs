@@ -26,7 +26,7 @@ fn follow(family: &Family, period: u32, from: f64, to: f64) -> Branch {
     Branch::follow(family, guess, period, from, to, &mut |_| {}).unwrap()
 }
 
-fn only(branch: &Branch, kind: BifurcationKind) -> &Bifurcation {
+fn only_bifurcation(branch: &Branch, kind: BifurcationKind) -> &Bifurcation {
     let mut found = branch.bifurcations.iter().filter(|it| it.kind == kind);
     let first = found.next().unwrap();
     assert!(found.next().is_none(), "{:?}", branch.bifurcations);
@@ -63,7 +63,7 @@ fn period_four_ends_in_a_fold_and_runs_agree_on_both_sides() {
     let branch = follow(&family, 4, 1.56, 1.6);
     // It comes back unstable.
     assert_eq!(branch.ending, BranchEnding::Left);
-    let fold = only(&branch, BifurcationKind::Fold);
+    let fold = only_bifurcation(&branch, BifurcationKind::Fold);
     assert_sharp(fold);
     let leading = fold.orbit.multipliers[0];
     // The multiplier is one to the root of what the parameter's value is off by.
@@ -89,7 +89,7 @@ fn period_six_doubles_supercritically_and_runs_agree_on_both_sides() {
     let family = family(0.0);
     let branch = follow(&family, 6, 1.6, 1.56);
     assert!(branch.is_complete());
-    let flip = only(&branch, BifurcationKind::Flip);
+    let flip = only_bifurcation(&branch, BifurcationKind::Flip);
     assert_sharp(flip);
     let doubling = Doubling::of(&family, flip, 1.6, 1.56, &mut |_| {}).unwrap();
     assert_eq!(doubling.criticality, Criticality::Supercritical);
@@ -106,10 +106,10 @@ fn period_six_is_born_at_the_flip_of_period_three_from_either_side() {
     let family = family(0.0);
     let six = follow(&family, 6, 1.6, 1.7);
     let three = follow(&family, 3, 1.7, 1.6);
-    let flip = only(&three, BifurcationKind::Flip);
+    let flip = only_bifurcation(&three, BifurcationKind::Flip);
     assert_sharp(flip);
     let BranchEnding::Halved { value } = six.ending else { panic!("{:?}", six.ending) };
-    let merged = only(&six, BifurcationKind::Flip);
+    let merged = only_bifurcation(&six, BifurcationKind::Flip);
     assert!((value - flip.value).abs() <= flip.error + merged.error, "{value} {flip:?}");
     let doubling = Doubling::of(&family, flip, 1.7, 1.6, &mut |_| {}).unwrap();
     assert_eq!(doubling.criticality, Criticality::Supercritical);
@@ -131,7 +131,7 @@ fn another_section_finds_the_same_values() {
     for (period, from, to, kind) in wanted {
         let found = [0.0, 1.3, 2.9, 4.4].map(|angle| {
             let branch = follow(&family(angle), period, from, to);
-            let found = only(&branch, kind);
+            let found = only_bifurcation(&branch, kind);
             (found.value, found.error)
         });
         for (value, error) in found {
@@ -215,7 +215,10 @@ fn there_and_back_again() {
     let back = Branch::follow(&family, last.orbit.points[0], 5, 1.5, 1.6, &mut |_| {}).unwrap();
     let (a, b) = (&there.points[0].orbit.points[0], &back.points.last().unwrap().orbit.points[0]);
     assert!((0..3).all(|i| (a[i] - b[i]).abs() <= 1e-13), "{a:?} {b:?}");
-    let (a, b) = (only(&there, BifurcationKind::Flip), only(&back, BifurcationKind::Flip));
+    let (a, b) = (
+        only_bifurcation(&there, BifurcationKind::Flip),
+        only_bifurcation(&back, BifurcationKind::Flip),
+    );
     assert!((a.value - b.value).abs() <= a.error + b.error, "{a:?} {b:?}");
 }
 

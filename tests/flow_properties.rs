@@ -38,7 +38,7 @@ fn bits(entry: &Entry) -> [u64; 5] {
     [entry.state.p, entry.state.y, entry.state.q, entry.v(), angle].map(f64::to_bits)
 }
 
-fn legal(from: Phase, to: Phase) -> bool {
+fn is_legal(from: Phase, to: Phase) -> bool {
     match from {
         Phase::NoContact | Phase::Contact => to != from,
         Phase::Progression => to == Phase::Contact,
@@ -73,7 +73,7 @@ proptest! {
                 }
             }
             if let Exit::Switch(next) = segment.exit() {
-                prop_assert!(legal(segment.phase(), next.phase()), "{} to {}", segment.phase(), next.phase());
+                prop_assert!(is_legal(segment.phase(), next.phase()), "{} to {}", segment.phase(), next.phase());
                 prop_assert!(segment.duration() > 0.0, "{segment:?}");
                 prop_assert!(next.v() >= segment.entry().v());
             }

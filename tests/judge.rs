@@ -81,7 +81,7 @@ fn room(model: &Model, segment: &Segment, next: &Entry) -> f64 {
 
 /// The time that a segment lasts by one-sided steps in 106 bits: infinite where it does not end
 /// within the horizon, nothing where that is not decided.
-fn judged(model: &Model, segment: &Segment, horizon: f64) -> Option<f64> {
+fn judged_duration(model: &Model, segment: &Segment, horizon: f64) -> Option<f64> {
     let effort = Effort { horizon, evaluations: MAX_EVALUATIONS, unit: DoubleDouble::UNIT };
     match one_sided_end::<DoubleDouble>(model, segment, &effort) {
         OneSidedEnd::Crossing { elapsed, .. } => Some(elapsed),
@@ -96,7 +96,7 @@ fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Agreem
         // Not a switch: the judge must not find one either, as far as it can look.
         _ => {
             let horizon = segment.duration().min(20.0 * model.period());
-            match judged(model, segment, horizon * (1.0 - 1e-9)) {
+            match judged_duration(model, segment, horizon * (1.0 - 1e-9)) {
                 None => score.given_up += 1,
                 Some(time) if time.is_infinite() => {}
                 Some(_) if undecidable => score.undecidable += 1,
@@ -106,7 +106,7 @@ fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Agreem
         }
     };
     score.switches += 1;
-    let Some(judged) = judged(model, segment, f64::INFINITY) else {
+    let Some(judged) = judged_duration(model, segment, f64::INFINITY) else {
         score.given_up += 1;
         return;
     };

@@ -226,7 +226,10 @@ fn root() -> PathBuf {
 fn uses(folder: &Path) -> Uses {
     let files = texts(folder);
     let names: Vec<String> = files.keys().cloned().collect();
-    files.iter().map(|(module, text)| (module.clone(), used(module, text, &names))).collect()
+    files
+        .iter()
+        .map(|(module, text)| (module.clone(), used_modules(module, text, &names)))
+        .collect()
 }
 
 /// Every file of a folder by its module path.
@@ -256,7 +259,7 @@ fn module(root: &Path, path: &Path) -> Option<String> {
 }
 
 /// The modules that a file names in code before its tests.
-fn used(module: &str, text: &str, names: &[String]) -> BTreeSet<String> {
+fn used_modules(module: &str, text: &str, names: &[String]) -> BTreeSet<String> {
     let text = text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or(text);
     let code: Vec<_> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
     // `pub(in crate::affine)` says who may use an item, and uses nothing.
@@ -298,7 +301,7 @@ fn room(module: &str) -> &str {
 }
 
 /// The uses among the modules of one folder, by their paths in it.
-fn inside(folder: &str, uses: &Uses) -> Uses {
+fn uses_inside(folder: &str, uses: &Uses) -> Uses {
     let path = |module: &str| {
         let rest = module.strip_prefix(folder)?;
         if rest.is_empty() { Some(EXPORTS) } else { rest.strip_prefix("::") }.map(str::to_owned)
@@ -312,7 +315,7 @@ fn inside(folder: &str, uses: &Uses) -> Uses {
 }
 
 /// The uses of a room by one that stands before it.
-fn upward(rooms: &[&str], uses: &Uses) -> Vec<String> {
+fn upward_uses(rooms: &[&str], uses: &Uses) -> Vec<String> {
     let place = |module: &str| {
         let place = rooms.iter().position(|it| *it == room(module));
         place.unwrap_or_else(|| panic!("{module} has no place among the rooms"))
@@ -327,7 +330,7 @@ fn no_room_uses_one_above_it() {
     for Package { sources, rooms } in PACKAGES {
         let uses = uses(&root().join(sources));
         assert!(uses.values().any(|used| !used.is_empty()), "{sources}: no use was found");
-        let above = upward(rooms, &uses);
+        let above = upward_uses(rooms, &uses);
         assert!(above.is_empty(), "{sources}: {above:#?}");
         let are_there: BTreeSet<&str> = uses.keys().map(|it| room(it)).collect();
         let gone: Vec<_> = rooms.iter().filter(|it| !are_there.contains(*it)).collect();
@@ -337,8 +340,8 @@ fn no_room_uses_one_above_it() {
 
 #[test]
 fn no_room_of_affine_uses_one_above_it() {
-    let uses = inside("affine", &uses(&root().join("src")));
-    let above = upward(&AFFINE_ROOMS, &uses);
+    let uses = uses_inside("affine", &uses(&root().join("src")));
+    let above = upward_uses(&AFFINE_ROOMS, &uses);
     assert!(above.is_empty(), "{above:#?}");
 }
 
@@ -346,13 +349,13 @@ fn no_room_of_affine_uses_one_above_it() {
 fn a_use_of_a_room_above_is_noticed() {
     let text = "use crate::run::{Exit, Step};\nuse super::flow::contact;\n";
     let names = ["flow", "flow::contact", "run", "model::entry"].map(str::to_owned);
-    let uses = |module: &str| Uses::from([(module.to_owned(), used(module, text, &names))]);
+    let uses = |module: &str| Uses::from([(module.to_owned(), used_modules(module, text, &names))]);
     let said = ["flow::contact uses run, which is above it"];
-    assert_eq!(upward(&["flow", "run"], &uses("flow::contact")), said);
-    assert!(upward(&["flow", "run"], &uses("run")).is_empty());
+    assert_eq!(upward_uses(&["flow", "run"], &uses("flow::contact")), said);
+    assert!(upward_uses(&["flow", "run"], &uses("run")).is_empty());
     let affine = Uses::from([("affine::run".to_owned(), ["affine".to_owned()].into())]);
     assert_eq!(
-        upward(&AFFINE_ROOMS, &inside("affine", &affine)),
+        upward_uses(&AFFINE_ROOMS, &uses_inside("affine", &affine)),
         ["run uses exports, which is above it"]
     );
 }

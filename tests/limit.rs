@@ -15,7 +15,7 @@ fn first(parameters: Parameters, start: &Start) -> (Segment, Counters) {
 }
 
 /// A contact of the model without harmonic force, from this trial force and speed.
-fn dying_out(xi: f64, b: f64, f: f64, y: f64) -> (Segment, Counters) {
+fn dying_contact(xi: f64, b: f64, f: f64, y: f64) -> (Segment, Counters) {
     let parameters = Parameters { a: 0.0, b, xi, ..Parameters::default() };
     let q = f - 2.0 * xi * y;
     let start = Start { p: q + parameters.g, y, q: Some(q), ..Start::default() };
@@ -31,7 +31,7 @@ fn what_dies_out_from_one_side_rests_for_ever() {
     for xi in [1.0_f64, 1.0 + 1e-9, 1.2, 1.459, 3.0, 7.3] {
         for b in [0.0, 5e-324, 1e-127, 1e-40, 1e-17] {
             // f' = -2 xi (f - b) + y, and the part that dies out last is positive.
-            let (segment, counters) = dying_out(xi, b, 0.12, 0.3);
+            let (segment, counters) = dying_contact(xi, b, 0.12, 0.3);
             assert_eq!(
                 *segment.exit(),
                 Exit::Endless(Endless::RestsForEver),
@@ -50,7 +50,7 @@ fn what_dies_out_towards_a_pull_separates_when_nothing_else_is_left() {
         for exponent in [17, 25, 40, 60, 90, 127] {
             let pull = 10.0_f64.powi(-exponent);
             let (f, y) = (0.12, 0.1);
-            let (segment, counters) = dying_out(xi, -pull, f, y);
+            let (segment, counters) = dying_contact(xi, -pull, f, y);
             // f + pull = s exp(-slow d) + k exp(-fast d), of which the second is gone.
             let rate = y - 2.0 * xi * f;
             let s = (rate + fast * f) / (fast - slow);
@@ -75,12 +75,12 @@ fn what_dies_out_towards_a_pull_separates_when_nothing_else_is_left() {
 #[test]
 fn next_to_the_upper_threshold_it_is_decided_alike() {
     // f comes from below.
-    let (segment, _) = dying_out(1.2, 1.0 - f64::EPSILON / 2.0, 0.9, -0.1);
+    let (segment, _) = dying_contact(1.2, 1.0 - f64::EPSILON / 2.0, 0.9, -0.1);
     assert_eq!(*segment.exit(), Exit::Endless(Endless::RestsForEver));
-    let (segment, _) = dying_out(1.2, 1.0, 0.9, -0.1);
+    let (segment, _) = dying_contact(1.2, 1.0, 0.9, -0.1);
     assert_eq!(*segment.exit(), Exit::Endless(Endless::RestsForEver));
     for beyond in [f64::EPSILON, 1e-15, 1e-12] {
-        let (segment, counters) = dying_out(1.2, 1.0 + beyond, 0.9, -0.1);
+        let (segment, counters) = dying_contact(1.2, 1.0 + beyond, 0.9, -0.1);
         let next = segment.exit();
         assert!(
             matches!(next, Exit::Switch(next) if next.phase() == Phase::Progression),
@@ -92,7 +92,7 @@ fn next_to_the_upper_threshold_it_is_decided_alike() {
 
 /// Free and forced oscillation in step, three to one, which together stay inside although their
 /// amplitudes do not, and die out within 1e8 units of time: nothing but following them shows it.
-fn in_step() -> (Parameters, Start) {
+fn oscillations_in_step() -> (Parameters, Start) {
     let (xi, omega, amplitude) = (1e-8, 2.0, 0.28);
     let parameters = Parameters { a: 3.0 * amplitude, b: 0.5, xi, omega, ..Parameters::default() };
     // f = b + A cos t + A sin 2t
@@ -104,7 +104,7 @@ fn in_step() -> (Parameters, Start) {
 
 #[test]
 fn a_search_that_passes_its_limit_leaves_the_phase_undecidable() {
-    let (parameters, start) = in_step();
+    let (parameters, start) = oscillations_in_step();
     let (segment, counters) = first(parameters, &start);
     assert_eq!(*segment.exit(), Exit::Undecidable);
     assert!(
@@ -127,7 +127,7 @@ fn a_search_that_passes_its_limit_leaves_the_phase_undecidable() {
 
 #[test]
 fn a_horizon_holds_in_a_phase_that_has_no_decided_end() {
-    let (parameters, start) = in_step();
+    let (parameters, start) = oscillations_in_step();
     let model = Model::new(parameters).unwrap();
     let entry = model.start(&start).unwrap();
     for periods in [0, 1, 1000] {
@@ -144,7 +144,7 @@ fn a_horizon_holds_in_a_phase_that_has_no_decided_end() {
 #[test]
 fn sections_end_where_a_run_is_undecidable() {
     use percuss::dynamics::section::Section;
-    let (parameters, start) = in_step();
+    let (parameters, start) = oscillations_in_step();
     let model = Model::new(parameters).unwrap();
     let entry = model.start(&start).unwrap();
     let far = entry.instant.after_periods(1 << 40, 1);

@@ -23,7 +23,7 @@ fn image(map: &StrobeMap, point: StrobePoint, periods: u64) -> StrobePoint {
     map.passage(&map.entry(point).unwrap(), periods).point()
 }
 
-fn apart(a: StrobePoint, b: StrobePoint) -> f64 {
+fn distance(a: StrobePoint, b: StrobePoint) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs() / (1.0 + b.abs())).fold(0.0, f64::max)
 }
 
@@ -71,7 +71,7 @@ fn an_orbit_maps_to_itself_strobe_by_strobe() {
                 .points
                 .iter()
                 .zip(next)
-                .map(|(point, next)| apart(image(map, *point, 1), *next))
+                .map(|(point, next)| distance(image(map, *point, 1), *next))
                 .fold(0.0, f64::max);
             assert!(
                 worst <= CLOSURE_TOLERANCE && orbit.residual <= CLOSURE_TOLERANCE,
@@ -79,7 +79,7 @@ fn an_orbit_maps_to_itself_strobe_by_strobe() {
             );
             // No sooner: the first strobe is not met again before the period is over.
             for n in 1..*period {
-                assert!(apart(orbit.points[n as usize], orbit.points[0]) > 1e-6, "{orbit:?}");
+                assert!(distance(orbit.points[n as usize], orbit.points[0]) > 1e-6, "{orbit:?}");
             }
         }
     }

@@ -9,7 +9,7 @@
 use crate::support::draw::{
     Setting, Tally, count, first_segment, log, margin, runner, setting, state,
 };
-use crate::support::plant::{Finding, examine, flight, flight_from_surface, harmonic, steep};
+use crate::support::plant::{Finding, examine, flight, flight_from_surface, harmonic, is_steep};
 use percuss::{Exit, Parameters, Phase, Start};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -33,7 +33,10 @@ fn impacts_are_recovered() {
         let parameters = Parameters { a, b, xi, omega, g: 0.02, phi };
         let [p, y, q] = aim(&parameters, v, d, 0.0, slope);
         let guard = |t: f64| flight(&parameters, [p, y, q], t);
-        prop_assume!(steep(&guard(d), a + b.abs() + q / (4.0 * xi * xi) * (-d / (2.0 * xi)).exp()));
+        prop_assume!(is_steep(
+            &guard(d),
+            a + b.abs() + q / (4.0 * xi * xi) * (-d / (2.0 * xi)).exp()
+        ));
         let Some((segment, ..)) = first_segment(parameters, state(p, y, q)) else {
             return Err(TestCaseError::reject("start not accepted"));
         };
@@ -127,7 +130,7 @@ fn flights_after_separation_are_recovered() {
         let at = guard(d);
         prop_assume!(y.abs() < 1e6 && at.slope > 0.0);
         let bend = a + parameters.b.abs() + y.abs() / (2.0 * xi);
-        prop_assume!(steep(&at, bend));
+        prop_assume!(is_steep(&at, bend));
         let q = -2.0 * xi * y;
         let Some((segment, ..)) = first_segment(parameters, state(q + 0.02, y, q)) else {
             return Err(TestCaseError::reject("start not accepted"));

@@ -4,7 +4,7 @@ use crate::support::draw::{
     Setting, Tally, count, first_segment, log, margin, runner, setting, state,
 };
 use crate::support::original::Equations;
-use crate::support::plant::{Finding, Side, contact, examine, slip, steep};
+use crate::support::plant::{Finding, Side, contact, examine, is_steep, slip};
 use percuss::{Exit, Parameters, Phase};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -31,7 +31,7 @@ fn stops_of_the_bottom_are_recovered() {
             parameters.b = b;
             let guard = |t: f64| slip(&parameters, [y, q], t);
             let lag = (1.0 - q) / (4.0 * xi * xi) * (-d / (2.0 * xi)).exp();
-            prop_assume!(steep(&guard(d), a * omega + lag / (2.0 * xi)));
+            prop_assume!(is_steep(&guard(d), a * omega + lag / (2.0 * xi)));
             let Some((segment, ..)) = first_segment(parameters, state(q + 0.02, y, q)) else {
                 return Err(TestCaseError::reject("start not accepted"));
             };
@@ -109,7 +109,7 @@ fn aim_contact(
 }
 
 /// Contacts that the test's integrator covers in a few thousand steps.
-fn short(xi: f64, omega: f64, d: f64) -> bool {
+fn is_short(xi: f64, omega: f64, d: f64) -> bool {
     let parameters = Parameters { xi, omega, ..Parameters::default() };
     Equations { phase: Phase::Contact, parameters }.steps(d) < 1000.0
 }
@@ -131,7 +131,7 @@ fn ends_of_contact_are_recovered() {
     let test =
         |((xi, omega, periods, phi, ..), side, slope, f0, a): (Setting, Side, f64, f64, f64)| {
             let d = periods * TAU / omega;
-            prop_assume!(short(xi, omega, d));
+            prop_assume!(is_short(xi, omega, d));
             let mut parameters = Parameters { a, b: 0.0, xi, omega, g: 0.02, phi };
             let Some([y, b]) = aim_contact(&parameters, f0, d, side, [0.0, slope]) else {
                 return Err(TestCaseError::reject("far"));
@@ -140,7 +140,7 @@ fn ends_of_contact_are_recovered() {
             let q = f0 - 2.0 * xi * y;
             let planted = contact(&parameters, [y, q], d, Some(side));
             let rate = omega.max(1.0).max(2.0 * xi);
-            prop_assume!(steep(
+            prop_assume!(is_steep(
                 &planted,
                 rate * rate * (a + b.abs() + y.abs() * (1.0 + 2.0 * xi) + 1.0)
             ));
@@ -173,7 +173,7 @@ fn contacts_that_nearly_graze_are_decided() {
     let test =
         |((xi, omega, periods, phi, ..), side, margin, f0, a): (Setting, Side, f64, f64, f64)| {
             let d = periods * TAU / omega;
-            prop_assume!(short(xi, omega, d));
+            prop_assume!(is_short(xi, omega, d));
             let mut parameters = Parameters { a, b: 0.0, xi, omega, g: 0.02, phi };
             let aim = |value: f64| aim_contact(&parameters, f0, d, side, [value, 0.0]);
             let Some([y, b]) = aim(0.0) else { return Err(TestCaseError::reject("far")) };

@@ -26,7 +26,7 @@ fn relative(found: f64, exact: Real) -> f64 {
     ((Real::exact(found) - exact) / exact).to_f64().abs() / f64::EPSILON
 }
 
-fn absolute(found: f64, exact: Real) -> f64 {
+fn absolute_error(found: f64, exact: Real) -> f64 {
     (Real::exact(found) - exact).to_f64().abs() / f64::EPSILON
 }
 
@@ -77,9 +77,9 @@ fn circular_functions_are_exact_to_eps_beyond_one_radian() {
         let (sine, cosine) = exact.sin_cos();
         let Circular { sin, cos_minus_1, sin_minus_x } = circular(x);
         let errors = [
-            absolute(sin, sine),
-            absolute(cos_minus_1, cosine - Real::one()),
-            absolute(sin_minus_x, sine - exact) / x,
+            absolute_error(sin, sine),
+            absolute_error(cos_minus_1, cosine - Real::one()),
+            absolute_error(sin_minus_x, sine - exact) / x,
         ];
         worst = std::array::from_fn(|k| worst[k].max(errors[k]));
     }
@@ -100,9 +100,9 @@ fn circular_functions_of_a_product_do_not_feel_its_rounding() {
             circular_of(omega * d, omega.product_error(d));
         let small = (omega * d).min(1.0);
         let errors = [
-            absolute(sin, sine) / small,
-            absolute(cos_minus_1, cosine - Real::one()) / small,
-            absolute(sin_minus_x, sine - exact) / (omega * d),
+            absolute_error(sin, sine) / small,
+            absolute_error(cos_minus_1, cosine - Real::one()) / small,
+            absolute_error(sin_minus_x, sine - exact) / (omega * d),
         ];
         worst = std::array::from_fn(|k| worst[k].max(errors[k]));
     }

@@ -38,7 +38,7 @@ impl Planted {
         (model, model.start(&start).unwrap())
     }
 
-    fn expected(&self) -> Phase {
+    fn expected_phase(&self) -> Phase {
         match (self.threshold == 0.0, self.sign > 0.0) {
             (true, false) => Phase::NoContact,
             (false, true) => Phase::Progression,
@@ -57,7 +57,7 @@ impl Planted {
 
     /// The start is decided as its sign demands.
     fn is_decided(&self) {
-        assert_eq!(self.entry().1.phase(), self.expected(), "{self:?}");
+        assert_eq!(self.entry().1.phase(), self.expected_phase(), "{self:?}");
     }
 
     /// The trial force leaves the threshold to the side of the sign, and the solver's run with it,
@@ -73,7 +73,7 @@ impl Planted {
         let (model, entry) = self.entry();
         let later = entry.instant.after(TwoWord::new(time), omega);
         let last = model.trajectory(entry).until(later).last().unwrap();
-        assert_eq!(last.phase(), self.expected(), "{self:?}");
+        assert_eq!(last.phase(), self.expected_phase(), "{self:?}");
     }
 }
 
@@ -108,7 +108,7 @@ impl Free {
         [a * cos, -(a * omega * sin), -(a * omega * omega * cos)]
     }
 
-    fn planted(&self, b: f64, y: f64) -> Planted {
+    fn planted_start(&self, b: f64, y: f64) -> Planted {
         let Self { xi, omega, a, phi, threshold, sign, .. } = *self;
         let parameters = Parameters { a, b, xi, omega, g: 0.02, phi };
         Planted { parameters, y, threshold, sign }
@@ -118,7 +118,7 @@ impl Free {
     fn first(&self, b: f64) -> Planted {
         let pull = b + self.harmonic()[0] - self.threshold;
         let terms = 2.0 * self.xi * (self.a + b.abs() + self.threshold);
-        self.planted(b, self.sign * self.size * terms - 2.0 * self.xi * pull)
+        self.planted_start(b, self.sign * self.size * terms - 2.0 * self.xi * pull)
     }
 
     /// f' = 0 and f'' = 2 xi F' + F - f has the sign.
@@ -149,7 +149,7 @@ impl Free {
     fn without_first(&self, second: f64) -> Planted {
         let [force, rate, _] = self.harmonic();
         let pull = second - 2.0 * self.xi * rate;
-        self.planted(self.threshold + pull - force, -2.0 * self.xi * pull)
+        self.planted_start(self.threshold + pull - force, -2.0 * self.xi * pull)
     }
 }
 

@@ -43,7 +43,7 @@ fn run(parameters: Parameters, start: Start, span: f64) -> Run {
     run
 }
 
-fn varied(start: Start, omega: f64, direction: usize, step: f64) -> Start {
+fn varied_start(start: Start, omega: f64, direction: usize, step: f64) -> Start {
     match direction {
         ANGLE => Start { tau: start.tau + step / omega, ..start },
         P => Start { p: start.p + step, ..start },
@@ -60,7 +60,7 @@ fn assert_derivatives(parameters: Parameters, flight: Start, last: f64) -> Vec<P
         let Run { derivative, impacts: so_far, .. } = run(parameters, flight, span);
         for direction in [ANGLE, P, Y, Q, V] {
             let ends = [STEP, -STEP].map(|step| {
-                run(parameters, varied(flight, parameters.omega, direction, step), span).end
+                run(parameters, varied_start(flight, parameters.omega, direction, step), span).end
             });
             for (k, row) in [P, Y, Q, V].into_iter().enumerate() {
                 let difference = (ends[0][k] - ends[1][k]) / (2.0 * STEP);

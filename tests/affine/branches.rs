@@ -74,7 +74,7 @@ impl Varied {
     }
 
     /// The return after so many others.
-    pub fn settled(&self, value: f64, transient: usize) -> Place<f64> {
+    pub fn settled_return(&self, value: f64, transient: usize) -> Place<f64> {
         self.map(value, |map| {
             let mut returns = map.returns(map.system().start().unwrap()).unwrap();
             returns.by_ref().take(transient + 1).for_each(|it| drop(it.unwrap()));
@@ -89,14 +89,14 @@ impl Varied {
     }
 }
 
-pub fn only(branch: &ReturnBranch, kind: BifurcationKind) -> &ReturnBifurcation {
+pub fn only_bifurcation(branch: &ReturnBranch, kind: BifurcationKind) -> &ReturnBifurcation {
     let mut found = branch.bifurcations.iter().filter(|it| it.kind == kind);
-    let first = found.next().unwrap_or_else(|| panic!("{:?}", told(branch)));
-    assert!(found.next().is_none(), "{:?}", told(branch));
+    let first = found.next().unwrap_or_else(|| panic!("{:?}", bifurcation_rows(branch)));
+    assert!(found.next().is_none(), "{:?}", bifurcation_rows(branch));
     first
 }
 
-fn told(branch: &ReturnBranch) -> Vec<(BifurcationKind, f64, f64, bool)> {
+fn bifurcation_rows(branch: &ReturnBranch) -> Vec<(BifurcationKind, f64, f64, bool)> {
     branch.bifurcations.iter().map(|it| (it.kind, it.value, it.error, it.turns)).collect()
 }
 
@@ -116,26 +116,26 @@ fn amplitude(frequency: f64, zeta: f64) -> f64 {
 #[test]
 fn a_spring_is_touched_where_the_free_motion_is_as_large_as_the_gap() {
     let varied = Varied::new(BILINEAR, Section::strobe(0.0), "gap", &[]);
-    let branch = varied.follow(&varied.settled(2.0, 300), 1, [2.0, 1.56]);
+    let branch = varied.follow(&varied.settled_return(2.0, 300), 1, [2.0, 1.56]);
     assert!(branch.is_complete(), "{}", branch.ending);
-    let graze = only(&branch, BifurcationKind::Grazing);
+    let graze = only_bifurcation(&branch, BifurcationKind::Grazing);
     assert_value(graze, 0.6 * amplitude(0.8, 0.05));
     assert_eq!(graze.event.unwrap().name(&varied.at(2.0).unwrap()), "touch@free");
     assert!(!graze.turns);
     let [first, last] = [&branch.points[0].1, &branch.points[branch.points.len() - 1].1];
     assert_eq!((first.events.len(), last.events.len()), (0, 2));
     // Back again the same graze is met.
-    let back = varied.follow(&varied.settled(1.56, 300), 1, [1.56, 2.0]);
-    assert_value(only(&back, BifurcationKind::Grazing), 0.6 * amplitude(0.8, 0.05));
+    let back = varied.follow(&varied.settled_return(1.56, 300), 1, [1.56, 2.0]);
+    assert_value(only_bifurcation(&back, BifurcationKind::Grazing), 0.6 * amplitude(0.8, 0.05));
 }
 
 /// The touch passes the strobe at a gap of 1.5506, where the orbit's point changes its mode.
 #[test]
 fn an_event_that_passes_the_strobe_is_no_bifurcation() {
     let varied = Varied::new(BILINEAR, Section::strobe(0.0), "gap", &[]);
-    let branch = varied.follow(&varied.settled(1.58, 300), 1, [1.58, 1.545]);
+    let branch = varied.follow(&varied.settled_return(1.58, 300), 1, [1.58, 1.545]);
     assert!(branch.is_complete(), "{}", branch.ending);
-    assert!(branch.bifurcations.is_empty(), "{:?}", told(&branch));
+    assert!(branch.bifurcations.is_empty(), "{:?}", bifurcation_rows(&branch));
     let modes: Vec<usize> = branch.points.iter().map(|it| it.1.points[0].mode).collect();
     assert_eq!((modes[0], modes[modes.len() - 1]), (0, 1));
 }
@@ -143,7 +143,7 @@ fn an_event_that_passes_the_strobe_is_no_bifurcation() {
 #[test]
 fn a_rigid_stop_is_touched_where_the_free_motion_is_as_large_as_the_gap() {
     let varied = Varied::new(system!("rigid-impact-oscillator"), Section::strobe(0.0), "A", &[]);
-    let branch = varied.follow(&varied.settled(0.5, 300), 1, [0.5, 1.2]);
+    let branch = varied.follow(&varied.settled_return(0.5, 300), 1, [0.5, 1.2]);
     let graze = &branch.bifurcations[0];
     assert_eq!(graze.kind, BifurcationKind::Grazing);
     assert_value(graze, 0.125 / amplitude(2.75, 0.05));
@@ -181,9 +181,9 @@ fn root(varied: &Varied, near: &ReturnBifurcation, step: f64, test: impl Fn(&Orb
 #[test]
 fn a_buck_converter_doubles_where_a_multiplier_is_minus_one() {
     let varied = Varied::new(system!("buck-converter"), Section::event("clock"), "Vin", &[]);
-    let branch = varied.follow(&varied.settled(22.0, 200), 1, [22.0, 26.0]);
+    let branch = varied.follow(&varied.settled_return(22.0, 200), 1, [22.0, 26.0]);
     assert!(branch.is_complete(), "{}", branch.ending);
-    let flip = only(&branch, BifurcationKind::Flip);
+    let flip = only_bifurcation(&branch, BifurcationKind::Flip);
     let value = root(&varied, flip, 0.01, |it| it.multipliers[0][0] + 1.0);
     assert!((flip.value - value).abs() <= 1e-10 * value, "{} {value}", flip.value);
     // Fossas and Olivar have it at 24.516.
@@ -203,10 +203,12 @@ fn a_last_sticking_at_which_a_multiplier_is_one_is_within_its_error() {
     assert_ne!(slipping, text);
     let varied = Varied::new(&slipping, Section::strobe(0.0), "A", &[]);
     for from in [2.95, 2.9, 2.8, 2.5, 2.0, 1.2] {
-        let branch = varied.follow(&varied.settled(from, 50), 1, [from, 3.0]);
-        let [lost] = &branch.bifurcations[..] else { panic!("{from}: {:?}", told(&branch)) };
+        let branch = varied.follow(&varied.settled_return(from, 50), 1, [from, 3.0]);
+        let [lost] = &branch.bifurcations[..] else {
+            panic!("{from}: {:?}", bifurcation_rows(&branch))
+        };
         let kinds = [BifurcationKind::EventLost, BifurcationKind::Corner];
-        assert!(kinds.contains(&lost.kind), "{from}: {:?}", told(&branch));
+        assert!(kinds.contains(&lost.kind), "{from}: {:?}", bifurcation_rows(&branch));
         let (value, error) = (lost.value, lost.error);
         assert!((value - 3.0).abs() <= error, "{from}: {value} +- {error}");
         // A rounding of the orbit over 1 less a multiplier is as large there as 3 - A.
@@ -224,12 +226,17 @@ fn beside_the_oscillators(period: u32, ends: [f64; 2], text: &[(&str, f64)]) {
         Branch::follow(&family, found.points[0], period, ends[0], ends[1], &mut |_| {}).unwrap();
     let varied =
         Varied::new(system!("percussive-oscillator"), Section::strobe(0.0), "frequency", text);
-    let mut start = varied.settled(ends[0], 0);
+    let mut start = varied.settled_return(ends[0], 0);
     let [p, y, q] = found.points[0];
     start = start.moved_to(start.time, vec![p, y, q, 0.0]);
     let branch = varied.follow(&start, period, ends);
     assert_eq!(branch.ending == BranchEnding::Reached, own.is_complete());
-    assert_eq!(branch.bifurcations.len(), own.bifurcations.len(), "{:?}", told(&branch));
+    assert_eq!(
+        branch.bifurcations.len(),
+        own.bifurcations.len(),
+        "{:?}",
+        bifurcation_rows(&branch)
+    );
     for (a, b) in branch.bifurcations.iter().zip(&own.bifurcations) {
         let is_smooth = b.kind != BifurcationKind::Grazing;
         assert!(!is_smooth || a.kind.as_str() == b.kind.as_str(), "{:?} {:?}", a.kind, b.kind);

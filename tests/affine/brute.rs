@@ -5,7 +5,7 @@ use percuss::affine::{System, What};
 use proptest::prelude::*;
 
 /// exp(M t) z by scaling and a Taylor series, in plain f64.
-fn advanced(matrix: &[Vec<f64>], z: &[f64], time: f64) -> Vec<f64> {
+fn advance(matrix: &[Vec<f64>], z: &[f64], time: f64) -> Vec<f64> {
     const TERMS: usize = 24;
     let size = matrix.iter().flatten().fold(0.0_f64, |size, it| size.max(it.abs()));
     let steps = (4.0 * size * time).ceil().max(1.0);
@@ -85,14 +85,14 @@ proptest! {
             // Growing motions amplify what rounding did in the comparison.
             let room = 1e-11 * size * (2.0 * (next - time)).exp().min(1e4);
             prop_assert!(next >= time && next <= until);
-            let watched = value(&mode.watch[0].guard, &advanced(&matrix, &z, 0.5 * (next - time)));
+            let watched = value(&mode.watch[0].guard, &advance(&matrix, &z, 0.5 * (next - time)));
             for k in 1..400 {
-                let at = advanced(&matrix, &z, (next - time) * f64::from(k) / 400.0);
+                let at = advance(&matrix, &z, (next - time) * f64::from(k) / 400.0);
                 prop_assert!(value(&mode.until[0].guard, &at) < room, "{time} {next} {k}");
                 let other = value(&mode.watch[0].guard, &at);
                 prop_assert!(other * watched > 0.0 || other.abs() < room, "{time} {next} {k}");
             }
-            let end = advanced(&matrix, &z, next - time);
+            let end = advance(&matrix, &z, next - time);
             match event.what {
                 What::Until(..) => prop_assert!(value(&mode.until[0].guard, &end).abs() < room),
                 What::Watch(..) => prop_assert!(value(&mode.watch[0].guard, &end).abs() < room),

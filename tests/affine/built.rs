@@ -1,6 +1,6 @@
 //! Systems that programs build are those that files describe, and errors name their items.
 
-use super::{PLASTIC, by_hand::all, system};
+use super::{PLASTIC, by_hand::all_systems, system};
 use percuss::affine::{
     Direction, Expression, ModeBuilder, Rational, Row, System, SystemBuilder, UntilBuilder,
 };
@@ -28,13 +28,13 @@ fn plastic() -> SystemBuilder {
 }
 
 /// All that a system holds.
-fn written(system: &System) -> String {
+fn written_text(system: &System) -> String {
     format!("{system:#?}")
 }
 
 #[test]
 fn a_built_system_is_that_of_the_file() {
-    assert_eq!(written(&plastic().build().unwrap()), written(&system(PLASTIC)));
+    assert_eq!(written_text(&plastic().build().unwrap()), written_text(&system(PLASTIC)));
 }
 
 /// A system once more, by the exact numbers of its rows.
@@ -86,11 +86,11 @@ fn by_rows(system: &System) -> SystemBuilder {
 
 #[test]
 fn every_system_can_be_built_by_its_rows() {
-    for system in all() {
+    for system in all_systems() {
         let mut expected = system.clone();
         expected.parameters.clear();
         let built = by_rows(system).build().unwrap();
-        assert_eq!(written(&built), written(&expected), "{}", system.name);
+        assert_eq!(written_text(&built), written_text(&expected), "{}", system.name);
     }
 }
 
@@ -103,7 +103,7 @@ fn with(mode: ModeBuilder) -> String {
     refusal(System::builder("one").states(["x"]).mode(mode))
 }
 
-fn on() -> ModeBuilder {
+fn on_mode() -> ModeBuilder {
     ModeBuilder::new("on").equation("x' = 1")
 }
 
@@ -146,13 +146,13 @@ fn an_error_of_the_system_names_it() {
         assert_eq!(refusal(builder), refused);
     }
     assert_eq!(
-        refusal(System::builder("Two words").states(["x"]).mode(on())),
+        refusal(System::builder("Two words").states(["x"]).mode(on_mode())),
         "system \"Two words\": \"Two words\" is not accepted: lower-case words joined by hyphens \
          are"
     );
     let none: [&str; 0] = [];
     assert_eq!(
-        refusal(System::builder("none").states(none).mode(on())),
+        refusal(System::builder("none").states(none).mode(on_mode())),
         "system \"none\": at least one state is accepted"
     );
     let trouble = refusal(plastic().about("", "", ["dull"]));
@@ -166,13 +166,16 @@ fn an_error_of_a_mode_names_it() {
     let until = || UntilBuilder::new("full", "x > 1");
     for (mode, refused) in [
         (ModeBuilder::new("on"), "mode \"on\": an equation `x' = ...` is missing"),
-        (on().equation("x' = 2"), "mode \"on\", equation `x' = 2`: x' is given twice"),
+        (on_mode().equation("x' = 2"), "mode \"on\", equation `x' = 2`: x' is given twice"),
         (
-            on().equation("x = 2"),
+            on_mode().equation("x = 2"),
             "mode \"on\", equation `x = 2`: \"x\": `x' = ...` with a state x \
                                   is accepted",
         ),
-        (on().rate("y", 1), "mode \"on\", rate of \"y\": \"y\" is no state: accepted is one of x"),
+        (
+            on_mode().rate("y", 1),
+            "mode \"on\", rate of \"y\": \"y\" is no state: accepted is one of x",
+        ),
         (
             ModeBuilder::new("on").rate("x", f64::INFINITY),
             "mode \"on\", rate of \"x\": a finite \
@@ -201,51 +204,51 @@ fn an_error_of_a_mode_names_it() {
                                                               expression of parameters",
         ),
         (
-            on().until(until()).until(until()),
+            on_mode().until(until()).until(until()),
             "mode \"on\", until \"full\": the event \"full\" is \
                                               there twice in its mode",
         ),
         (
-            on().until(UntilBuilder::new("end", "x > 1")),
+            on_mode().until(UntilBuilder::new("end", "x > 1")),
             "mode \"on\", until \"end\": \"end\" is \
                                                          the name of an ending",
         ),
         (
-            on().until(UntilBuilder::new("full", "x")),
+            on_mode().until(UntilBuilder::new("full", "x")),
             "mode \"on\", until \"full\", guard: a \
                                                       condition is accepted as `left > right` or \
                                                       `left < right`",
         ),
         (
-            on().until(until().assign("x", 1).reset("x = 2")),
+            on_mode().until(until().assign("x", 1).reset("x = 2")),
             "mode \"on\", until \"full\", reset `x \
                                                              = 2`: x is assigned twice",
         ),
         (
-            on().until(until().reset("x = 1").assign("x", 2)),
+            on_mode().until(until().reset("x = 1").assign("x", 2)),
             "mode \"on\", until \"full\", \
                                                              assignment of \"x\": x is assigned \
                                                              twice",
         ),
         (
-            on().until(until().next("off")),
+            on_mode().until(until().next("off")),
             "mode \"on\", until \"full\", successor 1: there is no \
                                            mode \"off\": accepted is one of on",
         ),
         (
-            on().until(until().next_when("x > y", "on").next("on")),
+            on_mode().until(until().next_when("x > y", "on").next("on")),
             "mode \"on\", until \"full\", \
                                                                    successor 1: y is not known: \
                                                                    accepted are x",
         ),
         (
-            on().until(until().next_when("x > 1", "on")),
+            on_mode().until(until().next_when("x > 1", "on")),
             "mode \"on\", until \"full\": every \
                                                         successor but the last has a condition, and \
                                                         the last has none",
         ),
         (
-            on().watch("half", "x > 0.5", Direction::Both),
+            on_mode().watch("half", "x > 0.5", Direction::Both),
             "mode \"on\", watch \"half\", guard: a \
                                                           decimal is not accepted here: give it \
                                                           as a parameter",
@@ -253,14 +256,15 @@ fn an_error_of_a_mode_names_it() {
     ] {
         assert_eq!(with(mode), refused);
     }
-    let many = (0..65).fold(on(), |mode, n| mode.watch(format!("w{n}"), "x > 0", Direction::Both));
+    let many =
+        (0..65).fold(on_mode(), |mode, n| mode.watch(format!("w{n}"), "x > 0", Direction::Both));
     assert_eq!(with(many), "mode \"on\": 65 events are too many: up to 64 a mode are accepted");
 }
 
 /// A guard that is constant never fires; the rule is that of files.
 #[test]
 fn a_guard_that_never_changes_is_refused() {
-    let until = |guard: Expression| with(on().until(UntilBuilder::new("full", guard)));
+    let until = |guard: Expression| with(on_mode().until(UntilBuilder::new("full", guard)));
     let number = "mode \"on\", until \"full\", guard: a number is no condition: `left > right`, \
                   `left < right` or a row of factors is accepted";
     for guard in [5.into(), 0.5.into(), (Rational::ONE / Rational::from(3)).into()] {
@@ -269,11 +273,11 @@ fn a_guard_that_never_changes_is_refused() {
     let constant = "the guard never changes: accepted is one with a state, cos or sin in it";
     assert_eq!(until("2 > 1".into()), format!("mode \"on\", until \"full\", guard: {constant}"));
     assert_eq!(
-        with(on().watch("half", "1 < 1/2", Direction::Both)),
+        with(on_mode().watch("half", "1 < 1/2", Direction::Both)),
         format!("mode \"on\", watch \"half\", guard: {constant}")
     );
     let defined = |half: &str, guard: &str| {
-        let mode = on().until(UntilBuilder::new("full", guard));
+        let mode = on_mode().until(UntilBuilder::new("full", guard));
         let one = System::builder("one").states(["x"]).parameter("k", 0);
         one.definition("half", half).definition("all", "2*half").mode(mode).build()
     };
@@ -282,7 +286,7 @@ fn a_guard_that_never_changes_is_refused() {
     assert!(defined("x/2", "all > 1").is_ok());
     // Parameters may be 0, and what a row has for a state, too.
     assert!(defined("k*x", "all > 1").is_ok());
-    let row = on().until(UntilBuilder::new("full", [0, -1]));
+    let row = on_mode().until(UntilBuilder::new("full", [0, -1]));
     assert!(System::builder("one").states(["x"]).mode(row).build().is_ok());
 }
 
@@ -290,10 +294,10 @@ fn a_guard_that_never_changes_is_refused() {
 #[test]
 fn a_condition_may_be_constant() {
     let until = || UntilBuilder::new("full", "x > 1");
-    let mode = on().until(until().next_when("2 > 1", "on").next("on"));
+    let mode = on_mode().until(until().next_when("2 > 1", "on").next("on"));
     assert!(System::builder("one").states(["x"]).mode(mode).build().is_ok());
     assert_eq!(
-        with(on().until(until().next_when(1, "on").next("on"))),
+        with(on_mode().until(until().next_when(1, "on").next("on"))),
         "mode \"on\", until \"full\", successor 1: a number is no condition: `left > right`, \
          `left < right` or a row of factors is accepted"
     );
@@ -305,13 +309,13 @@ fn errors_of_a_builder_have_no_words_of_files() {
     let until = UntilBuilder::new("full", "x > 1");
     let one = || System::builder("one").states(["x"]);
     for builder in [
-        one().mode(on()).parameter("x", 1),
-        one().mode(on()).parameter("k", "x"),
-        one().mode(on()).start("on", [("y", 1)]),
-        one().mode(on()).start("on", [("x", 1), ("y", 1)]),
-        one().mode(on().until(until.clone().next_when("x > 0", "on"))),
-        one().mode(on().until(until.reset("x = 0.5"))),
-        one().mode(on()).definition("half", "1/0"),
+        one().mode(on_mode()).parameter("x", 1),
+        one().mode(on_mode()).parameter("k", "x"),
+        one().mode(on_mode()).start("on", [("y", 1)]),
+        one().mode(on_mode()).start("on", [("x", 1), ("y", 1)]),
+        one().mode(on_mode().until(until.clone().next_when("x > 0", "on"))),
+        one().mode(on_mode().until(until.reset("x = 0.5"))),
+        one().mode(on_mode()).definition("half", "1/0"),
     ] {
         let said = refusal(builder);
         assert!(!said.contains(['[', ']']) && !said.contains("`when`"), "{said}");
@@ -321,7 +325,7 @@ fn errors_of_a_builder_have_no_words_of_files() {
 #[test]
 fn an_error_of_the_start_names_it() {
     let begin = |states: &[(&str, Expression)]| {
-        refusal(System::builder("one").states(["x"]).mode(on()).start("on", states.to_vec()))
+        refusal(System::builder("one").states(["x"]).mode(on_mode()).start("on", states.to_vec()))
     };
     assert_eq!(begin(&[]), "start: the start has no state x");
     assert_eq!(begin(&[("x", 1.into()), ("x", 2.into())]), "start: x is given twice");
@@ -339,9 +343,9 @@ fn an_error_of_the_start_names_it() {
         begin(&[("x", 1.into()), ("t", 5.into())]),
         "start: t is no state: the time of the start is given by `start_time`"
     );
-    let other = System::builder("one").states(["x"]).mode(on()).start("off", [("x", 1)]);
+    let other = System::builder("one").states(["x"]).mode(on_mode()).start("off", [("x", 1)]);
     assert_eq!(refusal(other), "start: there is no mode \"off\": accepted is one of on");
-    let time = System::builder("one").states(["x"]).mode(on()).start_time(1);
+    let time = System::builder("one").states(["x"]).mode(on_mode()).start_time(1);
     assert_eq!(refusal(time), "start: a time of the start is not accepted without a start");
 }
 
@@ -350,7 +354,7 @@ fn a_text_without_a_file_has_lines() {
     let changed = |from: &str, to: &str| {
         System::from_toml(&PLASTIC.replace(from, to)).unwrap_err().to_string()
     };
-    assert_eq!(written(&System::from_toml(PLASTIC).unwrap()), written(&system(PLASTIC)));
+    assert_eq!(written_text(&System::from_toml(PLASTIC).unwrap()), written_text(&system(PLASTIC)));
     assert_eq!(changed("schema = 1", "schema = 2"), "line 1: the schema that is accepted is 1");
     assert_eq!(
         changed("\"v' = -g\"", "\"v' = -h\""),
@@ -367,7 +371,7 @@ fn a_text_without_a_file_has_lines() {
 fn a_file_is_read_by_its_path() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/affine");
     let path = folder.join("plastic.system.toml");
-    assert_eq!(written(&System::from_file(&path).unwrap()), written(&system(PLASTIC)));
+    assert_eq!(written_text(&System::from_file(&path).unwrap()), written_text(&system(PLASTIC)));
     let missing = folder.join("missing.system.toml");
     let error = System::from_file(&missing).unwrap_err().to_string();
     let expected = format!("{}: the file cannot be read: ", missing.display());

@@ -244,7 +244,7 @@ fn structural_zeros_that_cannot_be_decided_are_refused() {
 }
 
 /// The systems of the repository.
-pub(super) fn all() -> &'static [System] {
+pub(super) fn all_systems() -> &'static [System] {
     static ALL: OnceLock<Vec<System>> = OnceLock::new();
     ALL.get_or_init(|| {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/systems");
@@ -258,8 +258,8 @@ pub(super) fn all() -> &'static [System] {
 
 #[test]
 fn every_system_that_is_read_is_one() {
-    assert_eq!(all().len(), 14);
-    for system in all() {
+    assert_eq!(all_systems().len(), 14);
+    for system in all_systems() {
         assert_eq!(system.check(), Ok(()), "{}", system.name);
         assert_eq!(system.reversed().check(), Ok(()), "{} reversed", system.name);
     }
@@ -341,7 +341,7 @@ proptest! {
         which in 0..14_usize,
         changes in prop::collection::vec((0..KINDS, 0..20_usize, 0..20_usize, 0..20_usize), 1..4),
     ) {
-        let original = &all()[which];
+        let original = &all_systems()[which];
         let mut system = original.clone();
         changes.into_iter().for_each(|it| change(&mut system, it));
         let begin = system.start.as_ref().map_or(0.0, |it| it.time.to_f64());
@@ -366,6 +366,6 @@ proptest! {
         // A start of another system, and of the changed one, is refused or runs.
         let solver = Solver::<f64>::new(original).unwrap();
         run(&solver, &system, false, begin + span);
-        run(&solver, &all()[(which + 1) % 14], true, begin + span);
+        run(&solver, &all_systems()[(which + 1) % 14], true, begin + span);
     }
 }

@@ -1,10 +1,16 @@
 //! Eigenvalues that are close to each other, with couplings that are large beside their distance.
 
-use super::{enclosed, events, names, system};
+use super::{enclosed_events, events, names, system};
 use percuss::affine::System;
 use percuss::affine::{Bits212, DoubleDouble};
 
-fn watched(states: &str, forcing: &str, equations: &str, guard: &str, start: &str) -> System {
+fn watched_system(
+    states: &str,
+    forcing: &str,
+    equations: &str,
+    guard: &str,
+    start: &str,
+) -> System {
     system(&format!(
         "schema = 1\nname = \"close\"\nstates = [{states}]\n{forcing}\n[parameters]\nr = 1.1\n\
          [[mode]]\nname = \"free\"\nequations = [{equations}]\n[[mode.watch]]\nname = \"m\"\n\
@@ -17,11 +23,14 @@ fn watched(states: &str, forcing: &str, equations: &str, guard: &str, start: &st
 fn two_tanks_in_a_row() {
     let tanks = |level: &str| {
         let equations = "\"a' = -a\", \"d' = 1000*a - r*d\"";
-        watched("\"a\", \"d\"", "", equations, &format!("d > {level}"), "a = 1\nd = 0")
+        watched_system("\"a\", \"d\"", "", equations, &format!("d > {level}"), "a = 1\nd = 0")
     };
-    assert_eq!(names(&tanks("90000"), &enclosed::<DoubleDouble>(&tanks("90000"), 50.0)), ["end"]);
+    assert_eq!(
+        names(&tanks("90000"), &enclosed_events::<DoubleDouble>(&tanks("90000"), 50.0)),
+        ["end"]
+    );
     let high = tanks("300");
-    let all = enclosed::<DoubleDouble>(&high, 0.9);
+    let all = enclosed_events::<DoubleDouble>(&high, 0.9);
     assert_eq!(names(&high, &all), ["m", "end"]);
     let own = events::<f64>(&high, 0.9);
     let times = [all[0].time.value().words().0, own[0].time.high + own[0].time.low];
@@ -38,12 +47,12 @@ fn forcing_near_resonance() {
     for (damping, omega) in [("1/50", 1.05), ("1/1000", 1.0001), ("0", 1.01), ("0", 1.0)] {
         let forcing = format!("forcing = {{ omega = {omega:?}, phi = 0 }}");
         let equations = format!("\"x' = v\", \"v' = cos - x - {damping}*v\"");
-        let far = watched("\"x\", \"v\"", &forcing, &equations, "x > 10000", "x = 0\nv = 0");
-        assert_eq!(names(&far, &enclosed::<DoubleDouble>(&far, 1000.0)), ["end"], "{omega}");
-        assert_eq!(names(&far, &enclosed::<f64>(&far, 30.0)), ["end"], "{omega}");
+        let far = watched_system("\"x\", \"v\"", &forcing, &equations, "x > 10000", "x = 0\nv = 0");
+        assert_eq!(names(&far, &enclosed_events::<DoubleDouble>(&far, 1000.0)), ["end"], "{omega}");
+        assert_eq!(names(&far, &enclosed_events::<f64>(&far, 30.0)), ["end"], "{omega}");
     }
     // x = t sin(t)/2 at resonance: it passes 3 near t = 7.1.
-    let near = watched(
+    let near = watched_system(
         "\"x\", \"v\"",
         "forcing = { omega = 1.0, phi = 0 }",
         "\"x' = v\", \"v' = cos - x\"",
@@ -51,7 +60,7 @@ fn forcing_near_resonance() {
         "x = 0\nv = 0",
     );
     for t in [
-        enclosed::<DoubleDouble>(&near, 8.0)[0].time.value().words().0,
+        enclosed_events::<DoubleDouble>(&near, 8.0)[0].time.value().words().0,
         events::<f64>(&near, 8.0)[0].time.high,
     ] {
         assert!((0.5 * t * t.sin() - 3.0).abs() < 1e-14, "{t:e}");
@@ -64,8 +73,8 @@ fn oscillators_side_by_side() {
     let states = "\"a\", \"b\", \"d\", \"e\"";
     let equations = "\"a' = b\", \"b' = -a\", \"d' = e\", \"e' = -r*d\"";
     let start = "a = 0.1\nb = 0.1\nd = 0.1\ne = 0";
-    let far = watched(states, "", equations, "a + d > 1", start);
-    assert_eq!(names(&far, &enclosed::<DoubleDouble>(&far, 3000.0)), ["end"]);
+    let far = watched_system(states, "", equations, "a + d > 1", start);
+    assert_eq!(names(&far, &enclosed_events::<DoubleDouble>(&far, 3000.0)), ["end"]);
 }
 
 /// Pairs that hardly turn, and equal pairs, beside couplings of any size.
@@ -74,15 +83,23 @@ fn pairs_that_hardly_turn_and_equal_ones() {
     for coupling in ["1", "1000"] {
         let equations = format!("\"a' = {coupling}*b - a\", \"b' = -b - a/{coupling}^2/10000\"");
         let level = format!("a > 10*{coupling}");
-        let far = watched("\"a\", \"b\"", "", &equations, &level, "a = 1\nb = 1");
-        assert_eq!(names(&far, &enclosed::<DoubleDouble>(&far, 100.0)), ["end"], "{coupling}");
+        let far = watched_system("\"a\", \"b\"", "", &equations, &level, "a = 1\nb = 1");
+        assert_eq!(
+            names(&far, &enclosed_events::<DoubleDouble>(&far, 100.0)),
+            ["end"],
+            "{coupling}"
+        );
         let states = "\"a\", \"b\", \"d\", \"e\"";
         let equations = format!(
             "\"a' = b - a\", \"b' = -a - b\", \"d' = e - d\", \"e' = {coupling}*a - d - e\""
         );
         let level = format!("d > 10*{coupling}");
-        let far = watched(states, "", &equations, &level, "a = 1\nb = 1\nd = 1\ne = 1");
-        assert_eq!(names(&far, &enclosed::<DoubleDouble>(&far, 100.0)), ["end"], "{coupling}");
+        let far = watched_system(states, "", &equations, &level, "a = 1\nb = 1\nd = 1\ne = 1");
+        assert_eq!(
+            names(&far, &enclosed_events::<DoubleDouble>(&far, 100.0)),
+            ["end"],
+            "{coupling}"
+        );
     }
 }
 
@@ -91,8 +108,9 @@ fn pairs_that_hardly_turn_and_equal_ones() {
 fn what_is_zero_does_not_grow() {
     for (rate, coupling) in [("r", "10"), ("r", "7"), ("13/10", "10"), ("-r", "10")] {
         let equations = format!("\"x' = {rate}*x\", \"y' = {coupling}*x - 2*y + 1\"");
-        let at_rest = watched("\"x\", \"y\"", "", &equations, "x + 1/1000 < 0", "x = 0\ny = 0");
-        let all = enclosed::<DoubleDouble>(&at_rest, 300.0);
+        let at_rest =
+            watched_system("\"x\", \"y\"", "", &equations, "x + 1/1000 < 0", "x = 0\ny = 0");
+        let all = enclosed_events::<DoubleDouble>(&at_rest, 300.0);
         let end = &all[all.len() - 1];
         assert_eq!(names(&at_rest, &all), ["end"], "{rate}");
         let (x, off) = (end.state[0].words().0.abs(), end.errors.as_ref().unwrap().state[0]);
@@ -105,8 +123,8 @@ fn what_is_zero_does_not_grow() {
 fn what_does_not_depend_on_large_neighbours() {
     let (a, d, until) = (1.0 / 4e5, 1.0 / 4e3, 470_000.0);
     let equations = "\"x' = v - x/400000\", \"v' = -101/400000*v\"";
-    let falling = watched("\"x\", \"v\"", "", equations, "v > 0", "x = 1\nv = -0.0000025");
-    let all = enclosed::<Bits212>(&falling, until);
+    let falling = watched_system("\"x\", \"v\"", "", equations, "v > 0", "x = 1\nv = -0.0000025");
+    let all = enclosed_events::<Bits212>(&falling, until);
     assert_eq!(names(&falling, &all), ["end"]);
     let end = &all[0];
     let v = -a * f64::exp(-(a + d) * until);

@@ -39,7 +39,12 @@ impl Varied {
     }
 
     /// The return after so many others, from the start with these states.
-    fn settled(&self, values: [f64; 2], state: Option<&[f64]>, transient: usize) -> Place<f64> {
+    fn settled_return(
+        &self,
+        values: [f64; 2],
+        state: Option<&[f64]>,
+        transient: usize,
+    ) -> Place<f64> {
         let system = self.at(values).unwrap();
         let solver = Solver::new(&system).unwrap();
         let map = SectionMap::new(&solver, &self.section).unwrap();
@@ -167,7 +172,7 @@ fn range(curve: &BifurcationCurve, axis: usize) -> [f64; 2] {
 fn folds_of_an_impact_oscillator_are_those_of_its_closed_form() {
     let text = system!("rigid-impact-oscillator");
     let varied = Varied::new(text, Section::strobe(0.0), ["A", "frequency"], &[]);
-    let guess = varied.settled([0.3, 2.75], Some(&TWO_PERIODS), 0);
+    let guess = varied.settled_return([0.3, 2.75], Some(&TWO_PERIODS), 0);
     let branch = varied.branch(&guess, 2, [0.3, 0.1], 2.75);
     let curves = varied.curves(&branch, [[0.3, 0.1], [2.2, 3.5]], 2.75);
     let [fold] = &curves[..] else { panic!("{curves:?}") };
@@ -185,7 +190,7 @@ fn folds_of_an_impact_oscillator_are_those_of_its_closed_form() {
 fn flips_of_an_impact_oscillator_are_those_of_its_closed_form() {
     let text = system!("rigid-impact-oscillator");
     let varied = Varied::new(text, Section::strobe(0.0), ["frequency", "A"], &[]);
-    let guess = varied.settled([2.75, 0.25], Some(&TWO_PERIODS), 0);
+    let guess = varied.settled_return([2.75, 0.25], Some(&TWO_PERIODS), 0);
     let branch = varied.branch(&guess, 2, [2.75, 2.19], 0.25);
     let curves = varied.curves(&branch, [[2.75, 2.19], [0.2, 0.4]], 0.25);
     let own: Vec<_> = curves.iter().filter(|it| it.kind == BifurcationKind::Flip).collect();
@@ -245,7 +250,7 @@ v = 0
 #[test]
 fn a_closed_curve_of_grazings_is_followed_once_around() {
     let varied = Varied::new(ROUND, Section::strobe(0.0), ["c", "d"], &[]);
-    let branch = varied.branch(&varied.settled([-1.8, 0.1], None, 300), 1, [-1.8, 1.8], 0.1);
+    let branch = varied.branch(&varied.settled_return([-1.8, 0.1], None, 300), 1, [-1.8, 1.8], 0.1);
     let kinds: Vec<_> = branch.bifurcations.iter().map(|it| it.kind).collect();
     let [grazing, flip] = [BifurcationKind::Grazing, BifurcationKind::Flip];
     assert_eq!(kinds, [grazing, flip, flip, grazing]);
@@ -279,7 +284,8 @@ fn assert_circle(circle: &BifurcationCurve, radius: f64) {
 fn a_curve_is_where_branches_in_one_parameter_have_the_bifurcation() {
     let text = system!("buck-converter");
     let varied = Varied::new(text, Section::event("clock"), ["Vin", "R"], &[]);
-    let branch = varied.branch(&varied.settled([22.0, 22.0], None, 200), 1, [22.0, 26.0], 22.0);
+    let branch =
+        varied.branch(&varied.settled_return([22.0, 22.0], None, 200), 1, [22.0, 26.0], 22.0);
     let curves = varied.curves(&branch, [[22.0, 26.0], [15.0, 30.0]], 22.0);
     let [flip] = &curves[..] else { panic!("{curves:?}") };
     let mut seconds = ends(flip).map(|it| it[1]);
@@ -287,7 +293,7 @@ fn a_curve_is_where_branches_in_one_parameter_have_the_bifurcation() {
     assert_eq!((seconds, flip.endings), ([15.0, 30.0], [CurveEnding::Left; 2]));
     for it in flip.points.iter().step_by(9) {
         let [value, second] = it.values;
-        let guess = varied.settled([22.0, second], None, 200);
+        let guess = varied.settled_return([22.0, second], None, 200);
         let branch = varied.branch(&guess, 1, [22.0, 26.0], second);
         let [own] = &branch.bifurcations[..] else { panic!("{second}") };
         assert_eq!(own.kind, BifurcationKind::Flip);
@@ -302,7 +308,7 @@ fn a_curve_is_where_branches_in_one_parameter_have_the_bifurcation() {
 fn a_rigid_stop_is_touched_along_the_response() {
     let text = system!("rigid-impact-oscillator");
     let varied = Varied::new(text, Section::strobe(0.0), ["A", "frequency"], &[]);
-    let branch = varied.branch(&varied.settled([0.5, 2.75], None, 300), 1, [0.5, 0.9], 2.75);
+    let branch = varied.branch(&varied.settled_return([0.5, 2.75], None, 300), 1, [0.5, 0.9], 2.75);
     // The window begins at the system's own value: the curve goes one way alone.
     let curves = varied.curves(&branch, [[0.5, 0.9], [2.75, 3.5]], 2.75);
     let graze = curves.iter().find(|it| it.kind == BifurcationKind::Grazing).unwrap();

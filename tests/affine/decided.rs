@@ -1,12 +1,18 @@
 //! Runs that the model decides: kinds on which earlier solvers gave up without cause.
 
-use super::{enclosed, names, system};
+use super::{enclosed_events, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Bits212, Bits3392, Ending, Event, System, What};
 use percuss::number::Number;
 
 /// A system of one mode that is watched, with a start.
-fn watched(states: &str, head: &str, equations: &str, guards: &[&str], start: &str) -> System {
+fn watched_system(
+    states: &str,
+    head: &str,
+    equations: &str,
+    guards: &[&str],
+    start: &str,
+) -> System {
     let guards: String = guards
         .iter()
         .enumerate()
@@ -19,7 +25,7 @@ fn watched(states: &str, head: &str, equations: &str, guards: &[&str], start: &s
 }
 
 fn last<T: Number>(system: &System, until: f64) -> Event<T> {
-    enclosed::<T>(system, until).pop().unwrap()
+    enclosed_events::<T>(system, until).pop().unwrap()
 }
 
 /// x = x0 cos(t sqrt(k/m)), whose quotient is no sum of powers of two in most of these; the stop is
@@ -29,7 +35,7 @@ fn quotients_of_round_numbers_are_as_good_as_decimals() {
     let masses: [f64; 7] = [0.1, 0.2, 0.3, 0.5, 0.7, 3.0, 7.0];
     let springs: [f64; 7] = [13.0, 20.0, 30.0, 50.0, 100.0, 200.0, 400.0];
     for (k, m) in springs.iter().flat_map(|k| masses.map(|m| (*k, m))) {
-        let oscillator = watched(
+        let oscillator = watched_system(
             "\"x\", \"v\"",
             &format!("[parameters]\nk = {k}\nm = {m:?}\nstop = 0.004"),
             "\"x' = v\", \"v' = -k*x/m\"",
@@ -51,7 +57,7 @@ fn quotients_of_round_numbers_are_as_good_as_decimals() {
 fn slow_pairs_are_passed_at_once() {
     for (k, c) in [("1e-6", "2e-3"), ("1e-6", "2.000001e-3"), ("2.5e-5", "1e-2"), ("1e-8", "2e-4")]
     {
-        let pair = watched(
+        let pair = watched_system(
             "\"x\", \"v\"",
             &format!("[parameters]\nk = {k}\nc = {c}\nfar = 5"),
             "\"x' = v\", \"v' = -k*x - c*v\"",
@@ -72,7 +78,7 @@ fn slow_pairs_are_passed_at_once() {
 /// it beside the exponents of f64, 212 do not.
 #[test]
 fn two_decays_of_nearly_one_rate_keep_their_digits() {
-    let pair = watched(
+    let pair = watched_system(
         "\"x\", \"y\"",
         "[parameters]\nk = 1.0\nk2 = 1.000000001",
         "\"x' = -k*x\", \"y' = -k2*y + x\"",
@@ -97,7 +103,13 @@ fn two_decays_of_nearly_one_rate_keep_their_digits() {
 #[test]
 fn ties_and_touches_of_the_model_are_decided() {
     let forced = |guards: &[&str]| {
-        watched("\"n\"", "forcing = { omega = 1.0, phi = 0.5 }", "\"n' = 0\"", guards, "n = 0")
+        watched_system(
+            "\"n\"",
+            "forcing = { omega = 1.0, phi = 0.5 }",
+            "\"n' = 0\"",
+            guards,
+            "n = 0",
+        )
     };
     let tie = forced(&[
         "guard = \"10*sin > 6\"\ndirection = \"falling\"",
@@ -105,14 +117,14 @@ fn ties_and_touches_of_the_model_are_decided() {
         "guard = \"sin > 1\"",
         "guard = \"3*sin + 4*cos > 5\"",
     ]);
-    let all = enclosed::<DoubleDouble>(&tie, 6.0);
+    let all = enclosed_events::<DoubleDouble>(&tie, 6.0);
     assert_eq!(names(&tie, &all), ["g0", "g1", "end"]);
     assert_eq!(all[0].time.value(), all[1].time.value());
     assert!(
         (all[0].time.value().to_f64() - (std::f64::consts::PI - 0.6_f64.asin() - 0.5)).abs()
             < 1e-15
     );
-    let thrown = watched(
+    let thrown = watched_system(
         "\"x\", \"v\", \"s\"",
         "",
         "\"x' = v\", \"v' = -8\", \"s' = 1\"",
@@ -123,16 +135,16 @@ fn ties_and_touches_of_the_model_are_decided() {
         ],
         "x = 0\nv = 2\ns = 0",
     );
-    let all = enclosed::<DoubleDouble>(&thrown, 1.0);
+    let all = enclosed_events::<DoubleDouble>(&thrown, 1.0);
     assert_eq!(names(&thrown, &all), ["g2", "g1", "g2", "end"]);
-    let oscillator = watched(
+    let oscillator = watched_system(
         "\"x\", \"v\"",
         "",
         "\"x' = v\", \"v' = -4*x\"",
         &["guard = \"x > 5\"", "guard = \"x < 3\"", "guard = \"v < -8\""],
         "x = 5\nv = 0",
     );
-    let all = enclosed::<DoubleDouble>(&oscillator, 3.0);
+    let all = enclosed_events::<DoubleDouble>(&oscillator, 3.0);
     assert_eq!(names(&oscillator, &all), ["g1", "g2", "end"]);
     assert_eq!(all[0].time.value(), all[1].time.value());
 }
@@ -147,22 +159,22 @@ fn a_touch_at_the_end_of_a_mode_is_no_event() {
          guard = \"y > 0\"\n[[mode]]\nname = \"b\"\nequations = [\"x' = 1\", \"y' = w\", \"w' = -2\"]\n\
          [start]\nmode = \"a\"\nx = 0\ny = -1\nw = 2\n",
     );
-    assert_eq!(names(&touch, &enclosed::<DoubleDouble>(&touch, 3.0)), ["over", "end"]);
-    assert_eq!(names(&touch, &enclosed::<f64>(&touch, 3.0)), ["over", "end"]);
+    assert_eq!(names(&touch, &enclosed_events::<DoubleDouble>(&touch, 3.0)), ["over", "end"]);
+    assert_eq!(names(&touch, &enclosed_events::<f64>(&touch, 3.0)), ["over", "end"]);
 }
 
 /// From rest under a sine near resonance: x begins with three zeros, and comes back near a half
 /// turn of its own.
 #[test]
 fn a_run_from_rest_under_a_sine_begins() {
-    let forced = watched(
+    let forced = watched_system(
         "\"x\", \"v\"",
         "forcing = { omega = \"w + d\", phi = 0 }\n[parameters]\nw = 1.5\nd = 5e-6\nF = 0.9",
         "\"x' = v\", \"v' = -w^2*x + F*sin\"",
         &["guard = \"x > 0\"\ndirection = \"both\""],
         "x = 0\nv = 0",
     );
-    let all = enclosed::<DoubleDouble>(&forced, 15.0);
+    let all = enclosed_events::<DoubleDouble>(&forced, 15.0);
     assert!(all.len() > 3 && names(&forced, &all).iter().all(|it| it == "g0" || it == "end"));
     // At resonance x = F (sin(w t) - w t cos(w t))/(2 w^2), which is zero where tan(w t) = w t.
     let first = all[0].time.value().to_f64() * 1.5;
@@ -182,7 +194,7 @@ fn no_digits_are_lost_on_a_stable_orbit() {
          [[mode.until]]\nname = \"leave\"\nguard = \"x < e\"\nnext = [{ mode = \"free\" }]\n\
          [start]\nmode = \"free\"\nx = 0\nv = 0\n",
     );
-    let all = enclosed::<f64>(&bilinear, 40_000.0);
+    let all = enclosed_events::<f64>(&bilinear, 40_000.0);
     assert!(all.len() > 10_000, "{}", all.len());
     let error = |n: usize| all[n].errors.as_ref().unwrap().state[1];
     let early = (200..1000).map(error).fold(0.0, f64::max);
@@ -220,14 +232,14 @@ fn a_chain_of_small_couplings_keeps_its_powers() {
     let mut equations: Vec<String> = (0..5).map(|n| format!("\"x{n}' = a*x{}\"", n + 1)).collect();
     equations.push("\"x5' = 1\"".to_owned());
     let start: String = (0..6).map(|n| format!("x{n} = 0\n")).collect();
-    let chain = watched(
+    let chain = watched_system(
         &states.join(", "),
         "[parameters]\na = 1e-20",
         &equations.join(", "),
         &["guard = \"x0 > 1\""],
         &start,
     );
-    let all = enclosed::<DoubleDouble>(&chain, 2e17);
+    let all = enclosed_events::<DoubleDouble>(&chain, 2e17);
     assert_eq!(names(&chain, &all), ["g0", "end"]);
     let exact = ((720_f64.ln() + 100.0 * 10_f64.ln()) / 6.0).exp();
     assert!((all[0].time.value().to_f64() / exact - 1.0).abs() < 1e-12);
@@ -243,11 +255,11 @@ fn a_long_chain_grows() {
     equations.push("\"x8' = 1\"".to_owned());
     let start: String = (0..9).map(|n| format!("x{n} = 0\n")).collect();
     let guard = ["guard = \"x0 > 1\""];
-    let chain = watched(&states.join(", "), "", &equations.join(", "), &guard, &start);
+    let chain = watched_system(&states.join(", "), "", &equations.join(", "), &guard, &start);
     let exact = (362_880_f64.ln() / 9.0).exp();
     for time in [
-        enclosed::<DoubleDouble>(&chain, 20.0)[0].time.value().to_f64(),
-        enclosed::<f64>(&chain, 20.0)[0].time.value(),
+        enclosed_events::<DoubleDouble>(&chain, 20.0)[0].time.value().to_f64(),
+        enclosed_events::<f64>(&chain, 20.0)[0].time.value(),
     ] {
         assert!((time / exact - 1.0).abs() < 1e-13, "{time}");
     }
@@ -257,13 +269,13 @@ fn a_long_chain_grows() {
 /// and whatever the bits, no crossing is made of the touch.
 #[test]
 fn a_touch_is_no_crossing_in_any_number_of_bits() {
-    let touch = watched(
+    let touch = watched_system(
         "\"a\", \"b\"",
         "",
         "\"a' = -a\", \"b' = -2*b\"",
         &["guard = \"4*a > 4*b + 1\""],
         "a = 1\nb = 1",
     );
-    assert_eq!(names(&touch, &enclosed::<Bits212>(&touch, 1.0)), ["undecided"]);
-    assert_eq!(names(&touch, &enclosed::<Bits3392>(&touch, 1.0)), ["undecided"]);
+    assert_eq!(names(&touch, &enclosed_events::<Bits212>(&touch, 1.0)), ["undecided"]);
+    assert_eq!(names(&touch, &enclosed_events::<Bits3392>(&touch, 1.0)), ["undecided"]);
 }

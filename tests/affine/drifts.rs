@@ -10,7 +10,7 @@ use percuss::{Instant, Model, Parameters, Start};
 const OSCILLATOR: &str = include_str!("../../validation/systems/percussive-oscillator.system.toml");
 
 /// The oscillator's file with some text in the place of another, which is there.
-fn replaced(from: &str, to: &str) -> String {
+fn replaced_text(from: &str, to: &str) -> String {
     assert!(OSCILLATOR.contains(from), "{from}");
     OSCILLATOR.replacen(from, to, 1)
 }
@@ -18,7 +18,7 @@ fn replaced(from: &str, to: &str) -> String {
 #[test]
 fn what_depends_on_a_drift_is_named() {
     let refused = |from: &str, to: &str, wanted: &str| {
-        let error = System::from_toml(&replaced(from, to)).unwrap_err().to_string();
+        let error = System::from_toml(&replaced_text(from, to)).unwrap_err().to_string();
         assert_eq!(error, format!("line 7: {wanted}"));
     };
     refused(
@@ -71,7 +71,7 @@ fn what_depends_on_a_drift_is_named() {
 /// does not depend on it.
 #[test]
 fn a_factor_of_zero_is_no_dependence() {
-    let text = replaced("push = \"a*cos + b\"", "push = \"a*cos + b - k*v\"");
+    let text = replaced_text("push = \"a*cos + b\"", "push = \"a*cos + b - k*v\"");
     let with = |k: &str| System::from_toml(&text.replace("a = 0.3", &format!("a = 0.3\nk = {k}")));
     assert_eq!(with("0").unwrap().drifts(), [3]);
     let error = with("1e-300").unwrap_err().to_string();
@@ -80,7 +80,7 @@ fn a_factor_of_zero_is_no_dependence() {
 
 #[test]
 fn a_drift_may_add_what_others_do() {
-    let text = replaced("[\"p = q + g\"]", "[\"p = q + g\", \"v = v + 2*q + cos\"]");
+    let text = replaced_text("[\"p = q + g\"]", "[\"p = q + g\", \"v = v + 2*q + cos\"]");
     assert_eq!(System::from_toml(&text).unwrap().drifts(), [3]);
 }
 
@@ -88,7 +88,7 @@ fn a_drift_may_add_what_others_do() {
 #[test]
 fn drifts_are_found_where_the_file_does_not_say() {
     let drifts = |by: &str| {
-        let system = System::from_toml(&replaced("drift = [\"v\"]\n", by)).unwrap();
+        let system = System::from_toml(&replaced_text("drift = [\"v\"]\n", by)).unwrap();
         (system.drift.clone(), system.drifts())
     };
     assert_eq!(drifts(""), (None, vec![3]));
@@ -111,7 +111,7 @@ fn a_drift_that_is_made_by_hand_is_checked() {
 
 /// The system with omega = 0.1, where Table 1 of the paper goes forward on an orbit of period two.
 fn table_1() -> (System, Model) {
-    let system = System::from_toml(&replaced("frequency = 1.4", "frequency = 0.1")).unwrap();
+    let system = System::from_toml(&replaced_text("frequency = 1.4", "frequency = 0.1")).unwrap();
     (system, Model::new(Parameters { omega: 0.1, ..Parameters::default() }).unwrap())
 }
 

@@ -101,9 +101,9 @@ v = 0
 ";
 
 /// The names of a run's events, with the events.
-fn named<T: Number>(text: &str, until: f64) -> (Vec<String>, Vec<Event<T>>) {
+fn named_events<T: Number>(text: &str, until: f64) -> (Vec<String>, Vec<Event<T>>) {
     let system = system(text);
-    let events = super::enclosed(&system, until);
+    let events = super::enclosed_events(&system, until);
     (names(&system, &events), events)
 }
 
@@ -114,12 +114,12 @@ fn errors_of_polynomial_motions_grow_with_powers_of_the_time() {
         (FALL, 20.0, &["impact", "end"], (2.0 * 1e6 / 9810.0_f64).sqrt()),
         (CASCADE, 20.0, &["half", "end"], 2.674_060_313_723_560_3),
     ] {
-        let (found, events) = named::<DoubleDouble>(text, until);
+        let (found, events) = named_events::<DoubleDouble>(text, until);
         assert_eq!(found, expected);
         assert!((events[0].time.value().to_f64() / time - 1.0).abs() < 1e-15);
         let error = events[0].errors.as_ref().unwrap().time;
         assert!(0.0 < error && error < 1e-26 * time, "{error:e}");
-        let (found, _) = named::<f64>(text, until);
+        let (found, _) = named_events::<f64>(text, until);
         assert_eq!(found, expected);
     }
 }
@@ -128,7 +128,7 @@ fn errors_of_polynomial_motions_grow_with_powers_of_the_time() {
 /// zero there.
 #[test]
 fn errors_of_a_rate_do_not_hide_small_flights() {
-    let (names, events) = named::<DoubleDouble>(BALL, 1000.0);
+    let (names, events) = named_events::<DoubleDouble>(BALL, 1000.0);
     assert_eq!(names.last().map(String::as_str), Some("accumulation"));
     let ending = &events[events.len() - 1];
     let What::End(Ending::Accumulation(from, to)) = ending.what else { panic!("{ending:?}") };
@@ -148,7 +148,7 @@ fn bounds_hold_far_from_time_zero() {
         ("330000001/3", 110_000_015.0, (0.020_433_771_650_834_535, -1.178_316_619_858_692_5e-18)),
         ("3000000000001/3", 1e12 + 15.0, (-0.070_732_609_434_886_74, -5.246_931_103_250_777e-18)),
     ] {
-        let (names, events) = named::<DoubleDouble>(&FORCED.replace("START", start), until);
+        let (names, events) = named_events::<DoubleDouble>(&FORCED.replace("START", start), until);
         assert_eq!(names[..2], ["half", "half"], "{start}");
         let found = events[1].state[1] - DoubleDouble::new(rate.0, rate.1);
         let (error, bound) = (found.to_f64().abs(), events[1].errors.as_ref().unwrap().state[1]);
@@ -164,7 +164,7 @@ fn errors_decay_with_a_motion_that_is_watched() {
 [[mode]]\nname = \"free\"\nequations = [\"x' = v\", \"v' = -x - c*v\"]
 [[mode.watch]]\nname = \"zero\"\nguard = \"x > 0\"\ndirection = \"both\"
 [start]\nmode = \"free\"\nx = 1\nv = 0\n";
-    let (names, all) = named::<DoubleDouble>(text, 2000.0);
+    let (names, all) = named_events::<DoubleDouble>(text, 2000.0);
     // A quarter turn and half turns of the frequency sqrt(0.99).
     let frequency = 0.99_f64.sqrt();
     let crossings = ((2000.0 * frequency - frequency.atan2(-0.1)) / std::f64::consts::PI) as usize;

@@ -1,6 +1,6 @@
 //! The times and states of endings, and the events that they name.
 
-use super::{enclosed, events, names, system};
+use super::{enclosed_events, events, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, Solver, What};
 use percuss::number::Number;
@@ -112,12 +112,12 @@ fn assert_decayed<T: Number<Bound = f64> + std::fmt::Debug>(ending: &Event<T>) {
 fn an_undecided_ending_shows_the_motion_that_is_known() {
     let touch = system(TOUCH);
     let left = |time: f64| std::f64::consts::LN_2 - time;
-    let all = enclosed::<f64>(&touch, 10.0);
+    let all = enclosed_events::<f64>(&touch, 10.0);
     assert_eq!(names(&touch, &all), ["half", "undecided"]);
     let ending = &all[1];
     assert!((1e-9..1e-6).contains(&left(ending.time.value())), "{ending:?}");
     assert_decayed(ending);
-    let all = enclosed::<DoubleDouble>(&touch, 10.0);
+    let all = enclosed_events::<DoubleDouble>(&touch, 10.0);
     assert_eq!(names(&touch, &all), ["half", "undecided"]);
     let ending = &all[1];
     assert!((0.0..1e-14).contains(&left(ending.time.value().to_f64())), "{ending:?}");
@@ -136,11 +136,11 @@ fn a_run_without_errors_ends_undecided_at_its_last_event() {
 #[test]
 fn an_event_is_given_out_before_an_entry_that_is_open() {
     let root = system(ROOT);
-    let all = enclosed::<f64>(&root, 10.0);
+    let all = enclosed_events::<f64>(&root, 10.0);
     assert_eq!(names(&root, &all), ["quarter", "half", "undecided"]);
     assert_at(last_two(&all));
     // 106 bits decide it.
-    let all = enclosed::<DoubleDouble>(&root, 10.0);
+    let all = enclosed_events::<DoubleDouble>(&root, 10.0);
     assert_eq!(names(&root, &all)[..3], ["quarter", "half", "root"]);
 }
 
@@ -201,7 +201,7 @@ fn a_tie_and_a_successor_that_are_open_are_not_passed() {
              equations = [\"x' = 0\", \"y' = 0\"]\n[parameters]\nlittle = 1e-18\n\
              [start]\nmode = \"first\"\nx = 2\ny = \"4 - little\"\n"
         ));
-        let all = enclosed::<f64>(&system, 5.0);
+        let all = enclosed_events::<f64>(&system, 5.0);
         assert_eq!(names(&system, &all), ["undecided"]);
         let (time, errors) = (all[0].time.value(), all[0].errors.as_ref().unwrap());
         assert!((0.69..0.6932).contains(&time), "{time:?}");
@@ -211,6 +211,6 @@ fn a_tie_and_a_successor_that_are_open_are_not_passed() {
         for (apart, error) in apart.iter().zip(&errors.state) {
             assert!(apart.abs() <= *error + 1e-15 && *error < 1e-13, "{apart:e} {error:e}");
         }
-        assert!(enclosed::<DoubleDouble>(&system, 1.5).len() > 1, "106 bits decide it");
+        assert!(enclosed_events::<DoubleDouble>(&system, 1.5).len() > 1, "106 bits decide it");
     }
 }

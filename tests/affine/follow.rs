@@ -14,7 +14,7 @@ fn systems() -> Vec<(System, f64)> {
     all
 }
 
-fn followed(event: &Event<f64>) -> Option<Followed> {
+fn followed_event(event: &Event<f64>) -> Option<Followed> {
     Some(match event.what {
         What::Until(_, until) => Followed::Until(until, event.mode),
         What::Watch(_, watch) => Followed::Watch(watch),
@@ -35,7 +35,7 @@ fn follow(
     let mut last = run.start();
     let mut follower: Follower<'_, f64> = solver.follow(start).unwrap();
     for event in run.by_ref() {
-        let Some(own) = followed(&event) else { break };
+        let Some(own) = followed_event(&event) else { break };
         let begins = follower.elapsed(&last);
         let state: Vec<f64> =
             last.state.iter().enumerate().map(|(n, value)| value + shift(n)).collect();

@@ -37,7 +37,7 @@ fn cells(events: &[Event<Bits424>]) -> Vec<Vec<Bits424>> {
 }
 
 /// The system that differs from another by so many steps of a name, and the step.
-fn moved(text: &str, name: &Name, steps: f64) -> (System, f64) {
+fn moved_system(text: &str, name: &Name, steps: f64) -> (System, f64) {
     match name {
         Name::Parameter(own) => {
             let value = file(text, &[]).system().unwrap().parameters[own];
@@ -61,7 +61,7 @@ fn moved(text: &str, name: &Name, steps: f64) -> (System, f64) {
 /// The differences of the cells of events by a name.
 fn differences(text: &str, name: &Name, count: usize) -> Vec<Vec<f64>> {
     let at = |steps: f64| {
-        let (system, step) = moved(text, name, steps);
+        let (system, step) = moved_system(text, name, steps);
         (cells(&events(&system, count)), step)
     };
     let ([(a, step), (b, _)], [(c, _), (d, _)]) = ([at(1.0), at(-1.0)], [at(2.0), at(-2.0)]);
@@ -85,11 +85,11 @@ fn gradients<T: Number>(text: &str, name: &Name, count: usize) -> Vec<Cells<T>> 
     let until = |system: &System| {
         T::exact(system.start.as_ref().unwrap().time.to_f64() + 40.0 * system.time_scale)
     };
-    walked(text, name, until, count)
+    walk(text, name, until, count)
 }
 
 /// The derivatives of the first events up to a time by a name.
-fn walked<T: Number>(
+fn walk<T: Number>(
     text: &str,
     name: &Name,
     until: impl Fn(&System) -> T,
@@ -205,7 +205,7 @@ fn a_driven_rigid_oscillator_by_its_forcing() {
 fn the_horizon_does_not_move() {
     let by_gravity = Name::read("g");
     let half = |_: &System| Bits212::exact(0.5);
-    let rows = walked(system!("bouncing-ball"), &by_gravity, half, 9);
+    let rows = walk(system!("bouncing-ball"), &by_gravity, half, 9);
     let end = rows.last().unwrap().as_ref().unwrap();
     // x = v t - g t^2/2 and v = v - g t.
     assert_eq!(end.iter().map(|it| it.0.to_f64()).collect::<Vec<_>>(), [0.0, -0.125, -0.5]);
@@ -214,14 +214,14 @@ fn the_horizon_does_not_move() {
 /// A horizon at the instant of an impact lies before or behind it.
 #[test]
 fn an_event_at_the_horizon_has_its_row_and_the_horizon_has_none() {
-    let rows = walked(system!("bouncing-ball"), &Name::read("g"), |_| Bits212::exact(1.5), 9);
+    let rows = walk(system!("bouncing-ball"), &Name::read("g"), |_| Bits212::exact(1.5), 9);
     let [impact, end] = &rows[..] else { panic!("{} rows", rows.len()) };
     assert!(impact.is_ok());
     assert_eq!(end.as_ref().unwrap_err(), &NoGradient::Undecided);
 }
 
 /// A ball thrown up at speed 2 with g = 8 turns at 1/4, after 1/4; it lands at 1/2.
-fn thrown(level: &str) -> String {
+fn thrown_ball(level: &str) -> String {
     format!(
         r#"
         schema = 1
@@ -244,19 +244,19 @@ fn thrown(level: &str) -> String {
 }
 
 fn outcomes(text: &str, name: &str, until: f64) -> Vec<Result<(), NoGradient>> {
-    let rows = walked(text, &Name::read(name), |_| Bits212::exact(until), 9);
+    let rows = walk(text, &Name::read(name), |_| Bits212::exact(until), 9);
     rows.into_iter().map(|it| it.map(|_| ())).collect()
 }
 
 #[test]
 fn a_touch_without_a_crossing_has_two_sides() {
     let touched = Err(NoGradient::Touch);
-    assert_eq!(outcomes(&thrown("0.25"), "g", 0.6), [touched, touched]);
-    assert_eq!(outcomes(&thrown("0.25"), "g", 0.24), [Ok(())]);
-    assert_eq!(outcomes(&thrown("0.375"), "g", 0.6), [Ok(()), Ok(())]);
+    assert_eq!(outcomes(&thrown_ball("0.25"), "g", 0.6), [touched, touched]);
+    assert_eq!(outcomes(&thrown_ball("0.25"), "g", 0.24), [Ok(())]);
+    assert_eq!(outcomes(&thrown_ball("0.375"), "g", 0.6), [Ok(()), Ok(())]);
     // The second flight is lower and touches nothing.
-    assert_eq!(outcomes(&thrown("0.1875"), "g", 0.6).len(), 4);
-    assert!(outcomes(&thrown("0.1875"), "g", 0.6).iter().all(Result::is_ok));
+    assert_eq!(outcomes(&thrown_ball("0.1875"), "g", 0.6).len(), 4);
+    assert!(outcomes(&thrown_ball("0.1875"), "g", 0.6).iter().all(Result::is_ok));
 }
 
 /// 3 cos t + 4 sin t reaches 5 at the angle of (3, 4), and x'' = -4 x from x = 3 at the rate 8 has

@@ -9,7 +9,13 @@ use percuss::number::Number;
 /// The largest number of pieces in a search of one guard from one event to the next.
 const MAX_PIECES: u64 = 1 << 18;
 
-fn in_form(parameters: &str, equations: &str, guard: &str, reset: &str, start: &str) -> System {
+fn system_in_form(
+    parameters: &str,
+    equations: &str,
+    guard: &str,
+    reset: &str,
+    start: &str,
+) -> System {
     let states: Vec<_> = start.lines().filter_map(|line| line.split_once(" = ")).collect();
     let states: Vec<_> = states.iter().map(|(name, _)| format!("{name:?}")).collect();
     system(&format!(
@@ -42,7 +48,7 @@ fn rates_whose_powers_underflow_make_no_polynomial() {
         for (guard, start, expected) in
             [("x > half", "x = -1\ny = 0", 2.0 * third), ("x < 0", "x = 0\ny = 1", half)]
         {
-            let system = in_form(&parameters, equations, guard, "x = x", start);
+            let system = system_in_form(&parameters, equations, guard, "x = x", start);
             for enclosed in [false, true] {
                 let (all, work) = run::<f64>(&system, 10.0 / rate, enclosed);
                 let is_there = name(&system, &all[0]) == "reached";
@@ -61,7 +67,7 @@ fn rates_whose_powers_underflow_make_no_polynomial() {
 
 /// An oscillation that meets half of its amplitude, at a sixth of a half turn.
 fn large(amplitude: &str, factor: &str) -> System {
-    in_form(
+    system_in_form(
         &format!("size = {amplitude}\nfactor = {factor}"),
         "\"x' = v\", \"v' = -x\"",
         "factor*x > factor*size/2",
@@ -91,7 +97,7 @@ fn large_states_and_coefficients_are_those_of_size_one() {
 #[test]
 fn the_fastest_decays_are_decided() {
     for rate in ["1e20", "1e60", "1e100"] {
-        let decay = in_form(
+        let decay = system_in_form(
             &format!("fast = {rate}"),
             "\"x' = -fast*x\", \"y' = -y\"",
             "1/2 > x + y",
@@ -108,7 +114,8 @@ fn the_fastest_decays_are_decided() {
 
 #[test]
 fn a_motion_that_overflows_ends_as_undecided_shortly_before() {
-    let growth = in_form("", "\"x' = 1000*x\", \"y' = 0\"", "y > x", "x = 0", "x = 1\ny = 0");
+    let growth =
+        system_in_form("", "\"x' = 1000*x\", \"y' = 0\"", "y > x", "x = 0", "x = 1\ny = 0");
     for enclosed in [true, false] {
         let (all, work) = run::<DoubleDouble>(&growth, 10.0, enclosed);
         assert_eq!(names(&growth, &all), ["undecided"]);
@@ -123,7 +130,7 @@ fn a_motion_that_overflows_ends_as_undecided_shortly_before() {
 /// waits for.
 #[test]
 fn a_search_that_has_no_end_is_given_up() {
-    let sum = in_form(
+    let sum = system_in_form(
         "level = 1.7071067811865475",
         "\"x' = y\", \"y' = -x\", \"c' = d\", \"d' = -2*c\"",
         "x + c > level",
@@ -143,7 +150,7 @@ fn a_search_that_has_no_end_is_given_up() {
 fn a_crest_that_underflows_is_right_or_undecided() {
     for (power, below) in (20..32).flat_map(|power| [(power, true), (power, false)]) {
         let sign = if below { "-" } else { "+" };
-        let crest = in_form(
+        let crest = system_in_form(
             "size = 1e-300",
             "\"x' = v\", \"v' = -x\"",
             &format!("x > size*(1 {sign} 1/10^{power})"),

@@ -2,7 +2,7 @@
 //!
 //! Beside it u decays from 2 to 1 and is set to 2 again, at every multiple of the logarithm of two.
 
-use super::{enclosed, names, system};
+use super::{enclosed_events, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, System};
 use std::f64::consts::{LN_2, PI};
@@ -48,7 +48,7 @@ fn times(events: &[Event<DoubleDouble>]) -> Vec<f64> {
 fn an_oscillation_touches_and_meets_after_events_that_leave_it_alone() {
     let guards = [("up", "x > 5"), ("down", "x < -5"), ("three", "x < 3"), ("eight", "v < -8")];
     let system = beside_a_decay([TURNING; 2], "", &guards, "x = 5\nv = 0");
-    let all = enclosed::<DoubleDouble>(&system, 7.0);
+    let all = enclosed_events::<DoubleDouble>(&system, 7.0);
     let mut expected: Vec<(f64, &str)> = (1..=10).map(|n| (f64::from(n) * LN_2, "set")).collect();
     for n in 0..3 {
         let time = 0.5 * 0.6_f64.acos() + f64::from(n) * PI;
@@ -67,7 +67,7 @@ fn an_oscillation_touches_and_meets_after_events_that_leave_it_alone() {
 fn a_parabola_touches_and_meets_after_events_that_leave_it_alone() {
     let guards = [("touch", "x > 0"), ("below", "16*x < -1"), ("clock", "4*s > 5")];
     let system = beside_a_decay([THROWN; 2], "", &guards, "x = -1\nv = 2");
-    let all = enclosed::<DoubleDouble>(&system, 2.0);
+    let all = enclosed_events::<DoubleDouble>(&system, 2.0);
     assert_eq!(names(&system, &all), ["set", "below", "clock", "set", "end"]);
     for (own, exact) in times(&all).iter().zip([LN_2, 1.25, 1.25, 2.0 * LN_2]) {
         assert!((own - exact).abs() < 1e-14, "{own} {exact}");
@@ -85,7 +85,7 @@ fn what_an_event_touches_is_not_kept() {
         [([TURNING; 2], ", \"v = 2*v\"", 2.0 * v, 2.0), ([TURNING, slower], "", v, 1.0)]
     {
         let system = beside_a_decay(equations, reset, &[("down", "x < -5")], "x = 5\nv = 0");
-        let all = enclosed::<DoubleDouble>(&system, 1.38);
+        let all = enclosed_events::<DoubleDouble>(&system, 1.38);
         assert_eq!(names(&system, &all), ["set", "down", "end"]);
         // x cos(w t) + v/w sin(w t) = -5, first.
         let (amplitude, phase) = (x.hypot(rate / omega), (-rate / omega).atan2(x));

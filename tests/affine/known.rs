@@ -1,6 +1,6 @@
 //! Systems whose events are known.
 
-use super::{BALL, PLASTIC, RELAY, SPHERES, STIFF, agreed, events, names, system};
+use super::{BALL, PLASTIC, RELAY, SPHERES, STIFF, agreed_events, events, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Ending, Solver, System, SystemFile, What};
 
@@ -48,7 +48,7 @@ fn a_ball_bounces_at_the_instants_of_a_geometric_series() {
 fn a_relay_settles_on_its_limit_cycle() {
     for (delta, half_period) in [(1e-2, 1.919201), (1e-4, 1.840734), (1e-6, 1.839883)] {
         let relay = with(RELAY, &[("delta", delta)]);
-        let events = agreed(&relay, 200.0, 1e-10);
+        let events = agreed_events(&relay, 200.0, 1e-10);
         let [.., (_, a), (_, b), (end, _)] = events.as_slice() else { panic!("too few events") };
         assert_eq!(end, "end");
         assert!((b - a - half_period).abs() < 1e-6, "{delta}: {}", b - a);
@@ -59,14 +59,14 @@ fn a_relay_settles_on_its_limit_cycle() {
 #[test]
 fn a_stiff_system_switches_at_its_published_instants() {
     let instants = [1.108_306_167_771, 2.129_685_355_155, 3.054_152_906_996, 4.075_532_094_379];
-    let events = agreed(&system(STIFF), 5.0, 4e-15);
+    let events = agreed_events(&system(STIFF), 5.0, 4e-15);
     for (event, instant) in events.iter().zip(instants) {
         assert!((event.1 - instant).abs() < 6e-13, "{event:?}");
     }
     assert!((events[4].1 - 4.999_999_646_220).abs() < 6e-13);
     // Dwells of 2e-7 and 5e-6.
     let fast = with(STIFF, &[("d2", -1.25), ("d4", 4.33), ("lower", 5.1)]);
-    let events = agreed(&fast, 1.1153, 1e-12);
+    let events = agreed_events(&fast, 1.1153, 1e-12);
     let dwells: Vec<_> = events.windows(2).map(|it| it[1].1 - it[0].1).collect();
     assert!(dwells.len() > 4 && dwells[..4].iter().all(|it| *it < 6e-6), "{dwells:?}");
 }
@@ -99,7 +99,7 @@ fn collisions_in_one_instant_follow_the_order_of_the_file() {
 /// At detachment gap, velocity and acceleration vanish, which rounding does not show.
 #[test]
 fn a_plastic_ball_detaches_with_a_triple_zero() {
-    let events = agreed(&system(PLASTIC), 60.0, 1e-12);
+    let events = agreed_events(&system(PLASTIC), 60.0, 1e-12);
     assert!(events.len() > 12);
     let kinds = events[..6].iter().map(|it| it.0.as_str()).collect::<Vec<_>>();
     assert_eq!(kinds, ["detach", "impact", "detach", "impact", "detach", "impact"]);

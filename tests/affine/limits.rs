@@ -1,12 +1,12 @@
 //! What two words of f64 cannot hold ends a run as undecided; what they can hold is right, however
 //! large the time, the frequency or the quotient of two couplings.
 
-use super::{enclosed, events, name, names, system};
+use super::{enclosed_events, events, name, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, Solver, System};
 
 /// A system of one mode with one watched guard.
-fn watched(states: &str, equations: &str, guard: &str, start: &str) -> System {
+fn watched_system(states: &str, equations: &str, guard: &str, start: &str) -> System {
     system(&format!(
         "schema = 1\nname = \"limits\"\nstates = [{states}]\n{}
 [[mode]]\nname = \"free\"\nequations = [{equations}]
@@ -30,11 +30,11 @@ fn ends_undecided(system: &System, all: &[Event<DoubleDouble>]) {
 #[test]
 fn states_that_overflow_are_not_given_out() {
     let text = "\"x' = 1\", \"y' = 1000*y\"";
-    let system = watched("\"x\", \"y\"", text, "x > 2", "x = 0\ny = 1");
-    ends_undecided(&system, &enclosed(&system, 3.0));
+    let system = watched_system("\"x\", \"y\"", text, "x > 2", "x = 0\ny = 1");
+    ends_undecided(&system, &enclosed_events(&system, 3.0));
     assert_eq!(names(&system, &events::<f64>(&system, 3.0)), ["undecided"]);
     let text = "\"x' = 1\", \"y' = -1000*y\"";
-    let system = watched("\"x\", \"y\"", text, "x > -2", "x = 0\ny = 1");
+    let system = watched_system("\"x\", \"y\"", text, "x > -2", "x = 0\ny = 1");
     let solver = Solver::<DoubleDouble>::backward(&system).unwrap();
     let start = system.start.as_ref().unwrap();
     let until = DoubleDouble::new(-3.0, 0.0);
@@ -45,10 +45,10 @@ fn states_that_overflow_are_not_given_out() {
 #[test]
 fn an_angle_beyond_two_to_the_fifty_is_not_decided() {
     let text = "\"x' = v\", \"v' = -2*x\"";
-    let system = watched("\"x\", \"v\"", text, "x > 10", "x = 1\nv = 0");
-    assert_eq!(names(&system, &enclosed::<DoubleDouble>(&system, 7e14)), ["end"]);
+    let system = watched_system("\"x\", \"v\"", text, "x > 10", "x = 1\nv = 0");
+    assert_eq!(names(&system, &enclosed_events::<DoubleDouble>(&system, 7e14)), ["end"]);
     for until in [9e14, 1e15, 1e308] {
-        ends_undecided(&system, &enclosed(&system, until));
+        ends_undecided(&system, &enclosed_events(&system, until));
     }
 }
 
@@ -58,12 +58,12 @@ fn an_angle_beyond_two_to_the_fifty_is_not_decided() {
 fn small_couplings_are_not_taken_for_rounding() {
     for exponent in [20, 45, 46, 60, 120] {
         let unit = format!("x = 2\nv = 0\n[parameters]\ns = 1e{exponent}");
-        let fall = watched("\"x\", \"v\"", "\"x' = v/s\", \"v' = -s\"", "0 > x", &unit);
+        let fall = watched_system("\"x\", \"v\"", "\"x' = v/s\", \"v' = -s\"", "0 > x", &unit);
         let decay = format!("x = 5\nv = 0\ny = 1\n[parameters]\ns = 1e{}", 2 * exponent);
         let equations = "\"x' = v\", \"v' = -10\", \"y' = -s*y\"";
-        let beside = watched("\"x\", \"v\", \"y\"", equations, "0 > x", &decay);
+        let beside = watched_system("\"x\", \"v\", \"y\"", equations, "0 > x", &decay);
         for (system, expected) in [(&fall, 2.0), (&beside, 1.0)] {
-            let all = enclosed::<DoubleDouble>(system, 3.0);
+            let all = enclosed_events::<DoubleDouble>(system, 3.0);
             assert_eq!(names(system, &all), ["reached", "end"], "{exponent}");
             assert!((all[0].time.value().words().0 - expected).abs() < 1e-15, "{exponent}");
             let plain = names(system, &events::<f64>(system, 3.0));
@@ -73,8 +73,8 @@ fn small_couplings_are_not_taken_for_rounding() {
     // x = s (sin t - 2 t), at -2 s.
     for exponent in [0, 100, 200, 250] {
         let start = format!("x = 0\n[parameters]\ns = 1e-{exponent}");
-        let system = watched("\"x\"", "\"x' = s*cos - 2*s\"", "x > -2*s", &start);
-        let all = enclosed::<DoubleDouble>(&system, 3.0);
+        let system = watched_system("\"x\"", "\"x' = s*cos - 2*s\"", "x > -2*s", &start);
+        let all = enclosed_events::<DoubleDouble>(&system, 3.0);
         assert_eq!(names(&system, &all), ["reached", "end"], "{exponent}");
         let time = all[0].time.value().words().0;
         assert!((time.sin() - 2.0 * time + 2.0).abs() < 1e-15, "{exponent}: {time}");
@@ -87,8 +87,8 @@ fn a_cluster_is_right_after_ten_to_the_fifteen_radians() {
     let equations = "\"p' = 10^6*q\", \"q' = -10^6*p\", \"r' = 1001000*s\", \"s' = -1001000*r\", \
                      \"y' = 1\"";
     let start = "p = 1\nq = 0\nr = 1\ns = 0\ny = 0";
-    let system = watched("\"p\", \"q\", \"r\", \"s\", \"y\"", equations, "y > 10^9", start);
-    let all = enclosed::<DoubleDouble>(&system, 2e9);
+    let system = watched_system("\"p\", \"q\", \"r\", \"s\", \"y\"", equations, "y > 10^9", start);
+    let all = enclosed_events::<DoubleDouble>(&system, 2e9);
     assert_eq!(name(&system, &all[0]), "reached");
     for (n, expected) in [(0, -0.513_193_737_786_97), (1, -0.858_272_793_170_24)] {
         let (value, error) = (all[0].state[n].words().0, all[0].errors.as_ref().unwrap().state[n]);
@@ -121,8 +121,8 @@ fn a_phase_is_rounded_by_its_size() {
              {b:?}\nlc = {c:?}"
         );
         let states = "\"p\", \"q\", \"r\", \"s\", \"y\"";
-        let system = watched(states, equations, "p + r + y > la + lb + lc", &start);
-        ends_undecided(&system, &enclosed(&system, until));
+        let system = watched_system(states, equations, "p + r + y > la + lb + lc", &start);
+        ends_undecided(&system, &enclosed_events(&system, until));
     }
 }
 
@@ -166,8 +166,8 @@ fn eigenvalues_that_nearly_coincide_are_no_reason_to_refuse() {
     }
     let start = format!("x0 = 0\nx1 = 0\nx2 = 0\nx3 = 0\nx4 = 1\n[parameters]\n{parameters}");
     let states = "\"x0\", \"x1\", \"x2\", \"x3\", \"x4\"";
-    let system = watched(states, &equations.join(", "), "x3 > 7/10", &start);
-    let all = enclosed::<DoubleDouble>(&system, 5.0);
+    let system = watched_system(states, &equations.join(", "), "x3 > 7/10", &start);
+    let all = enclosed_events::<DoubleDouble>(&system, 5.0);
     // x3 = t exp(-t/2) but for 1e-12.
     assert_eq!(names(&system, &all), ["reached", "reached", "end"]);
     let time = all[0].time.value().words().0;
@@ -179,7 +179,7 @@ fn eigenvalues_that_nearly_coincide_are_no_reason_to_refuse() {
 #[test]
 fn what_is_left_of_a_fast_decay_is_within_its_bound() {
     let system = system(include_str!("coupled.system.toml"));
-    let all = enclosed::<DoubleDouble>(&system, 20.0);
+    let all = enclosed_events::<DoubleDouble>(&system, 20.0);
     assert_eq!(name(&system, &all[0]), "reached");
     // Its true size is exp(-1.2e5)/4.
     let (value, error) = (all[0].state[2].words().0, all[0].errors.as_ref().unwrap().state[2]);
@@ -211,7 +211,7 @@ fn an_error_of_a_height_is_kept_over_impacts() {
 [[mode.until]]\nname = \"reached\"\nguard = \"-x > 0\"\nreset = [\"v = -v/2\"]
 [start]\nmode = \"free\"\nx = 1.3589779585384858\nv = -0.08378768292928207\n",
     );
-    let all = enclosed::<f64>(&system, 12.0);
+    let all = enclosed_events::<f64>(&system, 12.0);
     for (n, event) in all.iter().enumerate() {
         let (x, error) = (event.state[0], event.errors.as_ref().unwrap().state[0]);
         assert!(x.abs() <= error || name(&system, event) == "end", "{n}: {x:e} {error:e}");

@@ -62,7 +62,7 @@ fn events<T: Number>(system: &System, until: f64) -> Vec<Event<T>> {
 }
 
 /// All events of a run that follows its errors, the ending included.
-fn enclosed<T: Number>(system: &System, until: f64) -> Vec<Event<T>> {
+fn enclosed_events<T: Number>(system: &System, until: f64) -> Vec<Event<T>> {
     let solver = Solver::<T>::new(system).unwrap();
     let start = system.start.as_ref().unwrap();
     solver.run_enclosed(start, T::exact(until)).unwrap().collect()
@@ -89,7 +89,7 @@ fn names<T: Number>(system: &System, events: &[Event<T>]) -> Vec<String> {
 }
 
 /// Events and times in f64, which are also those of 106 bits but for rounding.
-fn agreed(system: &System, until: f64, room: f64) -> Vec<(String, f64)> {
+fn agreed_events(system: &System, until: f64, room: f64) -> Vec<(String, f64)> {
     let (narrow, wide) = (events::<f64>(system, until), events::<DoubleDouble>(system, until));
     assert_eq!(names(system, &narrow), names(system, &wide));
     let both = narrow.iter().zip(&wide);

@@ -1,7 +1,7 @@
 //! The oscillator of this crate, written down as a piecewise-affine system.
 
-use super::tables::printed;
-use super::{enclosed, events};
+use super::tables::last_half_unit;
+use super::{enclosed_events, events};
 use crate::support::reference::{self, Row, Table};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, Rational, System, SystemFile, What};
@@ -83,7 +83,7 @@ fn holds(table: &Table, row: &Row, system: &System, event: &Event<DoubleDouble>)
     system.modes[event.mode].name == row.token
         && pairs.all(|((own, error), cell)| {
             let exact = DoubleDouble::from(cell);
-            (own - exact).words().0.abs() <= error + printed(exact)
+            (own - exact).words().0.abs() <= error + last_half_unit(exact)
         })
 }
 
@@ -105,7 +105,7 @@ fn the_oscillators_own_tables_are_reproduced_to_every_digit() {
     let (mut tables, mut events, mut narrow, mut largest) = (0, 0, 0, 0.0);
     for table in reference::tables("events") {
         let (system, until, name) = (system_of(&table), horizon(&table), &table.name);
-        let run = enclosed::<DoubleDouble>(&system, until);
+        let run = enclosed_events::<DoubleDouble>(&system, until);
         // The first row is the start, the last the horizon.
         let [_, rows @ .., _] = &table.rows[..] else { panic!("{name}") };
         let crossings: Vec<_> =
@@ -115,7 +115,7 @@ fn the_oscillators_own_tables_are_reproduced_to_every_digit() {
             assert!(holds(&table, row, &system, event), "{name} {row:?} {event:?}");
             largest = f64::max(largest, event.errors.as_ref().unwrap().time);
         }
-        let in_f64 = enclosed::<f64>(&system, until);
+        let in_f64 = enclosed_events::<f64>(&system, until);
         let decided = in_f64.iter().take_while(|it| matches!(it.what, What::Until(..)));
         for (own, event) in decided.zip(&crossings) {
             assert!(is_within(own, event), "{name} {own:?} {event:?}");

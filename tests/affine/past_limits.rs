@@ -1,6 +1,6 @@
 //! Runs that go on after the limit at which impacts accumulate.
 
-use super::{enclosed, events, names};
+use super::{enclosed_events, events, names};
 use percuss::affine::{Bits212, DoubleDouble, Event, What};
 use percuss::number::Number;
 use percuss::{Ending, Proved, System};
@@ -99,10 +99,10 @@ proptest! {
         let end = closed_form::<f64>(numbers, 3.0)[0] + 1.0;
         judge(&events::<f64>(&ball, end), numbers, [1e-12, 1e-12]);
         let most = |bits: f64| 39_f64.powi(2) * (-2.0 * bits / 3.0).exp2();
-        judge(&enclosed::<DoubleDouble>(&ball, end), numbers, [1e-29, most(106.0)]);
-        judge(&enclosed::<Bits212>(&ball, end), numbers, [1e-60, most(212.0)]);
+        judge(&enclosed_events::<DoubleDouble>(&ball, end), numbers, [1e-29, most(106.0)]);
+        judge(&enclosed_events::<Bits212>(&ball, end), numbers, [1e-60, most(212.0)]);
         let [f64s, wide] = [names(&ball, &events::<f64>(&ball, end)),
-            names(&ball, &enclosed::<Bits212>(&ball, end))];
+            names(&ball, &enclosed_events::<Bits212>(&ball, end))];
         prop_assert_eq!(&f64s, &wide);
         prop_assert_eq!(f64s.last().map(String::as_str), Some("end"));
     }
@@ -372,8 +372,8 @@ proptest! {
     ) {
         let masses = two_masses([k, c, load, r, kick]);
         let [narrow, wide] = [
-            enclosed::<DoubleDouble>(&masses, 25.0).iter().map(row).collect::<Vec<_>>(),
-            enclosed::<Bits212>(&masses, 25.0).iter().map(row).collect::<Vec<_>>(),
+            enclosed_events::<DoubleDouble>(&masses, 25.0).iter().map(row).collect::<Vec<_>>(),
+            enclosed_events::<Bits212>(&masses, 25.0).iter().map(row).collect::<Vec<_>>(),
         ];
         for (narrow, wide) in narrow.iter().zip(&wide) {
             if narrow.0 == "undecided" || wide.0 == "undecided" {

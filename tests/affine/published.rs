@@ -1,7 +1,7 @@
 //! The dynamics of systems, held to what others have published: each value to the digits that its
 //! source has, or to its closed form.
 
-use super::branches::{Varied, assert_value, only};
+use super::branches::{Varied, assert_value, only_bifurcation};
 use super::{events, system};
 use percuss::affine::{SectionMap, Solver, System};
 use percuss::dynamics::continuation::BifurcationKind;
@@ -29,7 +29,7 @@ fn a_mass_with_dry_friction_moves_as_far_as_den_hartog_says() {
     for (frequency, a) in [(0.8, 1.5), (0.8, 2.0), (1.3, 1.5), (0.65, 2.5)] {
         let set = [("frequency", frequency)];
         let varied = Varied::new(&slipping(), Section::event("stop"), "A", &set);
-        let orbit = varied.map(a, |map| map.orbit(&varied.settled(a, 60), 2).unwrap());
+        let orbit = varied.map(a, |map| map.orbit(&varied.settled_return(a, 60), 2).unwrap());
         let [v, u] = den_hartogs(frequency);
         let known = (a * a * v * v - u * u).sqrt();
         let found = orbit.points[0].state[0].abs();
@@ -43,9 +43,12 @@ fn a_mass_with_dry_friction_begins_to_stop_where_den_hartog_says() {
     for (frequency, ends) in [(0.8, [1.5, 1.1]), (0.65, [2.5, 1.2])] {
         let set = [("frequency", frequency)];
         let varied = Varied::new(&slipping(), Section::strobe(0.0), "A", &set);
-        let branch = varied.follow(&varied.settled(ends[0], 100), 1, ends);
+        let branch = varied.follow(&varied.settled_return(ends[0], 100), 1, ends);
         let [v, u] = den_hartogs(frequency);
-        assert_value(only(&branch, BifurcationKind::Corner), u.hypot(frequency.powi(-2)) / v);
+        assert_value(
+            only_bifurcation(&branch, BifurcationKind::Corner),
+            u.hypot(frequency.powi(-2)) / v,
+        );
     }
 }
 
@@ -104,7 +107,7 @@ fn the_double_scroll_has_its_published_exponent_and_dimension() {
 }
 
 /// The flow of x'' + 2 zeta x' + x = 0 from x = 0 with a speed of 1: place and speed.
-fn struck(zeta: f64, time: f64) -> [f64; 2] {
+fn struck_flow(zeta: f64, time: f64) -> [f64; 2] {
     let damped = (1.0 - zeta * zeta).sqrt();
     let (sin, cos) = (damped * time).sin_cos();
     let decay = (-zeta * time).exp();
@@ -131,17 +134,17 @@ fn an_impact_oscillators_map_has_a_square_root_at_the_touch() {
         let all = events::<f64>(&system(&text), period);
         (all.len(), all[all.len() - 1].state.clone())
     };
-    let [after, _] = struck(zeta, touched);
+    let [after, _] = struck_flow(zeta, touched);
     let sign = after.signum();
     let off = |speed: f64| {
         let (count, hit) = end(sign * speed);
         let (missed, _) = end(-sign * speed);
         assert_eq!((count, missed), (2, 1), "{speed}");
         let free = [d * cos, d * frequency * sin];
-        let [x, v] = struck(zeta, period);
+        let [x, v] = struck_flow(zeta, period);
         let smooth = [free[0] + sign * speed * x, free[1] + sign * speed * v];
         let blow = (1.0 + r) * (2.0 * frequency * frequency * d * after.abs() * speed).sqrt();
-        let carried = struck(zeta, period - touched);
+        let carried = struck_flow(zeta, period - touched);
         (0..2)
             .map(|n| ((hit[n] - smooth[n]) / (-blow * carried[n]) - 1.0).abs())
             .fold(0.0, f64::max)
@@ -210,7 +213,8 @@ fn a_mass_on_a_belt_goes_as_far_as_friction_with_two_slopes_says() {
         let set = [("rise", rise), ("belt", belt)];
         for (section, known) in ["turn", "return"].into_iter().zip(ends(fall, rise, belt)) {
             let varied = Varied::new(TWO_SLOPES, Section::event(section), "fall", &set);
-            let orbit = varied.map(fall, |map| map.orbit(&varied.settled(fall, 5), 1).unwrap());
+            let orbit =
+                varied.map(fall, |map| map.orbit(&varied.settled_return(fall, 5), 1).unwrap());
             let found = orbit.points[0].state[0];
             assert!((found - known).abs() < 1e-13 * known.abs(), "{fall} {rise}: {found} {known}");
             assert!(orbit.multipliers.iter().all(|it| it[0].abs() < 1e-9), "{orbit:?}");
@@ -226,8 +230,8 @@ fn a_mass_on_a_belt_sticks_while_friction_falls_faster_than_it_rises() {
     for (rise, first) in [(0.2, 0.4), (0.5, 0.8)] {
         let set = [("rise", rise)];
         let varied = Varied::new(TWO_SLOPES, Section::event("turn"), "fall", &set);
-        let branch = varied.follow(&varied.settled(first, 20), 1, [first, 0.75 * rise]);
-        let grazing = only(&branch, BifurcationKind::Grazing);
+        let branch = varied.follow(&varied.settled_return(first, 20), 1, [first, 0.75 * rise]);
+        let grazing = only_bifurcation(&branch, BifurcationKind::Grazing);
         assert!((grazing.value - rise).abs() <= grazing.error.max(1e-12), "{grazing:?}");
     }
 }

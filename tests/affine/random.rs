@@ -103,7 +103,7 @@ fn pair(matrix: &mut [Vec<f64>], at: usize, rate: f64, frequency: f64) -> usize 
 }
 
 /// A matrix of the same eigenvalues, whose co-ordinates are mixed by sums and differences.
-fn mixed(draw: &mut Draw, mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+fn mix(draw: &mut Draw, mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let size = matrix.len();
     for _ in 0..draw.below(2 * size) {
         let (i, j, sign) = (draw.below(size), draw.below(size), draw.of(&[-1.0, 1.0]));
@@ -152,7 +152,7 @@ pub fn system(seed: u64) -> String {
     let (mut parameters, mut modes) = (String::new(), String::new());
     for mode in 0..count {
         let plain = spectrum(&mut draw, size);
-        let matrix = mixed(&mut draw, plain);
+        let matrix = mix(&mut draw, plain);
         let mut equations = Vec::new();
         for (n, row) in matrix.iter().enumerate() {
             let mut text = format!("x{n}' = {}/8", draw.below(9) as i64 - 4);

@@ -65,7 +65,7 @@ fn kinds(basins: &ReturnBasins) -> Vec<(AttractorKind, Option<usize>)> {
 }
 
 /// The oscillator's own labels of starts with q = 0 that fly.
-fn own(omega: f64, window: [f64; 4], columns: u32, rows: u32) -> Basins {
+fn own_labels(omega: f64, window: [f64; 4], columns: u32, rows: u32) -> Basins {
     let parameters = Parameters { xi: 0.1, omega, ..Parameters::default() };
     let map = StrobeMap::new(Model::new(parameters).unwrap(), Instant::at(omega, 0.0, 0));
     let [left, right, low, high] = window;
@@ -89,13 +89,14 @@ fn census(omega: f64, attractors: usize) -> usize {
     let window = [-3.0, q_and_gap, -1.5, 1.5];
     let system = with(OSCILLATOR, &[("xi", 0.1), ("frequency", omega)], "no-contact");
     let found = basins(&system, &Section::strobe(0.0), &plane(window, columns, rows), 60);
-    let known = own(omega, window, columns, rows);
+    let known = own_labels(omega, window, columns, rows);
     let listed = known.attractors.iter();
     let listed: Vec<_> = listed.map(|it| (it.kind, it.period().map(|it| it as usize))).collect();
     assert_eq!(kinds(&found), listed, "omega = {omega}");
     assert_eq!(listed.len(), attractors, "omega = {omega}");
     let shifted = [1e-12, -1e-12].map(|by| {
-        own(omega, [window[0] + by, window[1] + by, window[2], window[3]], columns, rows).labels
+        own_labels(omega, [window[0] + by, window[1] + by, window[2], window[3]], columns, rows)
+            .labels
     });
     let mut differ = 0;
     for (n, (label, own)) in found.labels.iter().zip(&known.labels).enumerate() {

@@ -37,7 +37,7 @@ fn passages<'a>(
 
 /// The state and the time at which a motion returns in 212 bits from a place that is moved by a
 /// change of the state and of the time.
-fn returned(
+fn returned_place(
     map: &SectionMap<'_, Bits212>,
     place: &Place<f64>,
     change: &[f64],
@@ -73,11 +73,12 @@ fn check(text: &str, section: &Section, skips: &[usize]) {
         for (column, delay) in first.at_return.iter().zip(&first.delays) {
             let scaled: Vec<f64> = column.iter().map(|it| it / largest).collect();
             let delay = delay / largest;
-            let ends = [STEP, -STEP].map(|it| returned(&wide, &first.image, &scaled, delay, it));
+            let ends =
+                [STEP, -STEP].map(|it| returned_place(&wide, &first.image, &scaled, delay, it));
             let [above, below] = &ends;
             let differences: Vec<f64> =
                 above.iter().zip(below).map(|(a, b)| (*a - *b).to_f64() / (2.0 * STEP)).collect();
-            let predicted = along(&second, &scaled, delay, &rates);
+            let predicted = changes_along(&second, &scaled, delay, &rates);
             let size = second.at_return.iter().flatten().fold(1.0, |a: f64, b| a.max(b.abs()));
             for (found, expected) in predicted.iter().zip(&differences) {
                 assert!(
@@ -91,7 +92,7 @@ fn check(text: &str, section: &Section, skips: &[usize]) {
 }
 
 /// The changes of a passage's state and time for a change of the place's.
-fn along(passage: &Passage<f64>, change: &[f64], delay: f64, rates: &[f64]) -> Vec<f64> {
+fn changes_along(passage: &Passage<f64>, change: &[f64], delay: f64, rates: &[f64]) -> Vec<f64> {
     let fixed: Vec<f64> = change.iter().zip(rates).map(|(it, rate)| it - rate * delay).collect();
     let sum = |entry: &dyn Fn(usize) -> f64| {
         fixed.iter().enumerate().map(|(j, it)| it * entry(j)).sum::<f64>()

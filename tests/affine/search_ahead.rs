@@ -38,14 +38,14 @@ const SYSTEMS: [&str; 9] = [
 
 /// The events of a run that does not stop before a time, its ending the last of them, and the
 /// number of choices that rounding left open.
-fn whole(solver: &Solver<f64>, place: &Place<f64>, until: Time<f64>) -> (Vec<Event<f64>>, u64) {
+fn whole_run(solver: &Solver<f64>, place: &Place<f64>, until: Time<f64>) -> (Vec<Event<f64>>, u64) {
     let mut run = solver.run_at(place, until);
     let events = run.by_ref().take(MAX_EVENTS).collect();
     (events, run.work().undecidable)
 }
 
 /// The events of a run that stops at each of these times, and searches so far ahead.
-fn stopped(
+fn stopped_run(
     solver: &Solver<f64>,
     place: &Place<f64>,
     stops: &[Time<f64>],
@@ -80,13 +80,13 @@ fn is_near(found: f64, expected: f64) -> bool {
 /// something open or the run ends before; gives the number of events.
 fn check(solver: &Solver<f64>, place: &Place<f64>, stops: &[Time<f64>]) -> usize {
     let name = &solver.system().name;
-    let (expected, open) = whole(solver, place, *stops.last().unwrap());
+    let (expected, open) = whole_run(solver, place, *stops.last().unwrap());
     if open > 0 || !expected.last().is_some_and(is_stop) {
         return 0;
     }
     // A search that ends between two events goes on from there.
     for reach in [FAR_REACH, 0.3 * solver.system().time_scale] {
-        let (found, open) = stopped(solver, place, stops, reach);
+        let (found, open) = stopped_run(solver, place, stops, reach);
         assert_eq!(open, 0, "{name}");
         let between: Vec<_> = found.iter().filter(|it| !is_stop(it)).collect();
         assert_eq!(between.len(), expected.len() - 1, "{name}: {between:?} {expected:?}");
@@ -101,7 +101,7 @@ fn check(solver: &Solver<f64>, place: &Place<f64>, stops: &[Time<f64>]) -> usize
             is_stop(it) && between.iter().all(|other| apart(other) > GROWN_ROUNDING)
         };
         for stop in found.iter().filter(is_clear) {
-            let (there, _) = whole(solver, place, stop.time);
+            let (there, _) = whole_run(solver, place, stop.time);
             let there = there.last().unwrap();
             assert_eq!(stop.mode, there.mode, "{name} {:?}", stop.time);
             let entries = stop.state.iter().zip(&there.state);
@@ -136,7 +136,7 @@ fn a_run_that_stops_at_its_events_has_each_once() {
     for text in SYSTEMS {
         let system = System::parse("test.system.toml", text).unwrap();
         let (solver, place) = solver_and_place(&system);
-        let (events, _) = whole(&solver, &place, place.time.after(HORIZON * system.time_scale));
+        let (events, _) = whole_run(&solver, &place, place.time.after(HORIZON * system.time_scale));
         let mut stops: Vec<_> = events.iter().map(|it| it.time).collect();
         stops.push(place.time.after((HORIZON + 1.0) * system.time_scale));
         stops.dedup_by(|a, b| a.value() <= b.value());

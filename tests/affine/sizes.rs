@@ -1,11 +1,11 @@
 //! Co-ordinates and terms of very different sizes: what is small has digits of its own.
 
-use super::{enclosed, events, names, system};
+use super::{enclosed_events, events, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Solver, Time};
 
 /// A watched motion of one mode.
-fn watched(states: &[&str], equations: &[&str], guards: &[&str], start: &str) -> String {
+fn watched_system(states: &[&str], equations: &[&str], guards: &[&str], start: &str) -> String {
     let list =
         |all: &[&str]| all.iter().map(|it| format!("\"{it}\"")).collect::<Vec<_>>().join(", ");
     let watch = |(name, guard): (char, &&str)| {
@@ -29,8 +29,8 @@ fn crossings_that_the_rounding_of_a_slope_hides_are_counted() {
                  l = 0.7783061936508475";
     let equations = ["a' = 0", "b' = 0", "x' = p*a + q*b", "y' = 1"];
     let guards = ["y > k", "x > l"];
-    let system = system(&watched(&["a", "b", "x", "y"], &equations, &guards, start));
-    assert_eq!(names(&system, &enclosed::<DoubleDouble>(&system, 2.0)), ["n", "m", "end"]);
+    let system = system(&watched_system(&["a", "b", "x", "y"], &equations, &guards, start));
+    assert_eq!(names(&system, &enclosed_events::<DoubleDouble>(&system, 2.0)), ["n", "m", "end"]);
     let solver = Solver::<f64>::new(&system).unwrap();
     let mut run = solver.run(system.start.as_ref().unwrap(), 2.0).unwrap();
     let own: Vec<_> = run.by_ref().collect();
@@ -44,8 +44,9 @@ fn a_drift_of_any_size_is_kept() {
     for c in [1e-20, 1e-85, 1e-95, 1e-150] {
         let start = format!("x = -{c:e}\nd = {c:e}\na = 0\nb = {c:e}\n[parameters]\nc = {c:e}");
         let equations = ["x' = d - a", "d' = b + c", "a' = b", "b' = -a"];
-        let system = system(&watched(&["x", "d", "a", "b"], &equations, &["x > 2*c"], &start));
-        let all = enclosed::<DoubleDouble>(&system, 3.0);
+        let system =
+            system(&watched_system(&["x", "d", "a", "b"], &equations, &["x > 2*c"], &start));
+        let all = enclosed_events::<DoubleDouble>(&system, 3.0);
         assert_eq!(names(&system, &all), ["m", "end"], "{c:e}");
         let time = all[0].time.value().words().0;
         assert!((time - (7.0_f64.sqrt() - 1.0)).abs() < 1e-15, "{c:e}: {time}");
@@ -58,7 +59,8 @@ fn a_drift_of_any_size_is_kept() {
 #[test]
 fn a_small_co_ordinate_is_moved_by_a_large_one_in_a_short_time() {
     let system = system(include_str!("sizes.system.toml"));
-    let (narrow, wide) = (enclosed::<f64>(&system, 1.0), enclosed::<DoubleDouble>(&system, 1.0));
+    let (narrow, wide) =
+        (enclosed_events::<f64>(&system, 1.0), enclosed_events::<DoubleDouble>(&system, 1.0));
     let (own, truth) = (&narrow[0], &wide[0]);
     let off = (own.time.high - truth.time.value().words().0).abs();
     let most = own.errors.as_ref().unwrap().time;
@@ -71,7 +73,7 @@ fn a_small_co_ordinate_is_moved_by_a_large_one_in_a_short_time() {
 fn fast_turns_keep_their_phase() {
     let start = "x = 1\ny = 0\ns = 0\n[parameters]\nf = 1e6\nl = 0.3";
     let equations = ["x' = f*y", "y' = -f*x", "s' = 1"];
-    let text = watched(&["x", "y", "s"], &equations, &["s > l"], start);
+    let text = watched_system(&["x", "y", "s"], &equations, &["s > l"], start);
     let text = text
         .replace("mode.watch", "mode.until")
         .replace("direction = \"both\"", "reset = [\"s = -1\"]");
@@ -81,7 +83,8 @@ fn fast_turns_keep_their_phase() {
     let off = (end(&own.last().unwrap().state)[0] - 1e6_f64.cos()).abs();
     assert!(off < 1e-15, "{off:e}");
     let tied = "x = 3\ny = 1\n[parameters]\np = 4298.189831273655\nq = 5372.737289092069";
-    let tied = system(&watched(&["x", "y"], &["x' = p*y - p*x", "y' = p*y - q*x"], &[], tied));
+    let tied =
+        system(&watched_system(&["x", "y"], &["x' = p*y - p*x", "y' = p*y - q*x"], &[], tied));
     let (narrow, wide) =
         (Solver::<f64>::new(&tied).unwrap(), Solver::<DoubleDouble>::new(&tied).unwrap());
     let start = tied.start.as_ref().unwrap();

@@ -29,7 +29,7 @@ fn rig(phi: &str, mode: &str, [x, v]: [&str; 2]) -> String {
 
 const LIST: &str = r#"[{ when = "x > 1", mode = "contact" }, { mode = "free" }]"#;
 
-fn chosen(text: &str) -> usize {
+fn chosen_mode(text: &str) -> usize {
     System::from_toml(text).expect("a system").start().expect("a start").mode
 }
 
@@ -37,14 +37,14 @@ fn chosen(text: &str) -> usize {
 /// at the start, then its rate.
 #[test]
 fn the_first_derivative_that_is_not_zero_decides() {
-    let on = |x, v| chosen(&rig("0", LIST, [x, v]));
+    let on = |x, v| chosen_mode(&rig("0", LIST, [x, v]));
     assert_eq!([on("0.5", "9"), on("1.5", "-9")], [0, 1]);
     assert_eq!([on("1", "-1"), on("1", "1")], [0, 1]);
     // v' = cos theta is 1 at theta = 0.
     assert_eq!(on("1", "0"), 1);
     // It is negative at theta = 3, and positive at theta = 1.
-    assert_eq!(chosen(&rig("3", LIST, ["1", "0"])), 0);
-    assert_eq!(chosen(&rig("1", LIST, ["1", "0"])), 1);
+    assert_eq!(chosen_mode(&rig("3", LIST, ["1", "0"])), 0);
+    assert_eq!(chosen_mode(&rig("1", LIST, ["1", "0"])), 1);
 }
 
 /// A start on the surface by the model is on it whatever theta is: cos(3) is no number that a
@@ -53,11 +53,11 @@ fn the_first_derivative_that_is_not_zero_decides() {
 fn a_start_that_is_on_a_surface_by_the_model_is_on_it() {
     let list = r#"[{ when = "x - cos > 1", mode = "contact" }, { mode = "free" }]"#;
     // d(x - cos)/dt = v + 2 sin, and sin(3) is positive.
-    assert_eq!(chosen(&rig("3", list, ["\"1 + cos\"", "0"])), 1);
-    assert_eq!(chosen(&rig("3", list, ["\"1 + cos\"", "\"-3*sin\""])), 0);
+    assert_eq!(chosen_mode(&rig("3", list, ["\"1 + cos\"", "0"])), 1);
+    assert_eq!(chosen_mode(&rig("3", list, ["\"1 + cos\"", "\"-3*sin\""])), 0);
     // Without a derivative that is not zero a condition is false.
     let never = r#"[{ when = "cos - cos > 0", mode = "contact" }, { mode = "free" }]"#;
-    assert_eq!(chosen(&rig("3", never, ["5", "5"])), 0);
+    assert_eq!(chosen_mode(&rig("3", never, ["5", "5"])), 0);
 }
 
 /// The first 36 decimals of cos(1) are below it, and one more in the last is above: 106 bits show
@@ -75,7 +75,7 @@ fn a_sign_that_106_bits_do_not_show_is_shown_in_more() {
             r#"[{{ when = "{}", mode = "contact" }}, {{ mode = "free" }}]"#,
             decimals(last)
         );
-        assert_eq!(chosen(&rig("1", &list, ["0", "0"])), mode, "{last}");
+        assert_eq!(chosen_mode(&rig("1", &list, ["0", "0"])), mode, "{last}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Guards of the forcing angle whose constant is a state that stands still: the model decides them
 //! as if the constant were written as a number.
 
-use super::{enclosed, names, system};
+use super::{enclosed_events, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Event, System};
 use std::f64::consts::PI;
@@ -21,7 +21,7 @@ fn watch(name: &str, guard: &str) -> String {
 }
 
 /// Times of events beside those of a closed form.
-fn at_times(events: &[Event<DoubleDouble>], expected: &[f64]) {
+fn assert_times(events: &[Event<DoubleDouble>], expected: &[f64]) {
     let times: Vec<f64> = events.iter().map(|it| it.time.value().to_f64()).collect();
     assert_eq!(times.len(), expected.len() + 1, "{times:?}");
     for (own, exact) in times.iter().zip(expected) {
@@ -45,13 +45,13 @@ fn a_sine_touches_what_stands_still() {
     let start = format!("c = 1\nd = 3.5\ne = {level:?}");
     let equations = "\"c' = 0\", \"d' = 0\", \"e' = d - 7*c/2\"";
     let touch = turning("\"c\", \"d\", \"e\"", equations, &guards.concat(), &start);
-    let all = enclosed::<DoubleDouble>(&touch, 6.0);
+    let all = enclosed_events::<DoubleDouble>(&touch, 6.0);
     assert_eq!(names(&touch, &all), ["below", "below", "end"]);
     assert_eq!(all[2].state[0].to_f64(), 1.0);
     // 1 - cos(x) = 2 sin(x/2)^2 = 2^-40.
     let half = 2.0 * 0.5_f64.powi(41).sqrt().asin();
     let crest = 0.5 * PI - 0.5;
-    at_times(&all, &[crest - half, crest + half]);
+    assert_times(&all, &[crest - half, crest + half]);
 }
 
 /// The same where an event at no rational time sets the constant, by its reset or by its guard: u
@@ -66,12 +66,12 @@ fn what_an_event_leaves_standing_still_is_known() {
          [[mode.watch]]\nname = \"c\"\nguard = \"3*sin + 4*cos > c\"\n\
          [start]\nmode = \"decay\"\nu = 4\nc = 1\n";
     let set = system(text);
-    let all = enclosed::<DoubleDouble>(&set, 20.0);
+    let all = enclosed_events::<DoubleDouble>(&set, 20.0);
     assert_eq!(names(&set, &all), ["set", "end"]);
-    at_times(&all, &[4.0_f64.ln()]);
+    assert_times(&all, &[4.0_f64.ln()]);
     // A constant that is too small by 1/64 is crossed on every turn.
     let crossed = system(&text.replace("c + 4", "c + 4 - 1/64"));
-    let names = names(&crossed, &enclosed::<DoubleDouble>(&crossed, 20.0));
+    let names = names(&crossed, &enclosed_events::<DoubleDouble>(&crossed, 20.0));
     assert_eq!(names, ["set", "c", "c", "c", "end"]);
 }
 
@@ -82,18 +82,18 @@ fn ties_with_what_stands_still_are_decided() {
     for (sine, cosine) in [("5*sin < c", "5*cos < -4"), ("5*sin < 3", "d > 5*cos")] {
         let guards = [watch("sine", sine), watch("cosine", cosine)].concat();
         let tie = turning("\"c\", \"d\"", "\"c' = 0\", \"d' = 0\"", &guards, "c = 3\nd = -4");
-        let all = enclosed::<DoubleDouble>(&tie, 3.0);
+        let all = enclosed_events::<DoubleDouble>(&tie, 3.0);
         let first = 0.6_f64.asin() - 0.5;
         assert_eq!(names(&tie, &all), ["sine", "sine", "cosine", "end"]);
-        at_times(&all, &[first, PI - 0.5 - 0.6_f64.asin(), PI - 0.5 - 0.6_f64.asin()]);
+        assert_times(&all, &[first, PI - 0.5 - 0.6_f64.asin(), PI - 0.5 - 0.6_f64.asin()]);
         assert_eq!(all[1].time.value(), all[2].time.value());
     }
     // u = 4 exp(-t) passes the state that stands still at 1 where it passes 1, and nowhere else.
     let guards = [watch("state", "u < c"), watch("number", "u < 1")].concat();
     let tie = turning("\"u\", \"c\"", "\"u' = -u\", \"c' = 0\"", &guards, "u = 4\nc = 1");
-    let all = enclosed::<DoubleDouble>(&tie, 3.0);
+    let all = enclosed_events::<DoubleDouble>(&tie, 3.0);
     assert_eq!(names(&tie, &all), ["state", "number", "end"]);
-    at_times(&all, &[4.0_f64.ln(); 2]);
+    assert_times(&all, &[4.0_f64.ln(); 2]);
 }
 
 /// What is not known to stand still is no constant: c' = d with d not zero passes the touch.
@@ -102,6 +102,6 @@ fn what_moves_is_no_constant() {
     let guards = watch("one", "sin > c");
     let moved =
         turning("\"c\", \"d\"", "\"c' = d\", \"d' = 0\"", &guards, "c = 1\nd = -0.0009765625");
-    let all = enclosed::<DoubleDouble>(&moved, 3.0);
+    let all = enclosed_events::<DoubleDouble>(&moved, 3.0);
     assert_eq!(names(&moved, &all), ["one", "one", "end"]);
 }

@@ -72,7 +72,7 @@ fn table(case: &str, states: usize) -> Table {
 }
 
 /// The largest error of a run in units of rounding and growth.
-fn worst<T: Number>(
+fn worst_error<T: Number>(
     case: &str,
     system: &System,
     table: &Table,
@@ -107,13 +107,13 @@ fn worst<T: Number>(
 }
 
 /// Half a unit of the last of 25 digits.
-pub(super) fn printed(value: DoubleDouble) -> f64 {
+pub(super) fn last_half_unit(value: DoubleDouble) -> f64 {
     5.1e-25 * value.to_f64().abs() + 1e-40
 }
 
 /// The events of a run that follows its errors, each of which is smaller than said; how many there
 /// are, and the largest error of a time.
-fn enclosed<T: Number<Bound = f64>>(
+fn enclosed_events<T: Number<Bound = f64>>(
     case: &str,
     system: &System,
     table: &Table,
@@ -133,10 +133,13 @@ fn enclosed<T: Number<Bound = f64>>(
         assert_eq!(name(system, &event), row.event, "{case}, row {}", count + 1);
         let errors = event.errors.unwrap();
         let off = (wide(event.time.high) + wide(event.time.low) - row.time).abs().to_f64();
-        assert!(off <= errors.time + printed(row.time), "{case} {count}: {off:e} {errors:?}");
+        assert!(
+            off <= errors.time + last_half_unit(row.time),
+            "{case} {count}: {off:e} {errors:?}"
+        );
         for ((state, exact), error) in event.state.iter().zip(&row.state).zip(&errors.state) {
             let off = (wide(*state) - *exact).abs().to_f64();
-            assert!(off <= error + printed(*exact), "{case} {count}: {off:e} {error:e}");
+            assert!(off <= error + last_half_unit(*exact), "{case} {count}: {off:e} {error:e}");
         }
         largest = f64::max(largest, errors.time);
         count += 1;
@@ -149,8 +152,8 @@ fn errors_are_smaller_than_an_enclosed_run_says() {
     let (mut whole, mut all) = (0, 0);
     for (case, system) in cases() {
         let table = table(&case, system.states.len());
-        let narrow = enclosed(&case, &system, &table, DoubleDouble::exact);
-        let wide = enclosed(&case, &system, &table, |it: DoubleDouble| it);
+        let narrow = enclosed_events(&case, &system, &table, DoubleDouble::exact);
+        let wide = enclosed_events(&case, &system, &table, |it: DoubleDouble| it);
         println!("{case}: {} of {}, {narrow:?} {wide:?}", wide.0, table.rows.len() - 1);
         all += 1;
         whole += usize::from(wide.0 == table.rows.len() - 1);
@@ -167,9 +170,10 @@ fn every_proved_table_is_reproduced() {
     for (case, system) in cases() {
         let table = table(&case, system.states.len());
         let outcome = std::panic::catch_unwind(|| {
-            let narrow = worst(&case, &system, &table, 0.5 * f64::EPSILON, DoubleDouble::exact);
+            let narrow =
+                worst_error(&case, &system, &table, 0.5 * f64::EPSILON, DoubleDouble::exact);
             // Tables hold 25 digits.
-            let wide = worst(&case, &system, &table, DoubleDouble::UNIT.max(1e-25), |it| it);
+            let wide = worst_error(&case, &system, &table, DoubleDouble::UNIT.max(1e-25), |it| it);
             println!("{case}: {narrow:.2} {wide:.2}");
             narrow.max(wide)
         });

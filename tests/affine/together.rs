@@ -22,17 +22,17 @@ const CROSSING_TOLERANCE: f64 = 1e-9;
 
 #[test]
 fn guards_are_crossed_together_as_alone() {
-    let compared: usize = (1..=SYSTEMS).map(compared).sum();
+    let compared: usize = (1..=SYSTEMS).map(compare_runs).sum();
     assert!(compared > 500, "{compared} events");
 }
 
 /// Compares the runs of a random system, and says how many events were.
-fn compared(seed: u64) -> usize {
+fn compare_runs(seed: u64) -> usize {
     let file = SystemFile::read("random.system.toml", &random::system(seed)).unwrap();
-    let system = watched(file.system().unwrap());
+    let system = watched_system(file.system().unwrap());
     let Some(together) = events(&system) else { return 0 };
     let mut compared = 0;
-    for watch in 0..most_watched(&system) {
+    for watch in 0..max_watched(&system) {
         let mut alone = system.clone();
         for mode in &mut alone.modes {
             mode.watch = mode.watch.get(watch).cloned().into_iter().collect();
@@ -68,7 +68,7 @@ fn compared(seed: u64) -> usize {
 }
 
 /// A system that watches its first two states at three levels each, in both directions.
-fn watched(mut system: System) -> System {
+fn watched_system(mut system: System) -> System {
     let states = system.states.len();
     for mode in &mut system.modes {
         let dimension = mode.matrix.len();
@@ -83,7 +83,7 @@ fn watched(mut system: System) -> System {
     system
 }
 
-fn most_watched(system: &System) -> usize {
+fn max_watched(system: &System) -> usize {
     system.modes.iter().map(|mode| mode.watch.len()).max().unwrap_or(0)
 }
 

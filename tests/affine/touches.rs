@@ -48,7 +48,7 @@ fn defective([x, g, share]: [f64; 3]) -> System {
 }
 
 /// Two pairs of eigenvalues at a small distance.
-fn close([x, g, share]: [f64; 3]) -> System {
+fn close_pairs([x, g, share]: [f64; 3]) -> System {
     let parameters = [("p", 0.5 + g), ("q", 10_f64.powf(-1.0 - 4.0 * share))];
     let start = [10.0 * x - 5.0, 10.0 * g - 5.0, 10.0 * share - 5.0, 2.0 - 4.0 * x];
     motion(&["b", "c - p*a", "d", "-p*c - q*c"], &parameters, &start)
@@ -77,7 +77,7 @@ fn crossings<T: Number>(events: &[Event<T>]) -> Option<Vec<bool>> {
 }
 
 /// Whether a plain run decides a touch: none where nothing is known.
-fn decided(system: &System, which: usize, shift: f64) -> Option<bool> {
+fn is_decided(system: &System, which: usize, shift: f64) -> Option<bool> {
     let (mut system, [high, low]) = crest(system, which)?;
     let start = system.start.clone()?;
     let size = start.state.iter().map(|it| it[2].to_f64().abs()).fold(0.0, f64::max);
@@ -98,7 +98,7 @@ fn decided(system: &System, which: usize, shift: f64) -> Option<bool> {
 }
 
 fn kind() -> impl Strategy<Value = fn([f64; 3]) -> System> {
-    let all: [fn([f64; 3]) -> System; 3] = [parabola, defective, close];
+    let all: [fn([f64; 3]) -> System; 3] = [parabola, defective, close_pairs];
     (0..all.len()).prop_map(move |n| all[n])
 }
 
@@ -112,16 +112,16 @@ proptest! {
         which in 0..8_usize,
         shift in prop_oneof![-1.0..1.0_f64, -8.0..8.0_f64, -60.0..60.0_f64],
     ) {
-        decided(&kind(shape), which, shift);
+        is_decided(&kind(shape), which, shift);
     }
 }
 
 /// The checks above compare runs: far from a touch nothing is counted.
 #[test]
 fn what_is_clear_of_rounding_is_not_counted() {
-    for kind in [parabola, defective, close] {
+    for kind in [parabola, defective, close_pairs] {
         let shapes = (1..=20_u8).map(|n| [0.37, 0.59, 0.83].map(|it| (it * f64::from(n)) % 1.0));
-        let decided: Vec<_> = shapes.filter_map(|shape| decided(&kind(shape), 0, 1e7)).collect();
+        let decided: Vec<_> = shapes.filter_map(|shape| is_decided(&kind(shape), 0, 1e7)).collect();
         assert!(decided.len() > 5 && decided.iter().all(|it| *it), "{decided:?}");
     }
 }

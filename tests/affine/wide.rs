@@ -1,6 +1,6 @@
 //! Runs in more than 106 bits.
 
-use super::{BALL, PLASTIC, RELAY, SPHERES, enclosed, names, system};
+use super::{BALL, PLASTIC, RELAY, SPHERES, enclosed_events, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Bits212, Bits848, Ending, Event, System, What};
 use percuss::number::{Bound, Number};
@@ -22,7 +22,7 @@ x = 1
 "#;
 
 fn last<T: Number>(system: &System, until: f64) -> Event<T> {
-    enclosed::<T>(system, until).pop().unwrap()
+    enclosed_events::<T>(system, until).pop().unwrap()
 }
 
 /// exp(-1e5) is beyond the exponents of f64, and its bound as well.
@@ -44,9 +44,9 @@ fn a_decay_goes_on_beyond_the_exponents_of_f64() {
 fn wide_runs_are_those_of_106_bits() {
     for (text, until) in [(BALL, 3.0), (RELAY, 8.0), (PLASTIC, 12.0), (SPHERES, 9.0)] {
         let system = system(text);
-        let narrow = enclosed::<DoubleDouble>(&system, until);
-        compare(&system, &narrow, &enclosed::<Bits212>(&system, until));
-        compare(&system, &narrow, &enclosed::<Bits848>(&system, until));
+        let narrow = enclosed_events::<DoubleDouble>(&system, until);
+        compare(&system, &narrow, &enclosed_events::<Bits212>(&system, until));
+        compare(&system, &narrow, &enclosed_events::<Bits848>(&system, until));
     }
 }
 

@@ -164,11 +164,11 @@ fn dd(value: f64) -> DoubleDouble {
     DoubleDouble::exact(value)
 }
 
-fn exactly(angle: EntryAngle<f64>) -> EntryAngle<DoubleDouble> {
+fn exact_angle(angle: EntryAngle<f64>) -> EntryAngle<DoubleDouble> {
     EntryAngle { radians: dd(angle.radians), sin: dd(angle.sin), cos: dd(angle.cos) }
 }
 
-fn round(state: State<DoubleDouble>) -> State<f64> {
+fn rounded_state(state: State<DoubleDouble>) -> State<f64> {
     State { p: state.p.to_f64(), y: state.y.to_f64(), q: state.q.to_f64() }
 }
 
@@ -195,9 +195,9 @@ fn flight(parameters: &Parameters, angle: EntryAngle<f64>, draw: &mut Draw) -> B
         }
     };
     let flight =
-        NoContact { constants: exact, entry, angle: exactly(angle), surface: surface.map(dd) };
+        NoContact { constants: exact, entry, angle: exact_angle(angle), surface: surface.map(dd) };
     let constants = Constants::new(parameters);
-    let rounded = NoContact { constants, entry: round(entry), angle, surface };
+    let rounded = NoContact { constants, entry: rounded_state(entry), angle, surface };
     (Form::Flight(rounded), Form::Flight(flight))
 }
 
@@ -215,12 +215,12 @@ fn contact(parameters: &Parameters, angle: EntryAngle<f64>, draw: &mut Draw) -> 
     let contact = Contact {
         constants: exact,
         entry,
-        angle: exactly(angle),
+        angle: exact_angle(angle),
         offset: dd(offset),
         reference: dd(reference),
     };
     let constants = Constants::new(parameters);
-    let rounded = Contact { constants, entry: round(entry), angle, offset, reference };
+    let rounded = Contact { constants, entry: rounded_state(entry), angle, offset, reference };
     (Form::Contact(rounded), Form::Contact(contact))
 }
 
@@ -234,11 +234,12 @@ fn slip(parameters: &Parameters, angle: EntryAngle<f64>, draw: &mut Draw) -> Bot
     let slip = Progression {
         constants: exact,
         entry,
-        angle: exactly(angle),
+        angle: exact_angle(angle),
         drift_rate: dd(drift_rate),
         closing: dd(closing),
     };
     let constants = Constants::new(parameters);
-    let rounded = Progression { constants, entry: round(entry), angle, drift_rate, closing };
+    let rounded =
+        Progression { constants, entry: rounded_state(entry), angle, drift_rate, closing };
     (Form::Slip(rounded), Form::Slip(slip))
 }

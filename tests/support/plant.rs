@@ -43,7 +43,7 @@ fn remainders(x: f64) -> (f64, f64) {
 }
 
 /// exp(-z) - 1 + z
-fn relaxed(z: f64) -> f64 {
+fn relaxation(z: f64) -> f64 {
     if z > 0.5 {
         return (-z).exp_m1() + z;
     }
@@ -100,7 +100,7 @@ pub fn flight(p: &Parameters, [p0, y0, q0]: [f64; 3], d: f64) -> Guard {
 pub fn flight_from_surface(p: &Parameters, y0: f64, d: f64) -> Guard {
     let rate = 0.5 / p.xi;
     let Harmonic { impulse, displacement, .. } = harmonic(p, d);
-    let sink = 2.0 * p.xi * y0 * relaxed(rate * d);
+    let sink = 2.0 * p.xi * y0 * relaxation(rate * d);
     let lift = 0.5 * p.b * d * d;
     Guard {
         excess: sink + lift + p.a * displacement[0],
@@ -200,6 +200,6 @@ pub fn examine(
 }
 
 /// Whether a crossing is too steep to be a graze: its parabola's crest outside the noise.
-pub fn steep(at: &Guard, bend: f64) -> bool {
+pub fn is_steep(at: &Guard, bend: f64) -> bool {
     at.slope * at.slope > 8.0 * at.noise() * bend
 }
