@@ -73,7 +73,8 @@ proptest! {
                 }
             }
             if let Exit::Switch(next) = segment.exit() {
-                prop_assert!(is_legal(segment.phase(), next.phase()), "{} to {}", segment.phase(), next.phase());
+                let (one, other) = (segment.phase(), next.phase());
+                prop_assert!(is_legal(one, other), "{one} to {other}");
                 prop_assert!(segment.duration() > 0.0, "{segment:?}");
                 prop_assert!(next.v() >= segment.entry().v());
             }

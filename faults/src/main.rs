@@ -88,7 +88,7 @@ fn main() -> Result<()> {
         patience: arguments.patience,
         skip: arguments.skip,
     };
-    let verdicts = trial::all(&scratch, &chosen, &plan, &table)?;
+    let verdicts = trial::try_all(&scratch, &chosen, &plan, &table)?;
     record::summary(&verdicts);
     Ok(())
 }

@@ -4,7 +4,7 @@ use crate::fault::Operator;
 use syn::{BinOp, ReturnType, Type};
 
 /// The operators that take the place of this one.
-pub fn instead_of(operator: &BinOp) -> &'static [(Operator, &'static str)] {
+pub fn replacements(operator: &BinOp) -> &'static [(Operator, &'static str)] {
     use Operator::{Arithmetic, Comparison, Logic};
     match operator {
         BinOp::Lt(_) => &[(Comparison, "<="), (Comparison, ">")],

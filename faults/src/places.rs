@@ -5,7 +5,7 @@
 //! all panic at once.
 
 use crate::fault::{Change, Operator};
-use crate::operators::{bounds_its_argument, early_values, instead_of, instead_of_float};
+use crate::operators::{bounds_its_argument, early_values, instead_of_float, replacements};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use syn::spanned::Spanned;
@@ -65,7 +65,7 @@ impl<'a> Places<'a> {
             return;
         }
         let (left, right) = (self.text(&it.left), self.text(&it.right));
-        for (operator, instead) in instead_of(&it.op) {
+        for (operator, instead) in replacements(&it.op) {
             let replacement = format!("{left} {instead} {right}");
             self.change(it.span().byte_range(), *operator, replacement);
         }

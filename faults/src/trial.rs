@@ -29,16 +29,18 @@ struct Timed {
 }
 
 /// Tries all of these faults and writes the table, a line as soon as it is known.
-pub fn all(
+pub fn try_all(
     scratch: &Path,
     faults: &[Fault],
     plan: &Plan,
     table: &Path,
 ) -> Result<Vec<(Fault, Verdict)>> {
     let in_solver = |fault: &Fault| !fault.is_in_validation();
-    let solver = if faults.iter().any(in_solver) { timed(scratch, SOLVER, plan)? } else { vec![] };
+    let solver =
+        if faults.iter().any(in_solver) { time_programs(scratch, SOLVER, plan)? } else { vec![] };
     let asks_validation = plan.thorough || !faults.iter().all(in_solver);
-    let validation = if asks_validation { timed(scratch, VALIDATION, plan)? } else { vec![] };
+    let validation =
+        if asks_validation { time_programs(scratch, VALIDATION, plan)? } else { vec![] };
     let mut table = Table::create(table)?;
     let mut verdicts = Vec::new();
     for fault in faults {
@@ -70,7 +72,7 @@ fn try_one(fault: &Fault, programs: &[&Timed]) -> Result<Verdict> {
 }
 
 /// The test programs of some packages, quickest first. All have to pass without a fault.
-fn timed(scratch: &Path, packages: &[&str], plan: &Plan) -> Result<Vec<Timed>> {
+fn time_programs(scratch: &Path, packages: &[&str], plan: &Plan) -> Result<Vec<Timed>> {
     let mut timed = Vec::new();
     let asked = |program: &Program| !plan.skip.contains(&program.name);
     for program in programs(scratch, packages)?.into_iter().filter(asked) {

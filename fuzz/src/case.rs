@@ -71,7 +71,7 @@ impl Bytes<'_> {
     }
 
     /// A time or an angle, up to 1e15.
-    fn late(&mut self) -> f64 {
+    fn late_time(&mut self) -> f64 {
         match self.byte() % 8 {
             0 => 0.0,
             1 => std::f64::consts::FRAC_PI_2,
@@ -125,28 +125,28 @@ impl Case {
     pub fn decode(bytes: &[u8]) -> Self {
         let mut bytes = Bytes(bytes);
         match bytes.byte() % 8 {
-            0 | 1 => dying_out(&mut bytes),
-            2 => underflowing(&mut bytes),
-            _ => any(&mut bytes),
+            0 | 1 => dying_case(&mut bytes),
+            2 => underflowing_case(&mut bytes),
+            _ => any_case(&mut bytes),
         }
     }
 }
 
-fn any(bytes: &mut Bytes) -> Case {
+fn any_case(bytes: &mut Bytes) -> Case {
     let parameters = Parameters {
         a: bytes.size(),
         b: bytes.signed(),
         xi: bytes.positive(1e-8, 1e4),
         omega: bytes.positive(1e-6, 1e6),
         g: bytes.size(),
-        phi: bytes.late(),
+        phi: bytes.late_time(),
     };
     let start = start(bytes, &parameters);
     let periods = bytes.log_uniform(1e-3, 64.0);
     Case { parameters, start, periods, family: Family::Any }
 }
 
-fn dying_out(bytes: &mut Bytes) -> Case {
+fn dying_case(bytes: &mut Bytes) -> Case {
     let a = match bytes.byte() % 4 {
         0 => bytes.log_uniform(1e-127, 1e-12),
         _ => 0.0,
@@ -177,7 +177,7 @@ fn dying_out(bytes: &mut Bytes) -> Case {
     Case { parameters, start, periods, family: Family::DyingOut }
 }
 
-fn underflowing(bytes: &mut Bytes) -> Case {
+fn underflowing_case(bytes: &mut Bytes) -> Case {
     let a = bytes.log_uniform(1e-300, 1e-270);
     let b = if bytes.byte() % 2 == 0 { 0.0 } else { a * (2.0 * bytes.unit() - 1.0) };
     let parameters = Parameters {
@@ -197,7 +197,7 @@ fn underflowing(bytes: &mut Bytes) -> Case {
 
 fn start(bytes: &mut Bytes, parameters: &Parameters) -> Start {
     let Parameters { g, xi, .. } = *parameters;
-    let tau = bytes.late();
+    let tau = bytes.late_time();
     let cycle = match bytes.byte() % 8 {
         0 => 1 << 53,
         1 => -(1 << 53),

@@ -218,7 +218,7 @@ impl History {
         let duration = segment.duration();
         ensure!(duration >= 0.0, "duration {duration:e}");
         let entry = segment.entry();
-        ensure!(possible(&entry.state) && entry.v().is_finite(), "entry {entry:?}");
+        ensure!(is_possible(&entry.state) && entry.v().is_finite(), "entry {entry:?}");
         let angle = entry.instant.angle();
         ensure!((0.0..=std::f64::consts::TAU).contains(&angle), "angle {angle:e}");
 
@@ -241,7 +241,7 @@ impl History {
                 .map_err(|fault| format!("{fault}, {eighth}/8 of {seen:e}, from {entry:?}"))?;
         }
         if let Exit::Switch(next) = segment.exit() {
-            ensure!(possible(&next.state) && next.v().is_finite(), "exit {next:?}");
+            ensure!(is_possible(&next.state) && next.v().is_finite(), "exit {next:?}");
             let legal = match (segment.phase(), next.phase()) {
                 (before, after) if before == after => false,
                 (Phase::Progression, after) => after == Phase::Contact,
@@ -261,7 +261,7 @@ impl History {
         let two_xi = 2.0 * xi;
         let sample = segment.at(elapsed);
         let State { p, y, q } = sample.state;
-        ensure!(possible(&sample.state) && sample.v.is_finite(), "sample {sample:?}");
+        ensure!(is_possible(&sample.state) && sample.v.is_finite(), "sample {sample:?}");
         let from = segment.entry().state;
         // The terms of the closed forms: what was there, and what the force adds.
         let time = elapsed.min(1.0 / omega + 1.0 / omega / omega);
@@ -338,6 +338,6 @@ fn same_place(model: &Model, segment: &Segment, [one, other]: [&State; 2]) -> bo
     near(one.p, other.p) && near(one.y, other.y) && near(one.q, other.q)
 }
 
-fn possible(state: &State) -> bool {
+fn is_possible(state: &State) -> bool {
     state.p.is_finite() && state.y.is_finite() && state.q.is_finite()
 }

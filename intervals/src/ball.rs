@@ -89,7 +89,7 @@ impl Ball {
     /// A word and how far members may be from it.
     #[inline]
     #[must_use]
-    pub const fn rough(self) -> (f64, f64) {
+    pub const fn word_and_error(self) -> (f64, f64) {
         (self.high, (self.low.abs() + self.radius) * RADIUS_FACTOR)
     }
 

@@ -78,28 +78,31 @@ fn near_zero(x: Ball) -> (Ball, Ball) {
 /// exp(x) - 1, without cancellation for small x; of x above 700 nothing is known.
 #[must_use]
 pub fn exp_less_1(x: Ball) -> Ball {
-    match grown(x) {
+    match scaled_growth(x) {
         Some((grown, 1.0)) => grown,
         Some((grown, scale)) => grown.scaled(scale) + (Ball::exact(scale) - Ball::ONE),
-        None => -Ball::ONE + nothing(x),
+        None => -Ball::ONE + underflowed_exponential(x),
     }
 }
 
 /// exp(x); of x above 700 nothing is known.
 #[must_use]
 pub fn exp(x: Ball) -> Ball {
-    grown(x).map_or_else(|| nothing(x), |(grown, scale)| (Ball::ONE + grown).scaled(scale))
+    scaled_growth(x).map_or_else(
+        || underflowed_exponential(x),
+        |(grown, scale)| (Ball::ONE + grown).scaled(scale),
+    )
 }
 
 /// exp(x) for x so far from zero that it is no number one can use.
-fn nothing(x: Ball) -> Ball {
+fn underflowed_exponential(x: Ball) -> Ball {
     /// An upper bound of exp(x) for x below -690.
     const MAX_UNDERFLOW: f64 = 1e-299;
     Ball::ZERO.widened(if x.upper() < -690.0 { MAX_UNDERFLOW } else { f64::NAN })
 }
 
 /// exp(x) = (1 + grown) scale, where the scale is a power of two.
-fn grown(x: Ball) -> Option<(Ball, f64)> {
+fn scaled_growth(x: Ball) -> Option<(Ball, f64)> {
     const HALVINGS: usize = 4;
     const MAX_ARGUMENT: f64 = 700.0;
     // Written so that a NaN is none.

@@ -76,7 +76,7 @@ pub(crate) fn holds(terms: &[Ball], remainder: f64, bounds: &Between) -> bool {
     let Between { low, high, zeros } = *bounds;
     let last = terms.len() - 1;
     let mut sharp = false;
-    for (i, (value, error)) in roughly(terms).into_iter().take(last + 1).enumerate() {
+    for (i, (value, error)) in rough_terms(terms).into_iter().take(last + 1).enumerate() {
         let error = if i == last { (error + remainder).next_up() } else { error };
         let (most, least) = ((value + error).next_up(), (value - error).next_down());
         let above = i < zeros[1] || most < high;
@@ -121,10 +121,10 @@ fn bernstein(terms: &[Ball]) -> [Ball; ORDERS + 1] {
 }
 
 /// Coefficients in one word, each with how far members may be from it.
-fn roughly(terms: &[Ball]) -> [(f64, f64); ORDERS + 1] {
+fn rough_terms(terms: &[Ball]) -> [(f64, f64); ORDERS + 1] {
     let mut row = [(0.0, 0.0); ORDERS + 1];
     for (place, term) in row.iter_mut().zip(terms) {
-        *place = term.rough();
+        *place = term.word_and_error();
     }
     let mut hull = row;
     for i in 0..terms.len() {

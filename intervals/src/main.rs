@@ -15,7 +15,7 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     let only = arguments.next().unwrap_or_default();
-    let tallies = all(switches, seed, &only);
+    let tallies = tally_all(switches, seed, &only);
     println!("{HEADER}");
     let mut total = Tally::default();
     for (regime, tally) in &tallies {
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
 }
 
 /// Every regime of that name on two threads: the same numbers on any machine.
-fn all(switches: u64, seed: u64, only: &str) -> Vec<(&'static Regime, Tally)> {
+fn tally_all(switches: u64, seed: u64, only: &str) -> Vec<(&'static Regime, Tally)> {
     let chosen: Vec<_> =
         REGIMES.iter().enumerate().filter(|(_, it)| it.name.contains(only)).collect();
     let half = |parity: usize| -> Vec<_> {

@@ -116,7 +116,7 @@ impl CorridorProof<'_> {
                 continue;
             }
             let start = if from == 0.0 { Some(self.zeros_at_start(&here)) } else { None };
-            length = match self.proved(&here, rest, length, start) {
+            length = match self.proved_piece(&here, rest, length, start) {
                 Piece::Arrives => return Ok(()),
                 Piece::Inside(length) => length,
                 Piece::None => return Err(from),
@@ -194,7 +194,13 @@ impl CorridorProof<'_> {
     }
 
     /// A piece that begins here, as long as it can be proved to be inside, or the last.
-    fn proved(&self, here: &Expansion, rest: Ball, wish: f64, start: Option<[usize; 2]>) -> Piece {
+    fn proved_piece(
+        &self,
+        here: &Expansion,
+        rest: Ball,
+        wish: f64,
+        start: Option<[usize; 2]>,
+    ) -> Piece {
         let quick = here.rate.about() > 0.0;
         let longest = MAX_PIECE_LENGTH / self.guard.pace;
         let reach = Reach {

@@ -73,9 +73,9 @@ impl<'a> Found<'a> {
     fn rounding(&self, guard: &Guard, share: f64) -> f64 {
         let elapsed = share * self.claim.duration.high;
         let jet = match self.segment.motion() {
-            Motion::NoContact(it) => evaluated(&it, elapsed),
-            Motion::Contact(it) => evaluated(&it, elapsed),
-            Motion::Progression(it) => evaluated(&it, elapsed),
+            Motion::NoContact(it) => guard_and_term(&it, elapsed),
+            Motion::Contact(it) => guard_and_term(&it, elapsed),
+            Motion::Progression(it) => guard_and_term(&it, elapsed),
         };
         let exact = guard.at(Ball::exact(elapsed)).whole[0];
         let error = (exact - Ball::exact(jet[0])).size() - exact.upper() + exact.lower();
@@ -89,7 +89,7 @@ fn room<G: Guarded>(phase: &G, end: f64) -> f64 {
 }
 
 /// A guard and its largest term.
-fn evaluated<G: Guarded>(phase: &G, elapsed: f64) -> [f64; 2] {
+fn guard_and_term<G: Guarded>(phase: &G, elapsed: f64) -> [f64; 2] {
     let jet = phase.at(elapsed).guard;
     [jet.orders[0], jet.largest_term]
 }

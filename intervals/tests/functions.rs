@@ -20,7 +20,7 @@ fn ulp(value: f64) -> f64 {
     value.abs().next_up() - value.abs()
 }
 
-fn worst(seed: u64, mut draw: impl FnMut(f64) -> f64) -> f64 {
+fn worst_error(seed: u64, mut draw: impl FnMut(f64) -> f64) -> f64 {
     let mut chance = Chance::new(seed);
     (0..DRAWS).map(|_| draw(chance.unit())).fold(0.0, f64::max)
 }
@@ -33,9 +33,9 @@ fn sines_and_cosines_by_table_and_by_libm() {
         let unit = |value: f64| 0.5 * ulp(value) + 0.1 * f64::EPSILON;
         error(s, sine, unit(s)).max(error(c, cosine, unit(c)))
     };
-    let near = worst(1, |u| measure((u - 0.5) * 20.0));
-    let far = worst(2, |u| measure((u - 0.5) * 1.2e5));
-    let libm = worst(3, |u| {
+    let near = worst_error(1, |u| measure((u - 0.5) * 20.0));
+    let far = worst_error(2, |u| measure((u - 0.5) * 1.2e5));
+    let libm = worst_error(3, |u| {
         let x = 6e4 + u * 1e9;
         let ((s, c), (sine, cosine)) = (x.sin_cos_by_library(), sin_cos(Ball::exact(x)));
         error(s, sine, ulp(s)).max(error(c, cosine, ulp(c)))
@@ -51,8 +51,8 @@ fn exponentials_by_table_and_by_libm() {
         let value = Number::exp(x);
         error(value, exp(Ball::exact(x)), ulp(value))
     };
-    let near = worst(4, |u| units(-u * 40.0));
-    let far = worst(5, |u| units(-u * 690.0));
+    let near = worst_error(4, |u| units(-u * 40.0));
+    let far = worst_error(5, |u| units(-u * 690.0));
     println!("table: {near:.3} units to 40, {far:.3} to 690");
     assert!(near <= 0.53 && far <= 0.53, "{near} {far}");
 }
@@ -62,7 +62,7 @@ fn exponentials_by_table_and_by_libm() {
 fn remainders() {
     let eps = f64::EPSILON;
     let (mut turn, mut shrink) = (0.0_f64, 0.0_f64);
-    worst(6, |u| {
+    worst_error(6, |u| {
         let x = 50.0 * u * u * u;
         let (ball, it) = (Ball::exact(x), circular(x));
         let (sin, cos) = sin_cos(ball);

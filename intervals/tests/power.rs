@@ -34,13 +34,13 @@ fn every_event(runs: usize, mut look: impl FnMut(&Parameters, &Found<'_>)) {
 /// height.
 fn later_root(found: &Found<'_>) -> Option<(f64, f64)> {
     match found.segment.motion() {
-        Motion::NoContact(it) => later(&it, &found.claim),
-        Motion::Contact(it) => later(&it, &found.claim),
-        Motion::Progression(it) => later(&it, &found.claim),
+        Motion::NoContact(it) => later_place(&it, &found.claim),
+        Motion::Contact(it) => later_place(&it, &found.claim),
+        Motion::Progression(it) => later_place(&it, &found.claim),
     }
 }
 
-fn later<G: Guarded>(phase: &G, claim: &Claim) -> Option<(f64, f64)> {
+fn later_place<G: Guarded>(phase: &G, claim: &Claim) -> Option<(f64, f64)> {
     const PLACES: i32 = 2000;
     let excess = |d: f64| {
         let value = phase.at(d).guard.orders[0];
