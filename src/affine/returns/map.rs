@@ -77,7 +77,8 @@ impl<'a, T: Number> SectionMap<'a, T> {
     }
 
     /// Whether a motion has escaped that returns with these states: one that is no drift is no
-    /// number, or is larger than [`ESCAPE_DISTANCE`] of its scales. A drift of an orbit grows for ever.
+    /// number, or is larger than [`ESCAPE_DISTANCE`] of its scales. A drift of an orbit grows for
+    /// ever.
     pub(in crate::affine) fn has_escaped(&self, state: &[T]) -> bool {
         let states = state.iter().map(|it| it.to_f64()).zip(&self.system().scales);
         let mut counted = states.enumerate().filter(|(n, _)| !self.is_drift(*n));
