@@ -8,7 +8,7 @@ use crate::rows::{Numbers, Rows};
 use crate::section::Section;
 use crate::stream::Stream;
 use percuss::SystemError;
-use percuss::affine::{PRECISION_BITS, MAX_HORIZON, SystemFile};
+use percuss::affine::{MAX_HORIZON, PRECISION_BITS, SystemFile};
 use percuss_validation::returns::{CountedReturns, MAX_RETURNS, Strobes, Uncounted};
 use percuss_validation::systems::{SYSTEMS, named};
 use pyo3::prelude::{PyRef, PyResult, Python, pyclass, pyfunction, pymethods};
