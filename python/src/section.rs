@@ -42,10 +42,10 @@ impl Section {
 }
 
 impl Section {
-    /// The section, the strobe at the angle 0 where none is written.
+    /// The section, the default one where none is written.
     pub(crate) fn section(&self) -> affine::Section {
         let written = self.written.as_ref().map(WrittenSection::section);
-        written.unwrap_or_else(|| affine::Section::strobe(0.0)).every(self.every)
+        written.unwrap_or_default().every(self.every)
     }
 
     /// The return map of the section.

@@ -56,16 +56,6 @@ impl Section {
         Self { every: count.max(1), ..self }
     }
 
-    /// The section of a system where no other is asked for: the strobe at the angle 0 where it is
-    /// forced.
-    ///
-    /// # Errors
-    /// A system without forcing: one of its events has to be named.
-    pub fn default_of(system: &System) -> Result<Self, SystemError> {
-        let section = Self::strobe(0.0);
-        section.resolve(system).map(|_| section)
-    }
-
     /// The section among the events of a system.
     pub(super) fn resolve(&self, system: &System) -> Result<Resolved, SystemError> {
         let returns = match &self.cut {
@@ -84,6 +74,13 @@ impl Section {
             Cut::Event { name, mode } => Returning::Events(events(system, name, mode.as_deref())?),
         };
         Ok(Resolved { returns, every: self.every })
+    }
+}
+
+impl Default for Section {
+    /// The strobe of the forcing at the angle 0.
+    fn default() -> Self {
+        Self::strobe(0.0)
     }
 }
 

@@ -47,8 +47,8 @@ pub struct BenchRow {
     pub state_error_max: Option<f64>,
     pub event_time_error_max: Option<f64>,
     pub ratio_to_exact: Option<f64>,
-    /// Ratio of times at errors of at most [`MAX_COMPARABLE_RATIO`] times the exact solver's on this
-    /// case.
+    /// Ratio of times at errors of at most [`MAX_COMPARABLE_RATIO`] times the exact solver's on
+    /// this case.
     pub ratio_at_comparable_error: Option<f64>,
     /// Ratio of times at errors of at most 1e-6, read off this engine's work-precision curve on
     /// this case.

@@ -43,8 +43,8 @@ Words:
                past
   spurious     a record of an event that the exact continuation does not
                have
-  judged       records of an engine, and events that it missed, each held
-               against the exact continuation of the record before it
+  judged       records of an engine and events that it missed, each held
+               against the exact continuation of the record before
   right        a case at a setting that passes or is undecidable, with
                its sampled states judged; what was not run is not right
   rank         one more than the number of engines that are better: by

@@ -60,7 +60,7 @@ impl SectionFlags {
 }
 
 impl ReturnFlags {
-    /// The return map of a section, the strobe at the angle 0 where none is given.
+    /// The return map of a section, the default one where none is given.
     pub(in crate::cli) fn map<'a>(
         &self,
         section: Option<&Typed<SectionChoice>>,
@@ -81,7 +81,7 @@ impl ReturnFlags {
                 "--section {it} is not accepted with SYSTEM: strobe:{it}, EVENT and EVENT@MODE are"
             ),
             Some((SectionChoice::OfSystem(section), _)) => section.section(),
-            None => Section::strobe(0.0),
+            None => Section::default(),
         };
         Ok(section.every(self.every()))
     }
