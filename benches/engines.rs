@@ -23,7 +23,7 @@ fn engines(criterion: &mut Criterion) {
     let mut cases = embedded().expect("the cases are read").into_iter();
     let case = cases.find(|case| case.name == CASE).expect("the case is there");
     let library = Library::embedded().expect("the tables are read");
-    let case = TimedCase::of(&case, &library).expect("a case");
+    let case = TimedCase::new(&case, &library).expect("a case");
     let mut group = criterion.benchmark_group(CASE);
     group.sample_size(10);
     group.throughput(Throughput::Elements(case.periods() as u64));

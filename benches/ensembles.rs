@@ -142,7 +142,7 @@ fn two_cores(ensemble: &Ensemble) {
     };
     let rounds: Vec<[f64; 2]> = (0..ROUNDS).map(quotients).collect();
     let [half, same] =
-        [0, 1].map(|k| Spread::of(rounds.iter().map(|round| round[k]).collect()).median);
+        [0, 1].map(|k| Spread::new(rounds.iter().map(|round| round[k]).collect()).median);
     println!("two threads: {same:.2} of what two processes reach ({half:.2} with half the starts)");
 }
 

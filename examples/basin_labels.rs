@@ -15,7 +15,7 @@ pub fn write(mut out: impl Write) -> Result<(), Box<dyn Error>> {
     let map = StrobeMap::new(model, model.start(&Start::default())?.instant);
     let window = Window { p: [-3.0, 1.2], y: [-1.5, 1.5] };
     let grid = Grid { window, columns: 60, rows: 24, q: 0.0 };
-    let basins = Basins::of(&map, &grid, 60, &|_| {});
+    let basins = Basins::new(&map, &grid, 60, &|_| {});
     for row in basins.labels.chunks(grid.columns as usize).rev() {
         let letters: String = row.iter().map(letter).collect();
         writeln!(out, "{letters}")?;

@@ -22,7 +22,7 @@ fn fig7(omega: f64) -> StrobeMap {
 }
 
 fn survey(map: &StrobeMap, columns: u32, rows: u32) -> Basins {
-    Basins::of(map, &Grid { window: WINDOW, columns, rows, q: 0.0 }, 400, &|_| {})
+    Basins::new(map, &Grid { window: WINDOW, columns, rows, q: 0.0 }, 400, &|_| {})
 }
 
 fn kinds(basins: &Basins) -> Vec<(AttractorKind, Option<u32>)> {
@@ -67,7 +67,7 @@ const PERIODS: u64 = 36_000;
 fn confirm(map: &StrobeMap, attractor: &Attractor) {
     let first = attractor.points[0];
     let from = map.entry(first).unwrap();
-    let spectrum = Spectrum::of(map.model(), from, 200, PERIODS);
+    let spectrum = Spectrum::new(map.model(), from, 200, PERIODS);
     let [largest, ..] = spectrum.exponents_per_period;
     if let Some(orbit) = &attractor.orbit {
         let period = u64::from(orbit.period());
@@ -188,12 +188,12 @@ fn an_orbit_of_a_long_period_after_long_chaos() {
     let map = map_at(parameters, 0);
     let window = Window { p: [-1.0, 1.0], y: [-1.0, 1.0] };
     let grid = Grid { window, columns: 3, rows: 2, q: 0.0 };
-    let basins = Basins::of(&map, &grid, 200, &|_| {});
+    let basins = Basins::new(&map, &grid, 200, &|_| {});
     assert_eq!(kinds(&basins), [(AttractorKind::Periodic, Some(240))]);
     assert_eq!(basins.fraction(Label::Unresolved), 0.0);
     assert!(basins.unresolved_examples(&map, 200).is_empty());
     let limits = SearchLimits { transient: 200, max_period: 239 };
-    let short = Basins::of(&map, &grid, limits, &|_| {});
+    let short = Basins::new(&map, &grid, limits, &|_| {});
     assert_eq!(short.fraction(Label::Unresolved), 1.0);
     let examples = short.unresolved_examples(&map, limits);
     assert_eq!(examples.len(), 3);

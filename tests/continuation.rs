@@ -91,7 +91,7 @@ fn period_six_doubles_supercritically_and_runs_agree_on_both_sides() {
     assert!(branch.is_complete());
     let flip = only_bifurcation(&branch, BifurcationKind::Flip);
     assert_sharp(flip);
-    let doubling = Doubling::of(&family, flip, 1.6, 1.56, &mut |_| {}).unwrap();
+    let doubling = Doubling::new(&family, flip, 1.6, 1.56, &mut |_| {}).unwrap();
     assert_eq!(doubling.criticality, Criticality::Supercritical);
     let first = &doubling.branch.points[0];
     assert!(first.orbit.period() == 12 && first.orbit.is_stable() && first.value < flip.value);
@@ -111,7 +111,7 @@ fn period_six_is_born_at_the_flip_of_period_three_from_either_side() {
     let BranchEnding::Halved { value } = six.ending else { panic!("{:?}", six.ending) };
     let merged = only_bifurcation(&six, BifurcationKind::Flip);
     assert!((value - flip.value).abs() <= flip.error + merged.error, "{value} {flip:?}");
-    let doubling = Doubling::of(&family, flip, 1.7, 1.6, &mut |_| {}).unwrap();
+    let doubling = Doubling::new(&family, flip, 1.7, 1.6, &mut |_| {}).unwrap();
     assert_eq!(doubling.criticality, Criticality::Supercritical);
     let last = doubling.branch.points.last().unwrap();
     let direct = &six.points[0];

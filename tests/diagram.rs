@@ -153,7 +153,7 @@ fn drifts_have_the_errors_of_their_scatter() {
     };
     let step = plan.steps(|| {}).unwrap().remove(0);
     let model = Model::new(parameters).unwrap();
-    let spectrum = Spectrum::of(&model, model.start(&plan.start).unwrap(), 200, 100);
+    let spectrum = Spectrum::new(&model, model.start(&plan.start).unwrap(), 200, 100);
     let pairs = [
         (step.drift_per_period, spectrum.drift_per_period),
         (step.drift_standard_error, spectrum.drift_standard_error),

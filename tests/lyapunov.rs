@@ -65,7 +65,7 @@ fn exponents_are_those_of_the_strobe_maps_derivative() {
     for parameters in regimes() {
         let model = model(parameters);
         let from = from_rest(&model);
-        let found = Spectrum::of(&model, from, transient, periods);
+        let found = Spectrum::new(&model, from, transient, periods);
         let expected = by_qr(&model, from, transient, periods);
         for i in 0..2 {
             // Gram-Schmidt loses what one period contracts by more than 1/eps.
@@ -91,7 +91,7 @@ fn the_sum_is_the_exact_contraction() {
     let mut chaotic = 0;
     for parameters in regimes().into_iter().chain(stiff) {
         let model = model(parameters);
-        let found = Spectrum::of(&model, from_rest(&model), 300, 3000);
+        let found = Spectrum::new(&model, from_rest(&model), 300, 3000);
         let [first, second, _] = found.exponents_per_period;
         let apart = (first + second - found.contraction_per_period).abs();
         let allowed = 1e6 * f64::EPSILON * found.contraction_per_period.abs();
@@ -145,17 +145,17 @@ fn phases_without_end_have_known_exponents() {
     let paper = Parameters::default();
     let period = std::f64::consts::TAU;
     let flies = Parameters { b: -0.1, xi: 1e-8, ..paper };
-    let found = Spectrum::of(&model(flies), from_rest(&model(flies)), 0, 7);
+    let found = Spectrum::new(&model(flies), from_rest(&model(flies)), 0, 7);
     let returns = -period / 1.4 / 2e-8;
     assert_eq!(found.exponents_per_period[..2], [0.0, 0.0]);
     assert!((found.exponents_per_period[2] / returns - 1.0).abs() <= 4.0 * f64::EPSILON);
     let slips = model(Parameters { b: 1.5, ..paper });
-    let found = Spectrum::of(&slips, from_rest(&slips), 50, 9);
+    let found = Spectrum::new(&slips, from_rest(&slips), 50, 9);
     assert_eq!(found.exponents_per_period[0], 0.0);
     assert_eq!(found.exponents_per_period[2], f64::NEG_INFINITY);
     for xi in [0.1, 1.0, 3.0] {
         let rests = model(Parameters { a: 0.05, b: 0.5, xi, omega: 0.7, ..paper });
-        let found = Spectrum::of(&rests, from_rest(&rests), 200, 9);
+        let found = Spectrum::new(&rests, from_rest(&rests), 200, 9);
         let sum = found.exponents_per_period[0] + found.exponents_per_period[1];
         let expected = -2.0 * xi * period / 0.7;
         assert!((sum / expected - 1.0).abs() <= 4.0 * f64::EPSILON, "{xi}: {found:?}");
@@ -167,7 +167,7 @@ fn the_shortest_runs_are_answered() {
     for parameters in regimes() {
         let model = model(parameters);
         for (transient, periods) in [(0, 0), (0, 1), (1, 1), (3, 2)] {
-            let found = Spectrum::of(&model, from_rest(&model), transient, periods);
+            let found = Spectrum::new(&model, from_rest(&model), transient, periods);
             assert!(!found.exponents_per_period[0].is_nan(), "{parameters:?} {found:?}");
             assert_eq!(found.standard_error[0].is_nan(), periods < 2);
         }
@@ -182,7 +182,7 @@ fn runs(parameters: Parameters, count: u64, periods: u64) -> Vec<Spectrum> {
     let model = model(parameters);
     let mut from = from_rest(&model);
     let next = |_| {
-        let found = Spectrum::of(&model, from, SPACING_PERIODS, periods);
+        let found = Spectrum::new(&model, from, SPACING_PERIODS, periods);
         from = StrobeMap::new(model, from.instant).passage(&from, SPACING_PERIODS + periods).image;
         found
     };
@@ -214,7 +214,7 @@ fn errors_of_short_runs_are_as_large_as_their_scatter() {
 fn a_run_over_the_end_of_a_transient_changes() {
     let changed = Parameters { a: 0.42, b: 0.18, xi: 0.08, g: 0.05, omega: 0.74, ..regimes()[0] };
     let model = model(changed);
-    let run = |transient, periods| Spectrum::of(&model, from_rest(&model), transient, periods);
+    let run = |transient, periods| Spectrum::new(&model, from_rest(&model), transient, periods);
     let over = run(500, 64_000);
     let Stationarity::ChangesAfter(periods) = over.stationarity else { panic!("{over:?}") };
     assert!((26_000..=34_000).contains(&periods), "{periods}");
@@ -233,8 +233,8 @@ fn a_run_over_the_end_of_a_transient_changes() {
 fn drift_keeps_its_digits_far_away() {
     let drifting = Parameters { omega: 0.1, ..regimes()[0] };
     let model = model(drifting);
-    let early = Spectrum::of(&model, from_rest(&model), 1000, 2);
-    let late = Spectrum::of(&model, from_rest(&model), 1_000_000, 2);
+    let early = Spectrum::new(&model, from_rest(&model), 1000, 2);
+    let late = Spectrum::new(&model, from_rest(&model), 1_000_000, 2);
     let apart = (early.drift_per_period - late.drift_per_period).abs();
     assert!(apart <= 8.0 * f64::EPSILON * early.drift_per_period, "{apart:e}");
 }

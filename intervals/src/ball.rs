@@ -23,7 +23,7 @@ const SUM_ERROR: f64 = 1.0 / (1_u128 << 104) as f64;
 const PRODUCT_ERROR: f64 = 2.0 * SUM_ERROR;
 /// The factor by which a radius is raised: more than eight roundings of it.
 const RADIUS_FACTOR: f64 = 1.0 + 8.0 * f64::EPSILON;
-/// A bound of the loss of products of words below the normal range.
+/// A bound of the error that underflow adds to a product, a quotient or a square root.
 const UNDERFLOW_ERROR: f64 = 1e-290;
 
 impl Ball {

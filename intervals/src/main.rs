@@ -38,7 +38,7 @@ fn tally_all(switches: u64, seed: u64, only: &str) -> Vec<(&'static Regime, Tall
         let tally = |(number, regime): &(usize, &'static Regime)| {
             let mut chance = Chance::new(seed.wrapping_add(*number as u64 * 1_000_003));
             let wanted = (regime.share * switches as f64) as u64;
-            (*number, *regime, Tally::of(regime, wanted, &mut chance))
+            (*number, *regime, Tally::new(regime, wanted, &mut chance))
         };
         mine.map(tally).collect()
     };

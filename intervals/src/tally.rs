@@ -97,7 +97,7 @@ fn guard_and_term<G: Guarded>(phase: &G, elapsed: f64) -> [f64; 2] {
 impl Tally {
     /// Examines the given number of events of a regime.
     #[must_use]
-    pub fn of(regime: &Regime, switches: u64, chance: &mut Chance) -> Self {
+    pub fn new(regime: &Regime, switches: u64, chance: &mut Chance) -> Self {
         let mut tally = Self::default();
         while tally.switches < switches {
             for run in (regime.draw)(chance) {

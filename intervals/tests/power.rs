@@ -68,7 +68,7 @@ fn switches_of_all_regimes_are_confirmed() {
     let mut total = Tally::default();
     for (number, regime) in REGIMES.iter().enumerate() {
         let switches = (20_000.0 * regime.share) as u64;
-        let tally = Tally::of(regime, switches, &mut Chance::new(5 + number as u64));
+        let tally = Tally::new(regime, switches, &mut Chance::new(5 + number as u64));
         assert_eq!(tally.contradicted, 0, "{}: {:?}", regime.name, tally.examples);
         // SLACK, in eps.
         assert!(tally.rounding <= 4.0, "{}: {}", regime.name, tally.rounding);

@@ -9,7 +9,7 @@ const COUNTED_DIGITS: usize = 6;
 /// The ending of a run that has as many events as it may have.
 pub(crate) const STOPPED_ENDING: &str = "stopped";
 
-/// The ending of a run whose time has no digit left.
+/// The ending of a run at an event whose time is not known to even one significant digit.
 const NO_DIGITS_ENDING: &str = "no-digits";
 
 /// The limits of a run besides its time.

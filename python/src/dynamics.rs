@@ -132,7 +132,7 @@ pub(crate) struct FoundOrbit<'py> {
 }
 
 impl<'py> FoundOrbit<'py> {
-    fn of(py: Python<'py>, orbit: &Orbit) -> PyResult<Self> {
+    fn new(py: Python<'py>, orbit: &Orbit) -> PyResult<Self> {
         Ok(Self {
             points: table(py, orbit.points.concat(), 3)?,
             multipliers: orbit.multipliers.iter().map(|[re, im]| (*re, *im)).collect(),
@@ -163,5 +163,5 @@ pub(crate) fn orbits<'py>(
         orbit.map(|it| vec![it]).map_err(|none| none.to_string())
     })?;
     let found = found.map_err(PyValueError::new_err)?;
-    found.iter().map(|orbit| FoundOrbit::of(py, orbit)).collect()
+    found.iter().map(|orbit| FoundOrbit::new(py, orbit)).collect()
 }

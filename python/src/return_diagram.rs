@@ -66,7 +66,7 @@ pub(crate) fn system_bifurcation<'py>(
     let undecidable = found.iter().map(|it| it.undecidable as i64).collect();
     Ok(ReturnsDiagrammed {
         steps: PyArray1::from_vec(py, places.collect()),
-        points: Points::of(py, &system.shared.system, &points)?,
+        points: Points::new(py, &system.shared.system, &points)?,
         left_out: left_out.collect(),
         undecidable: PyArray1::from_vec(py, undecidable),
         values: PyArray1::from_vec(py, values),

@@ -44,7 +44,7 @@ struct Reached<'py> {
 }
 
 impl<'py> Reached<'py> {
-    fn of(
+    fn new(
         py: Python<'py>,
         system: &percuss::System,
         basins: &ReturnBasins,
@@ -57,7 +57,7 @@ impl<'py> Reached<'py> {
             period: attractor.period(),
             fraction: basins.fraction(label),
             fraction_error: basins.fraction_error(label),
-            points: Points::of(py, system, &attractor.points)?,
+            points: Points::new(py, system, &attractor.points)?,
             multipliers: multipliers.map(|[re, im]| (*re, *im)).collect(),
             lyapunov_per_return: attractor.lyapunov_per_return,
             lyapunov_error: attractor.lyapunov_error,
@@ -128,7 +128,7 @@ pub(crate) fn system_orbits<'py>(
     let found = on_starts(py, (system, section), &plane, told, |map, start, seen| {
         map.orbits(start, &plane, period, seen)
     })?;
-    found.iter().map(|it| ReturnOrbit::of(py, &system.shared.system, it)).collect()
+    found.iter().map(|it| ReturnOrbit::new(py, &system.shared.system, it)).collect()
 }
 
 /// The attractors of a grid of a system's starts in two states, and the label of each start.
@@ -160,7 +160,7 @@ pub(crate) fn system_basins<'py>(
         up: PyArray1::from_vec(py, plane.centres(1)),
         labels: PyArray1::from_vec(py, labels).reshape([rows, columns])?,
         attractors: listed
-            .map(|it| Reached::of(py, system, &found, it))
+            .map(|it| Reached::new(py, system, &found, it))
             .collect::<PyResult<_>>()?,
         escaping: found.fraction(Label::Escaping),
         unresolved: found.fraction(Label::Unresolved),

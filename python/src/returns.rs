@@ -50,7 +50,7 @@ pub(crate) struct Points<'py> {
 }
 
 impl<'py> Points<'py> {
-    pub(crate) fn of(
+    pub(crate) fn new(
         py: Python<'py>,
         system: &percuss::System,
         points: &[Return<f64>],
@@ -101,7 +101,7 @@ pub(crate) fn system_poincare<'py>(
         Ok((points, cause, motion.undecidable()))
     })?;
     let (points, cause, undecidable) = found.map_err(|it: affine::SystemError| value(it))?;
-    Ok(Returned { points: Points::of(py, &system.shared.system, &points)?, cause, undecidable })
+    Ok(Returned { points: Points::new(py, &system.shared.system, &points)?, cause, undecidable })
 }
 
 /// The exponents and the drifts of a motion.
@@ -166,9 +166,9 @@ pub(crate) struct ReturnOrbit<'py> {
 }
 
 impl<'py> ReturnOrbit<'py> {
-    pub(crate) fn of(py: Python<'py>, system: &percuss::System, orbit: &Orbit) -> PyResult<Self> {
+    pub(crate) fn new(py: Python<'py>, system: &percuss::System, orbit: &Orbit) -> PyResult<Self> {
         Ok(Self {
-            points: Points::of(py, system, &orbit.points)?,
+            points: Points::new(py, system, &orbit.points)?,
             time: orbit.time,
             events: orbit.event_names(system),
             multipliers: orbit.multipliers.iter().map(|[re, im]| (*re, *im)).collect(),
@@ -198,5 +198,5 @@ pub(crate) fn system_orbit<'py>(
         Ok(guess.and_then(|it| map.orbit(&it, period)))
     })?;
     let found = found.map_err(|it: affine::SystemError| value(it))?.map_err(value)?;
-    ReturnOrbit::of(py, &system.shared.system, &found)
+    ReturnOrbit::new(py, &system.shared.system, &found)
 }

@@ -222,7 +222,7 @@ impl Cases {
         let written = interruptible(py, &Progress::default(), |stop| {
             let engine =
                 |(answerer, it): &(Answerer, &Answers), case: &str| it.engine(*answerer, case);
-            let defaults = case::defaults().map_err(Unjudged::of)?;
+            let defaults = case::defaults().map_err(Unjudged::new)?;
             let row = |(case, method): (&PreparedCase, &(Answerer, &Answers))| {
                 stop.look();
                 let accuracy = Accuracy::Tolerance(method.1.tolerance);
@@ -255,7 +255,7 @@ impl Cases {
                 };
                 let compared = baseline.compare(&report, is_asked);
                 if compared.common == 0 {
-                    return Err(Unjudged::of(
+                    return Err(Unjudged::new(
                         "baseline: no row in common: a report of the same rows is accepted",
                     ));
                 }
@@ -284,7 +284,7 @@ fn best(baselines: &[String]) -> PyResult<Option<Baseline>> {
 struct Unjudged(PyErr);
 
 impl Unjudged {
-    fn of(error: impl std::fmt::Display) -> Self {
+    fn new(error: impl std::fmt::Display) -> Self {
         Self(value(error))
     }
 }
@@ -302,7 +302,7 @@ fn write(report: &Report, evidence: &ReportEvidence, out: &Path) -> Result<(), U
         let mut file = std::fs::File::create(out.join(exporter.file_name()))?;
         exporter.write(report, evidence, &mut file)?;
     }
-    for (name, bytes) in pictures(report, evidence).map_err(Unjudged::of)? {
+    for (name, bytes) in pictures(report, evidence).map_err(Unjudged::new)? {
         let path = out.join(name);
         path.parent().map(std::fs::create_dir_all).transpose()?;
         std::fs::write(path, bytes)?;

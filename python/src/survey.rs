@@ -89,7 +89,7 @@ pub(crate) fn basins<'py>(
     let limits = SearchLimits { transient, max_period };
     let all = u64::from(columns) * u64::from(rows);
     let found = interruptible(py, &Progress { told, all }, |stop| {
-        Basins::of(&map, &grid, limits, &|count| stop.passed(count))
+        Basins::new(&map, &grid, limits, &|count| stop.passed(count))
     })?;
     let labels = found.labels.iter().map(|it| it.number()).collect();
     let labels = PyArray1::from_vec(py, labels).reshape([rows as usize, columns as usize])?;

@@ -41,7 +41,7 @@ struct Origin {
 }
 
 impl System {
-    fn of(file: SystemFile, origin: Origin) -> Result<Self, SystemError> {
+    fn new(file: SystemFile, origin: Origin) -> Result<Self, SystemError> {
         let system = file.system()?;
         let shared = Arc::new(Shared { system, directions: Default::default() });
         Ok(Self { file, shared, origin })
@@ -49,7 +49,7 @@ impl System {
 
     fn read(place: &str, text: &str) -> Result<Self, SystemError> {
         let origin = Origin { text: Arc::from(text), ..Origin::default() };
-        Self::of(SystemFile::read(place, text)?, origin)
+        Self::new(SystemFile::read(place, text)?, origin)
     }
 
     /// The run that is asked for, whose numbers are checked.
@@ -162,7 +162,7 @@ impl System {
             file.set(&name, number, &format!("{name} = {number}")).map_err(value)?;
             origin.set.insert(name, number);
         }
-        Self::of(file, origin).map_err(value)
+        Self::new(file, origin).map_err(value)
     }
 
     /// The system with the start of a text that holds the table `[start]`.
@@ -170,7 +170,7 @@ impl System {
         let mut file = self.file.clone();
         file.replace_from("start", text, false).map_err(value)?;
         let origin = Origin { start: Some(Arc::from(text)), ..self.origin.clone() };
-        Self::of(file, origin).map_err(value)
+        Self::new(file, origin).map_err(value)
     }
 
     /// The text of the file, the parameters that have other values than there, and the text of the

@@ -18,7 +18,8 @@ pub const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
 /// another order, and the decision is not to depend on that.
 pub const LANE_TIE_TOLERANCE: f64 = 16.0 * FOUR_ULPS;
 
-/// The rounding of each step of a contact that is followed in steps, in eps of its parts.
+/// The rounding of a contact that is computed in at most [`CONTACT_PIECES`] steps from its start,
+/// two products each, in eps times the sum of the sizes of its terms.
 pub const STEP_ROUNDINGS: f64 = 16.0;
 
 /// The largest length of the last step, in lengths of the others.

@@ -119,9 +119,9 @@ pub type Coefficients<T> = ([[T; 2]; 4], T);
 /// the ends of a piece.
 #[inline(always)]
 pub fn coefficients<T: Real>(left: &[T; 4], right: &[T; 4], length: T) -> Coefficients<T> {
-    let seventh = length * length.same(1.0 / 7.0);
-    let square = seventh * length * length.same(1.0 / 6.0);
-    let cube = square * (length * length.same(1.0 / 5.0));
+    let seventh = length * length.broadcast(1.0 / 7.0);
+    let square = seventh * length * length.broadcast(1.0 / 6.0);
+    let cube = square * (length * length.broadcast(1.0 / 5.0));
     let scaled = |[value, slope, bend, third]: [T; 4], [seventh, square, cube]: [T; 3]| {
         [value, slope * seventh, bend * square, third * cube]
     };
@@ -141,7 +141,7 @@ pub fn interpolant<T: Real>(left: [T; 4], right: [T; 4]) -> Coefficients<T> {
         [mix(b, c, 0.75), mix(g, f, 0.75)],
         [mix(c, d, 0.625), mix(f, e, 0.625)],
     ];
-    (pairs, d.same(0.5) * (d + e))
+    (pairs, d.broadcast(0.5) * (d + e))
 }
 
 /// The four coefficients of degree seven next to an end, from value and scaled derivatives there.
@@ -150,15 +150,15 @@ fn next_to_an_end<T: Real>([value, first, second, third]: [T; 4]) -> [T; 4] {
     [
         value,
         value + first,
-        value + value.same(2.0).times_plus(first, second),
-        value + value.same(3.0).times_plus(first + second, third),
+        value + value.broadcast(2.0).times_plus(first, second),
+        value + value.broadcast(3.0).times_plus(first + second, third),
     ]
 }
 
 /// A share of the way from one number to another.
 #[inline(always)]
 fn mix<T: Real>(from: T, to: T, share: f64) -> T {
-    from.same(1.0 - share).times_plus(from, from.same(share) * to)
+    from.broadcast(1.0 - share).times_plus(from, from.broadcast(share) * to)
 }
 
 /// The number of times that a bounding polynomial is divided: each time its hull comes four times

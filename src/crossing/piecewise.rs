@@ -183,7 +183,7 @@ impl<'a> PiecewiseCertificate<'a> {
         } else {
             let life = if pushes { &self.steps.pushing } else { &self.steps.pulling };
             let settled = left.parts.after(life, self.shape);
-            (settled, self.piece(&left, &self.end(settled), left_ends))
+            (settled, self.piece_verdict(&left, &self.end(settled), left_ends))
         };
         let room = settled.room;
         if first == Proof::Open {
@@ -230,7 +230,8 @@ impl<'a> PiecewiseCertificate<'a> {
                 return (worst, room);
             }
             if far.parts.elapsed - near.parts.elapsed < MAX_LAST_STEP_RATIO * step.length {
-                let last = self.piece(&near, &far, ThresholdEnds { right: is_root, ..near_ends });
+                let last =
+                    self.piece_verdict(&near, &far, ThresholdEnds { right: is_root, ..near_ends });
                 return (worst.max(last), room);
             }
             let (left, right, ends);
@@ -244,7 +245,7 @@ impl<'a> PiecewiseCertificate<'a> {
                 (left, right, ends) = (near, next, near_ends);
                 (near, near_ends) = (next, ThresholdEnds::FREE);
             }
-            let verdict = self.piece(&left, &right, ends);
+            let verdict = self.piece_verdict(&left, &right, ends);
             // A crest that rounding hides stops no pieces short of the whole stretch.
             if verdict == Proof::Open || (verdict == Proof::Touches && most <= room) {
                 let hidden = most <= room;
@@ -277,7 +278,8 @@ impl<'a> PiecewiseCertificate<'a> {
         Crests { here: here + amplitude, most: most + amplitude, rounding }
     }
 
-    fn piece(&self, left: &PieceEnd, right: &PieceEnd, ends: ThresholdEnds) -> Proof {
+    /// Whether the guard is proved to stay negative between these two ends of a piece.
+    fn piece_verdict(&self, left: &PieceEnd, right: &PieceEnd, ends: ThresholdEnds) -> Proof {
         let FreeShape { strength, omega6, rate8, .. } = *self.shape;
         let lift = match self.line {
             None => left.parts.lasting.max(0.0) * rate8,

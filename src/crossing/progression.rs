@@ -179,10 +179,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
 pub fn stops_once<T: Real>([a, b, omega, rate]: [T; 4], [closing, w]: [T; 2], lag: T) -> T::Mask {
     /// The inequalities round a few times.
     const ROUNDING_FACTOR: f64 = 1.0 + 64.0 * f64::EPSILON;
-    let room = a.same(ROUNDING_FACTOR);
-    let zero = a.same(0.0);
+    let room = a.broadcast(ROUNDING_FACTOR);
+    let zero = a.broadcast(0.0);
     let steepest = a * omega * room;
-    let fall = (a.same(1.0) - b) - a * room;
+    let fall = (a.broadcast(1.0) - b) - a * room;
     let rises_once = steepest.less(fall * rate);
     let falls = (closing.larger(zero) * rate * room).less(fall);
     let bends = steepest.less(lag * rate * rate);

@@ -40,7 +40,7 @@ impl<T: Real> Tangent<T> {
     /// they meet, times the difference of their slopes, if that lies between.
     #[inline(always)]
     pub fn stays_below_to(&self, end: &Self) -> T::Mask {
-        let zero = self.value.same(0.0);
+        let zero = self.value.broadcast(0.0);
         let ends = self.value.less(zero) & end.value.less(zero);
         let peaks = zero.less(self.slope) & end.slope.less(zero);
         let back = end.slope.times_from(end.from - self.from, end.value);
@@ -88,11 +88,11 @@ impl<T: Real> TangentBound<T> {
         let slope = a_over_omega.times_from(sin, y) + spring;
         let at_start = spring.times_plus(elapsed, last_q);
         let speeds = b.magnitude().times_plus(elapsed, y.magnitude() + a_over_omega) + spring;
-        let turn = a_over_omega2.times_plus(a_over_omega2.same(TAU), q + last_q);
+        let turn = a_over_omega2.times_plus(a_over_omega2.broadcast(TAU), q + last_q);
         let terms = speeds.times_plus(elapsed, turn);
         Self {
             offset: (a_over_omega2.times_plus(cos, q) - at_start)
-                + terms.times_plus(terms.same(ROUNDING_TOLERANCE), slack),
+                + terms.times_plus(terms.broadcast(ROUNDING_TOLERANCE), slack),
             slope,
             curvature: b,
             amplitude: a_over_omega2,
@@ -104,7 +104,7 @@ impl<T: Real> TangentBound<T> {
     #[inline(always)]
     pub fn at(&self, from: T, [sin, cos]: [T; 2]) -> Tangent<T> {
         let Self { offset, slope, curvature, amplitude, speed } = *self;
-        let bent = (curvature * from.same(0.5)).times_plus(from, slope);
+        let bent = (curvature * from.broadcast(0.5)).times_plus(from, slope);
         let value = amplitude.times_from(cos, from.times_plus(bent, offset));
         let rise = curvature.times_plus(from, slope);
         Tangent { from, value, slope: speed.times_plus(sin, rise) }

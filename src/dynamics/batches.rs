@@ -56,7 +56,7 @@ pub struct Batches {
 impl Batches {
     /// The batches of a run of `periods` forcing periods, at least one.
     #[must_use]
-    pub fn of(periods: u64) -> Self {
+    pub fn new(periods: u64) -> Self {
         let periods = periods.max(1);
         let count = (periods / MIN_BATCH_PERIODS).clamp(MIN_BATCHES, MAX_BATCHES).min(periods);
         Self { periods, count }
@@ -199,12 +199,12 @@ mod tests {
     #[test]
     fn batches_are_whole_periods_and_none_is_left_out() {
         for periods in [1, 2, 3, 7, 33, 100, 255, 256, 1000, 1_000_000_000] {
-            let batches = Batches::of(periods);
+            let batches = Batches::new(periods);
             let ends: Vec<u64> = (0..=batches.count()).map(|k| batches.end(k)).collect();
             assert_eq!((ends[0], ends[ends.len() - 1]), (0, periods));
             assert!(ends.windows(2).all(|pair| pair[0] < pair[1]), "{periods}: {ends:?}");
         }
-        let counts = [1, 3, 33, 100, 256, 1000].map(|periods| Batches::of(periods).count());
+        let counts = [1, 3, 33, 100, 256, 1000].map(|periods| Batches::new(periods).count());
         assert_eq!(counts, [1, 3, 4, 12, 32, 32]);
     }
 
@@ -263,9 +263,9 @@ mod tests {
         let step = |k: usize| if k < 11 { 1.0 } else { 0.0 } + 1e-3 * (k % 3) as f64;
         let means: Vec<f64> = (0..32).map(step).collect();
         assert_eq!(change(&means), Some(11));
-        let batches = Batches::of(3200);
+        let batches = Batches::new(3200);
         assert_eq!(batches.stationarity(&[means]), Stationarity::ChangesAfter(1100));
-        assert_eq!(Batches::of(100).stationarity(&[]), Stationarity::Unknown);
+        assert_eq!(Batches::new(100).stationarity(&[]), Stationarity::Unknown);
     }
 
     /// A motion on its orbit has batch means that differ by roundings, in any order.

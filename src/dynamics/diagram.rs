@@ -172,7 +172,7 @@ impl Diagram {
         let escapes = leaves || strobes.iter().any(is_far);
         let drifts: Vec<TwoWord> = strobes.iter().map(|strobe| strobe.drift).collect();
         let [drift_per_period, drift_standard_error] =
-            if escapes { [f64::NAN; 2] } else { Batches::of(shown as u64).drift(&drifts) };
+            if escapes { [f64::NAN; 2] } else { Batches::new(shown as u64).drift(&drifts) };
         let points = strobes.iter().take(if escapes { 0 } else { shown }).map(Entry::point);
         DiagramStep {
             value: self.value(step),

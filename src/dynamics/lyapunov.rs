@@ -80,11 +80,11 @@ impl Spectrum {
     ///
     /// Where a phase that never ends is reached they are those of that phase, which are known.
     #[must_use]
-    pub fn of(model: &Model, from: Entry, transient: u64, periods: u64) -> Self {
+    pub fn new(model: &Model, from: Entry, transient: u64, periods: u64) -> Self {
         Self::observe(model, from, transient, periods, &mut |_| ())
     }
 
-    /// Like [`Spectrum::of`], and `seen` is called with every phase that has been followed.
+    /// Like [`Spectrum::new`], and `seen` is called with every phase that has been followed.
     #[must_use]
     pub fn observe(
         model: &Model,
@@ -96,7 +96,7 @@ impl Spectrum {
         ExponentRun::new(model, from, transient, periods).follow_phases(model, from, seen)
     }
 
-    /// [`Spectrum::of`] without a transient, but the last phase is not solved beyond `horizon` to
+    /// [`Spectrum::new`] without a transient, but the last phase is not solved beyond `horizon` to
     /// see whether it ends.
     pub(super) fn within(model: &Model, from: Entry, periods: u64, horizon: Instant) -> Self {
         let run = ExponentRun::new(model, from, 0, periods);
@@ -156,7 +156,7 @@ impl ExponentRun {
             two_xi: model.constants().two_xi,
             transient,
             periods,
-            batches: Batches::of(periods),
+            batches: Batches::new(periods),
             start: from.instant,
             next: from.instant.after_periods(transient, 1),
             marks: Vec::new(),

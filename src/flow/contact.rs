@@ -126,7 +126,7 @@ impl<T: Real> Pressing<T> {
         // The slopes count as well, times the length of a certificate: they carry the rounding of
         // y0 and of f - b even where the oscillation passes through zero or has died out, and that
         // of 2 xi (F - f), twice for the up to four times of decay.
-        let one = d.same(1.0);
+        let one = d.broadcast(1.0);
         let pulls = force[0].magnitude() + (b - reference).magnitude();
         let carried = y0.magnitude() * d.smaller(one)
             + f_less_b.magnitude() * (d * d).smaller(one)

@@ -138,7 +138,7 @@ impl<T: Real> Free<T> {
         shrink: &Decay<T>,
         [cosine_minus_1, sine_over_x_minus_1]: [T; 2],
     ) -> Self {
-        let s = shrink.exp * d * (d.same(1.0) + sine_over_x_minus_1);
+        let s = shrink.exp * d * (d.broadcast(1.0) + sine_over_x_minus_1);
         let s_minus_d = d * shrink.exp.times_plus(sine_over_x_minus_1, shrink.minus_1);
         Self::shrunk(xi, d, shrink, cosine_minus_1, [s, s_minus_d])
     }
@@ -154,7 +154,7 @@ impl<T: Real> Free<T> {
         [s, s_minus_d]: [T; 2],
     ) -> Self {
         let turned = shrink.exp * cosine_minus_1;
-        let weak = (xi * d).less(d.same(0.5));
+        let weak = (xi * d).less(d.broadcast(0.5));
         let rest = T::choose(weak, shrink.remainder, shrink.minus_1);
         let c_minus_1 = xi.times_plus(T::choose(weak, s_minus_d, s), rest + turned);
         let s_rate_minus_1 = (xi + xi).times_from(s, c_minus_1);
@@ -181,7 +181,7 @@ impl<T: Real> Free<T> {
     /// All zero, in the lanes of a number.
     #[inline(always)]
     pub fn zero(number: T) -> Self {
-        let zero = number.same(0.0);
+        let zero = number.broadcast(0.0);
         let shrink = Decay { exp: zero, minus_1: zero, remainder: zero };
         let turn = Circular { sin: zero, cos_minus_1: zero, sin_minus_x: zero };
         let rotation = Rotation { shrink, turn };

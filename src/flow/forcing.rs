@@ -317,13 +317,13 @@ impl<T: Real> Together<'_, T> {
     #[inline(always)]
     fn damped(&self) -> Complex<T> {
         let free = &self.rotation.turn;
-        Complex::new(free.cos_minus_1.same(1.0) + free.cos_minus_1, free.sin)
+        Complex::new(free.cos_minus_1.broadcast(1.0) + free.cos_minus_1, free.sin)
     }
 
     /// exp(i omega d)
     #[inline(always)]
     fn forcing(&self) -> Complex<T> {
-        Complex::new(self.turn.cos_minus_1.same(1.0) + self.turn.cos_minus_1, self.turn.sin)
+        Complex::new(self.turn.cos_minus_1.broadcast(1.0) + self.turn.cos_minus_1, self.turn.sin)
     }
 }
 
@@ -334,7 +334,7 @@ impl<T: Real> Differences<T> {
         let Self { sum, difference } = self;
         // 1/(2 i nu) = -i/(2 nu)
         let displacement = Complex::new(difference.im, -difference.re).scale(half_over_nu);
-        let rate = sum.scale(xi.same(0.5)) - displacement.scale(xi);
+        let rate = sum.scale(xi.broadcast(0.5)) - displacement.scale(xi);
         let two_xi = xi + xi;
         let force = Complex::new(
             two_xi.times_plus(rate.re, displacement.re),

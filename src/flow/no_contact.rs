@@ -100,7 +100,7 @@ impl<T: Real> Flying<T> {
         harmonic: &Harmonic<T>,
         decay: &Decay<T>,
     ) -> Self {
-        let lift = b * d * d * d.same(0.5);
+        let lift = b * d * d * d.broadcast(0.5);
         let q = q0 * decay.exp;
         let spring = q * rate;
         let returns = spring * rate;

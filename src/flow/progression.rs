@@ -96,7 +96,7 @@ impl<T: Real> Slipping<T> {
         decay: &Decay<T>,
     ) -> Self {
         let [y0, _, _, closing] = begin;
-        let pull = b - b.same(1.0);
+        let pull = b - b.broadcast(1.0);
         let push = pull * d;
         let y_change = push + harmonic.impulse;
         // 1 - q decays; (1 - q)/(2 xi) = y - w at all times.
@@ -109,7 +109,7 @@ impl<T: Real> Slipping<T> {
             times: [d, rate * d],
             y_change,
             moved: closing * decay.minus_1,
-            pushed: (push * d).times_plus(d.same(0.5), harmonic.displacement),
+            pushed: (push * d).times_plus(d.broadcast(0.5), harmonic.displacement),
             remainder: decay.remainder,
             y: y0 + y_change,
             lag,
@@ -143,7 +143,7 @@ impl<T: Real> Slipping<T> {
     #[inline(always)]
     pub fn late_state(&self) -> Slipped<T> {
         let ([y0, ..], [d, z]) = (self.begin, self.times);
-        let one = d.same(1.0);
+        let one = d.broadcast(1.0);
         Slipped {
             q: self.two_xi.times_from(self.lag, one),
             w: self.y - self.lag,

@@ -201,7 +201,7 @@ impl<S: Simd> LaneContact<'_, S> {
         let free = (f - level) - steady_rate.times_plus(v, steady * u);
         let free_rate = f1 - steady_rate.times_plus(w, steady * v);
         let (forced, quarter) = ((f - level) - free, (f1 - free_rate) / omega);
-        let elapsed = f.same(0.0);
+        let elapsed = f.broadcast(0.0);
         let parts = ContactParts { elapsed, free, free_rate, forced, quarter };
         LaneParts::new(self.shape, self.forms, parts)
     }

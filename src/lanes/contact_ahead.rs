@@ -27,7 +27,7 @@ impl<S: Simd> LaneContact<'_, S> {
         let mut here = self.parts(orders);
         let (mut value, mut rate) = (orders[0], orders[1]);
         let mut steps = ContactSteps::of_guess(self.shape, self.forms);
-        let zero = value.same(0.0);
+        let zero = value.broadcast(0.0);
         let mut elapsed = zero;
         let mut found = zero.less(zero);
         let mut open = !found;

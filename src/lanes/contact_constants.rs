@@ -21,7 +21,7 @@ pub enum Forms {
 impl Forms {
     /// The closed forms that these models need.
     #[inline(always)]
-    pub fn of<S: Simd>(shape: &Shape<Wide<S>>) -> Self {
+    pub fn new<S: Simd>(shape: &Shape<Wide<S>>) -> Self {
         if shape.unusual.above(0.0).any() { Self::Any } else { Self::Usual }
     }
 }

@@ -189,7 +189,7 @@ impl<S: Simd> ContactSteps<S> {
         let doubled = ContactStep {
             length,
             sin: (sin + sin) * cos,
-            cos: (sin + sin).times_from(sin, sin.same(1.0)),
+            cos: (sin + sin).times_from(sin, sin.broadcast(1.0)),
             c: c * c,
             s,
             s_rate: s_rate * s_rate,

@@ -132,7 +132,7 @@ impl<S: Simd> Flight<'_, S> {
         let f = two_xi * slope;
         let largest = (two_xi * y).magnitude().larger(q.magnitude());
         let clear = (largest * LANE_TIE_TOLERANCE).less(f)
-            & (largest.larger(y.same(1.0)) * LANE_TIE_TOLERANCE).less((f - 1.0).magnitude());
+            & (largest.larger(y.broadcast(1.0)) * LANE_TIE_TOLERANCE).less((f - 1.0).magnitude());
         let root = elapsed + step;
         let certified = match fineness {
             Fineness::Usual => self.stays_below(root, q, fineness),
@@ -169,7 +169,7 @@ impl<S: Simd> Flight<'_, S> {
             sin,
             cos,
             exponential: self.q,
-            first: b.same(0.0),
+            first: b.broadcast(0.0),
         }
     }
 
@@ -205,16 +205,16 @@ impl<S: Simd> Flight<'_, S> {
         length: Wide<S>,
     ) -> Mask<S> {
         let Shape { halfway_sin, halfway_cos, .. } = *self.shape;
-        let zero = length.same(0.0);
+        let zero = length.broadcast(0.0);
         let inner = [
             (0.75, halfway_sin, halfway_cos),
-            (0.5, zero, length.same(-1.0)),
+            (0.5, zero, length.broadcast(-1.0)),
             (0.25, -halfway_sin, halfway_cos),
         ];
         let mut last = Tangent { ..*near };
         let mut below = !zero.less(zero);
         for (rest, sin, cos) in inner {
-            let from = length.times_from(length.same(rest), far.from);
+            let from = length.times_from(length.broadcast(rest), far.from);
             let ahead = last.from.less(from);
             let next = last.or_where(ahead, bound.at(from, [sin, cos]));
             below = below & (last.stays_below_to(&next) | !ahead);
@@ -228,7 +228,7 @@ impl<S: Simd> Flight<'_, S> {
     #[inline(always)]
     fn hops(&self, root: Wide<S>, [slope, spring, force, force_rate]: [Wide<S>; 4]) -> Mask<S> {
         let Shape { a, b, omega, omega2, rate, .. } = *self.shape;
-        let zero = root.same(0.0);
+        let zero = root.broadcast(0.0);
         let orders = |spring: Wide<S>, force: Wide<S>, force_rate: Wide<S>| {
             [rate.times_from(spring, force), (rate * rate).times_plus(spring, force_rate)]
         };
@@ -248,7 +248,7 @@ impl<S: Simd> Flight<'_, S> {
         let terms = (a + b.magnitude()) * root * root + self.q * (rate * root + 1.0);
         let short = (root * rate).below(MAX_PULLING_DECAY_TIMES)
             & (root * omega).below(MAX_WHOLE_PHASE_RADIANS);
-        let lowest = zero.same(f64::NEG_INFINITY);
+        let lowest = zero.broadcast(f64::NEG_INFINITY);
         short & piece.stays_between(lowest, zero, terms * SLACK)
     }
 
@@ -258,18 +258,18 @@ impl<S: Simd> Flight<'_, S> {
     fn stays_below(&self, root: Wide<S>, q: Wide<S>, fineness: Fineness) -> Mask<S> {
         let Shape { a, b, omega, rate, turning, turning_sin, turning_cos, .. } = *self.shape;
         let Angle { radians: angle, sin, cos } = self.angle;
-        let zero = root.same(0.0);
+        let zero = root.broadcast(0.0);
         let bound = self.bound(root, q);
 
         let concave_at_first = !angle.less(turning) & !(-turning + TAU).less(angle);
-        let settled = rate.same(SEPARATION_DECAY_TIMES) / rate;
+        let settled = rate.broadcast(SEPARATION_DECAY_TIMES) / rate;
         let concave_until = ((-turning + TAU) - angle) / omega;
         let Shape { settling_sin, settling_cos, .. } = *self.shape;
         let settled_sin = sin.times_plus(settling_cos, cos * settling_sin);
         let settled_cos = sin.times_from(settling_sin, cos * settling_cos);
         // The largest force until then: at either end, unless a crest lies between.
         let no_crest = settled.times_plus(omega, angle).below(TAU);
-        let crest = no_crest.choose(cos.larger(settled_cos), cos.same(1.0));
+        let crest = no_crest.choose(cos.larger(settled_cos), cos.broadcast(1.0));
         let strongest = a.times_plus(crest, b) + (a + b.magnitude()) * LANE_FORCE_MARGIN;
         let sinks = strongest.less(self.q * rate * rate * MIN_SLIDER_RETURN);
         let by_sinking = sinks & !(concave_at_first & settled.less(concave_until));
@@ -281,8 +281,8 @@ impl<S: Simd> Flight<'_, S> {
 
         // The stretch of negative force that the flight begins in, or the first one after that.
         let late = (-turning + TAU).less(angle);
-        let mut begins = ((turning - angle) + late.choose(zero.same(TAU), zero)) / omega;
-        let period = omega.same(TAU) / omega;
+        let mut begins = ((turning - angle) + late.choose(zero.broadcast(TAU), zero)) / omega;
+        let period = omega.broadcast(TAU) / omega;
         let length = (-turning + std::f64::consts::PI) * 2.0 / omega;
         let mut open = proved;
         for _ in 0..TANGENT_STRETCHES {

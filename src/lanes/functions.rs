@@ -24,10 +24,10 @@ const LN_2_LOW: f64 = exponential::LN_2.low;
 /// Sine and cosine, radians.
 #[inline(always)]
 pub fn sin_cos<S: Simd>(x: Wide<S>) -> (Wide<S>, Wide<S>) {
-    let rounded = x.times_plus(x.same(FRAC_2_PI), x.same(ROUNDER));
+    let rounded = x.times_plus(x.broadcast(FRAC_2_PI), x.broadcast(ROUNDER));
     let quarters = rounded - ROUNDER;
-    let low = x.same(FRAC_PI_2_LOW);
-    let near = quarters.times_from(x.same(FRAC_PI_2), x);
+    let low = x.broadcast(FRAC_PI_2_LOW);
+    let near = quarters.times_from(x.broadcast(FRAC_PI_2), x);
     let r = quarters.times_from(low, near);
     let tail = quarters.times_from(low, near - r);
     let s = r * r;
@@ -71,15 +71,15 @@ fn exp_of_minus<S: Simd>(z: Wide<S>) -> Wide<S> {
     /// The largest z at which exp(-z) is a normal number.
     const MAX_EXPONENT: f64 = 708.0;
     let normal = z.below(MAX_EXPONENT);
-    let z = normal.choose(z, z.same(0.0));
-    let rounded = z.times_plus(z.same(-LOG2_E), z.same(ROUNDER));
+    let z = normal.choose(z, z.broadcast(0.0));
+    let rounded = z.times_plus(z.broadcast(-LOG2_E), z.broadcast(ROUNDER));
     let power = rounded - ROUNDER;
-    let r = power.times_from(z.same(LN_2_LOW), power.times_from(z.same(LN_2), -z));
+    let r = power.times_from(z.broadcast(LN_2_LOW), power.times_from(z.broadcast(LN_2), -z));
     let s = r * r;
     let even = polynomial(s, EVEN_COEFFICIENTS);
     let odd = polynomial(s, ODD_COEFFICIENTS);
     let exp = (r + s * r.times_plus(odd, even)) + 1.0;
-    normal.choose(exp * rounded.power_of_two(), z.same(0.0))
+    normal.choose(exp * rounded.power_of_two(), z.broadcast(0.0))
 }
 
 /// 1/2!, 1/4!, ..

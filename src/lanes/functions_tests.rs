@@ -22,7 +22,7 @@ impl WithSimd for All<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let x = Wide::load(simd, self.x);
         let (sin, cos) = sin_cos(x);
-        let turn = turn_of(x.same(self.rate), None, x);
+        let turn = turn_of(x.broadcast(self.rate), None, x);
         let shrink = shrink(x.magnitude());
         let beat = short_turn(x);
         let values = [

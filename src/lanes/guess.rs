@@ -46,7 +46,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
     pub fn first_root(&self) -> (Wide<S>, Mask<S>) {
         let Shape { guess_step, guess_step_sin, guess_step_cos, guess_step_decay, omega, .. } =
             *self.shape;
-        let zero = guess_step.same(0.0);
+        let zero = guess_step.broadcast(0.0);
         let alive = guess_step_decay.above(0.0);
         let lasting = alive.choose(self.exponential, zero);
         let mut here = self.place(zero, self.sin, self.cos, lasting);
@@ -113,7 +113,8 @@ impl<S: Simd> LaneEnvelope<'_, S> {
         let Shape { omega, guess_step, .. } = *self.shape;
         let value = self.parabola(here.elapsed) + self.amplitude;
         let rising = self.curvature.times_plus(here.elapsed, self.slope);
-        let square = (self.curvature * value * 2.0).times_from(value.same(1.0), rising * rising);
+        let square =
+            (self.curvature * value * 2.0).times_from(value.broadcast(1.0), rising * rising);
         let root = square.sqrt();
         // One of the root's two forms subtracts numbers that may be close; this takes the other.
         let falling = rising.below(0.0);
@@ -127,7 +128,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
             opens,
             self.sin.times_plus(cos, self.cos * sin),
             self.sin.times_from(sin, self.cos * cos),
-            opens.same(0.0),
+            opens.broadcast(0.0),
         );
         LanePlace {
             elapsed: opens,
@@ -159,10 +160,10 @@ pub fn zero_between<S: Simd>(
     let cubic =
         |t: Wide<S>| t.times_plus(t.times_plus(t.times_plus(third, second), left_slope), left);
     // The third in which it is: behind a crest Newton's method would go astray.
-    let third_of = left.same(1.0 / 3.0);
+    let third_of = left.broadcast(1.0 / 3.0);
     let (early, later) = (cubic(third_of), cubic(third_of + third_of));
     let (in_first, in_second) = (!early.below(0.0), !later.below(0.0));
-    let (zero, one) = (left.same(0.0), left.same(1.0));
+    let (zero, one) = (left.broadcast(0.0), left.broadcast(1.0));
     let from = in_first.choose(zero, in_second.choose(third_of, third_of + third_of));
     let here = in_first.choose(left, in_second.choose(early, later));
     let there = in_first.choose(early, in_second.choose(later, right));
@@ -174,7 +175,7 @@ pub fn zero_between<S: Simd>(
     let deflated = left.is(0.0);
     if deflated.any() {
         // left_slope + second t + third t^2 = 0
-        let root = (third * left_slope * 4.0).times_from(t.same(1.0), second * second).sqrt();
+        let root = (third * left_slope * 4.0).times_from(t.broadcast(1.0), second * second).sqrt();
         let sign = second.below(0.0).choose(-root, root);
         let sum = (second + sign) * -0.5;
         let (one, other) = (left_slope / sum, sum / third);
@@ -183,5 +184,5 @@ pub fn zero_between<S: Simd>(
     }
     // A NaN becomes the middle.
     let ordered = t.above(-1e300) & t.below(1e300);
-    ordered.choose(t, t.same(0.5)).larger(zero).smaller(one)
+    ordered.choose(t, t.broadcast(0.5)).larger(zero).smaller(one)
 }

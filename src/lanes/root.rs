@@ -62,7 +62,7 @@ pub fn find<S: Simd, P: LanePhase<S>>(
     guess: Wide<S>,
     guessed: Mask<S>,
 ) -> LaneRoot<S, P::At> {
-    let zero = guess.same(0.0);
+    let zero = guess.broadcast(0.0);
     let mut elapsed = guess;
     let mut alive = guessed;
     let mut attempt = 1;

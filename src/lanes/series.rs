@@ -26,7 +26,7 @@ impl<S: Simd> Series<Wide<S>, TERMS> {
         /// a step that is mostly below 1e-7 itself, and next to a flat inflection below 1e-4.
         const SLOPE_CHANGE_TOLERANCE: f64 = 1e-5;
         let (value, slope) = self.value_and_slope(step);
-        let inverse = slope.same(1.0) / slope;
+        let inverse = slope.broadcast(1.0) / slope;
         let change = -(value * inverse);
         // To fifth order, which leaves 3e-8 of what the change does to the slope.
         let gain = change * change.times_plus(self.0[3] * 0.5, self.bend(step));

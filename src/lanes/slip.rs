@@ -149,7 +149,7 @@ impl<S: Simd> Slip<'_, S> {
     fn slow_envelope(&self) -> LaneEnvelope<'_, S> {
         let Shape { a_over_omega, b, guess_step_decay, .. } = *self.shape;
         let Angle { sin, cos, .. } = self.angle;
-        let zero = b.same(0.0);
+        let zero = b.broadcast(0.0);
         LaneEnvelope {
             shape: self.shape,
             offset: a_over_omega.times_plus(sin, -self.y),

@@ -56,13 +56,13 @@ impl<S: Simd> Wide<S> {
     /// The lanes in which it is less than a number.
     #[inline(always)]
     pub fn below(self, other: f64) -> Mask<S> {
-        self.less(self.same(other))
+        self.less(self.broadcast(other))
     }
 
     /// The lanes in which it is greater than a number.
     #[inline(always)]
     pub fn above(self, other: f64) -> Mask<S> {
-        self.same(other).less(self)
+        self.broadcast(other).less(self)
     }
 
     /// The lanes in which it is this number.
@@ -98,7 +98,7 @@ impl<S: Simd> Real for Wide<S> {
     type Mask = Mask<S>;
 
     #[inline(always)]
-    fn same(self, value: f64) -> Self {
+    fn broadcast(self, value: f64) -> Self {
         Self::splat(self.simd, value)
     }
 
@@ -162,7 +162,7 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: f64) -> Self {
-                self.$method(self.same(other))
+                self.$method(self.broadcast(other))
             }
         }
     };

@@ -58,7 +58,7 @@ impl<S: Simd> Words<S> {
     /// 2 pi times whole numbers.
     #[inline(always)]
     pub fn turns(whole: Wide<S>) -> Self {
-        let two_pi = Self { high: whole.same(TWO_PI.high), low: whole.same(TWO_PI.low) };
+        let two_pi = Self { high: whole.broadcast(TWO_PI.high), low: whole.broadcast(TWO_PI.low) };
         two_pi.times(whole)
     }
 
@@ -66,12 +66,13 @@ impl<S: Simd> Words<S> {
     #[inline(always)]
     pub fn wrapped(self) -> (Wide<S>, Self) {
         const TURNS_PER_RADIAN: f64 = 1.0 / std::f64::consts::TAU;
-        let rounder = self.high.same(ROUNDER);
-        let nearest = self.high.times_plus(self.high.same(TURNS_PER_RADIAN), rounder) - ROUNDER;
-        let zero = self.high.same(0.0);
+        let rounder = self.high.broadcast(ROUNDER);
+        let nearest =
+            self.high.times_plus(self.high.broadcast(TURNS_PER_RADIAN), rounder) - ROUNDER;
+        let zero = self.high.broadcast(0.0);
         let rest = self.plus(Self::turns(-nearest));
         let negative = rest.high.less(zero);
-        let one = self.high.same(1.0);
+        let one = self.high.broadcast(1.0);
         let whole = negative.choose(nearest - one, nearest);
         let back = rest.plus(Self::turns(one));
         let high = negative.choose(back.high, rest.high);

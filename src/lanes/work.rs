@@ -108,7 +108,7 @@ impl<'a, S: Simd> LoadedLanes<'a, S> {
 
     #[inline(always)]
     fn contact(&self, fineness: Fineness, end: &mut PhaseEnds) {
-        let release = match Forms::of(self.shape) {
+        let release = match Forms::new(self.shape) {
             Forms::Usual => self.contacts(Forms::Usual).release(fineness),
             Forms::Any => self.contacts(Forms::Any).release(fineness),
         };
@@ -165,7 +165,7 @@ impl<'a, S: Simd> LoadedLanes<'a, S> {
     #[inline(always)]
     fn contact_strobe(&self, end: &mut PhaseEnds) {
         let elapsed = self.until_due(end);
-        let forms = Forms::of(self.shape);
+        let forms = Forms::new(self.shape);
         let (values, rates) = self.contacts(forms).state(elapsed.high);
         let [q, y, guard] = moved(values, rates, elapsed.low);
         (q + self.shape.g).store(&mut end.p);

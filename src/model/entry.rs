@@ -151,7 +151,8 @@ fn at_one(direction: f64, y: f64) -> ModeEntry {
     }
 }
 
-/// The first derivative of the trial force, on a threshold, that is not zero within its rounding.
+/// The lowest derivative of the trial force, on a threshold, that is not zero within rounding; zero
+/// if none of the first four is.
 fn first_derivative_off_zero(constants: &Constants<f64>, y: f64, f: f64, force: [f64; 3]) -> f64 {
     let Constants { a, b, two_xi, omega, .. } = *constants;
     let pull = force[0] + (b - f);

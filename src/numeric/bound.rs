@@ -42,7 +42,7 @@ pub trait Bound:
     const LAST_WORD_UNDERFLOW: Self;
 
     /// The number with this f64 value.
-    fn of(value: f64) -> Self;
+    fn from_f64(value: f64) -> Self;
 
     /// The f64 next to it: infinite or zero where f64 has no such exponents.
     fn to_f64(self) -> f64;
@@ -90,7 +90,7 @@ impl Bound for f64 {
     const LAST_WORD_UNDERFLOW: Self = 1e-280;
 
     #[inline]
-    fn of(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         value
     }
 
@@ -177,7 +177,7 @@ impl ScaledF64 {
     /// The number as a bound of any kind.
     #[must_use]
     pub fn rounded<B: Bound>(self) -> B {
-        B::of(self.mantissa).scaled(self.exponent)
+        B::from_f64(self.mantissa).scaled(self.exponent)
     }
 
     /// Whether the exponent has a meaning.
@@ -210,13 +210,13 @@ impl PartialOrd for ScaledF64 {
 
 impl PartialEq<f64> for ScaledF64 {
     fn eq(&self, other: &f64) -> bool {
-        *self == Self::of(*other)
+        *self == Self::from_f64(*other)
     }
 }
 
 impl PartialOrd<f64> for ScaledF64 {
     fn partial_cmp(&self, other: &f64) -> Option<std::cmp::Ordering> {
-        self.partial_cmp(&Self::of(*other))
+        self.partial_cmp(&Self::from_f64(*other))
     }
 }
 
@@ -283,7 +283,7 @@ impl Mul<f64> for ScaledF64 {
     type Output = Self;
     #[inline]
     fn mul(self, other: f64) -> Self {
-        self * Self::of(other)
+        self * Self::from_f64(other)
     }
 }
 
@@ -291,7 +291,7 @@ impl Div<f64> for ScaledF64 {
     type Output = Self;
     #[inline]
     fn div(self, other: f64) -> Self {
-        self / Self::of(other)
+        self / Self::from_f64(other)
     }
 }
 
@@ -330,7 +330,7 @@ impl Bound for ScaledF64 {
     const LAST_WORD_UNDERFLOW: Self = Self::ZERO;
 
     #[inline]
-    fn of(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         Self::new(value, 0)
     }
 

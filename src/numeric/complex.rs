@@ -33,7 +33,7 @@ impl<T: Real> Complex<T> {
 
     /// The inverse of the number.
     pub fn inverse(self) -> Self {
-        self.conjugate().scale(self.re.same(1.0) / (self.re * self.re + self.im * self.im))
+        self.conjugate().scale(self.re.broadcast(1.0) / (self.re * self.re + self.im * self.im))
     }
 
     /// One number where the mask holds, the other elsewhere.

@@ -26,7 +26,7 @@ pub trait Real:
 
     /// An f64, exactly, in all lanes of this one.
     #[must_use]
-    fn same(self, value: f64) -> Self;
+    fn broadcast(self, value: f64) -> Self;
 
     /// `self * factor + term`.
     #[must_use]
@@ -66,7 +66,7 @@ impl<T: Number> Real for T {
     type Mask = bool;
 
     #[inline(always)]
-    fn same(self, value: f64) -> Self {
+    fn broadcast(self, value: f64) -> Self {
         T::exact(value)
     }
 
@@ -99,9 +99,9 @@ impl<T: Number> Real for T {
 /// A polynomial, lowest coefficient first.
 #[inline(always)]
 pub fn polynomial<T: Real, const N: usize>(x: T, coefficients: [f64; N]) -> T {
-    let mut sum = x.same(coefficients[N - 1]);
+    let mut sum = x.broadcast(coefficients[N - 1]);
     for coefficient in coefficients.into_iter().rev().skip(1) {
-        sum = sum.times_plus(x, x.same(coefficient));
+        sum = sum.times_plus(x, x.broadcast(coefficient));
     }
     sum
 }

@@ -68,12 +68,12 @@ impl<T: Real, const N: usize> Series<T, N> {
     #[inline(always)]
     pub fn value_and_slope(&self, step: T) -> (T, T) {
         let square = step * step;
-        let zero = step.same(0.0);
+        let zero = step.broadcast(0.0);
         let (mut value, mut slope) = ([zero; 2], [zero; 2]);
         for k in (1..N).rev() {
             let (side, order) = (k % 2, self.0[k]);
             let [now, before] =
-                [step.same(INVERSE_FACTORIALS[k]), step.same(INVERSE_FACTORIALS[k - 1])];
+                [step.broadcast(INVERSE_FACTORIALS[k]), step.broadcast(INVERSE_FACTORIALS[k - 1])];
             value[side] = value[side].times_plus(square, order * now);
             slope[side] = slope[side].times_plus(square, order * before);
         }
@@ -87,16 +87,17 @@ impl<T: Real, const N: usize> Series<T, N> {
     #[inline(always)]
     pub fn bend(&self, step: T) -> T {
         let [second, third, fourth, fifth] = [self.0[2], self.0[3], self.0[4], self.0[5]];
-        let higher = (step * step.same(1.0 / 6.0)).times_plus(fifth, fourth * step.same(0.5));
+        let higher =
+            (step * step.broadcast(1.0 / 6.0)).times_plus(fifth, fourth * step.broadcast(0.5));
         step.times_plus(step.times_plus(higher, third), second)
     }
 
     /// Integral from the evaluation to a time `step` later.
     #[inline(always)]
     pub fn integral(&self, step: T) -> T {
-        let mut sum = step.same(0.0);
+        let mut sum = step.broadcast(0.0);
         for k in (0..N).rev() {
-            sum = sum.times_plus(step, self.0[k] * step.same(INVERSE_FACTORIALS[k + 1]));
+            sum = sum.times_plus(step, self.0[k] * step.broadcast(INVERSE_FACTORIALS[k + 1]));
         }
         step * sum
     }

@@ -75,7 +75,7 @@ impl Contact<f64, &Constants<f64>> {
         let response = forced.at(d, &harmonic.turn, &damping.at(d));
         let EntryAngle { sin, cos, .. } = self.angle;
         let driven = |re: f64, im: f64| a * (cos * re - sin * im);
-        let Left { s, c, s_rate } = Left::of(xi, d);
+        let Left { s, c, s_rate } = Left::new(xi, d);
         let f_less_b = self.offset + (self.reference - b);
         let y0 = self.entry.y;
         let force = (f_less_b * s_rate + y0 * s) + driven(response.force.re, response.force.im);
@@ -97,7 +97,7 @@ struct Left {
 }
 
 impl Left {
-    fn of(xi: f64, d: f64) -> Self {
+    fn new(xi: f64, d: f64) -> Self {
         let root = ((1.0 - xi) * (1.0 + xi)).abs().sqrt();
         let (s, c, s_rate) = if xi < 1.0 {
             let shrink = libm::exp(-xi * d);

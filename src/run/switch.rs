@@ -176,7 +176,7 @@ fn find_end<P: Landing>(
     if let Crossing::At(root) = &verdict {
         *next = begun.after(model, phase, root);
     }
-    SearchEnd::of(&verdict)
+    SearchEnd::new(&verdict)
 }
 
 /// Settles how a phase ends next to a horizon, or where no switch has been found so far.
@@ -239,7 +239,7 @@ fn found_later<P: Landing>(
 }
 
 impl SearchEnd {
-    fn of(crossing: &Crossing) -> Self {
+    fn new(crossing: &Crossing) -> Self {
         match crossing {
             Crossing::At(root) => Self::At(root.elapsed()),
             Crossing::Horizon => Self::Horizon,
@@ -362,7 +362,7 @@ impl Landing for Contact<f64, &Constants<f64>> {
         if let Crossing::At(root) = &crossing {
             *next = begun.after(model, &contact, root);
         }
-        SearchEnd::of(&crossing)
+        SearchEnd::new(&crossing)
     }
 }
 

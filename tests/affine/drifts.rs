@@ -150,7 +150,7 @@ fn the_mean_drift_of_a_run_is_the_oscillators_own() {
     let periods = 24;
     let model = Model::new(Parameters::default()).unwrap();
     let entry = model.start(&Start::default()).unwrap();
-    let own = Spectrum::of(&model, entry, 0, periods);
+    let own = Spectrum::new(&model, entry, 0, periods);
     let system = System::from_toml(OSCILLATOR).unwrap();
     let solver = Solver::<f64>::new(&system).unwrap();
     let map = SectionMap::new(&solver, &Section::strobe(0.0)).unwrap();

@@ -40,7 +40,7 @@ impl Draw {
         (self.next() % count as u64) as usize
     }
 
-    fn of<T: Copy>(&mut self, all: &[T]) -> T {
+    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
         all[self.below(all.len())]
     }
 
@@ -56,28 +56,28 @@ fn spectrum(draw: &mut Draw, size: usize) -> Vec<Vec<f64>> {
     let mut matrix = vec![vec![0.0; size]; size];
     let mut at = 0;
     while at < size {
-        let (left, rate) = (size - at, -draw.of(&[0.0, 0.125, 0.5, 1.0, 2.0]));
+        let (left, rate) = (size - at, -draw.one_of(&[0.0, 0.125, 0.5, 1.0, 2.0]));
         let used = match draw.below(7) {
             0 if left >= 3 => jordan(&mut matrix, at, 3, rate),
             1 if left >= 2 => jordan(&mut matrix, at, 2, rate),
             2 if left >= 2 => {
                 let used = jordan(&mut matrix, at, 2, rate);
-                matrix[at][at] += draw.of(&[1e-3, 1e-6, 1e-9, 1e-12]);
+                matrix[at][at] += draw.one_of(&[1e-3, 1e-6, 1e-9, 1e-12]);
                 used
             }
             3 if left >= 4 => {
-                let frequency = draw.of(&[0.5, 1.0, 3.0]);
+                let frequency = draw.one_of(&[0.5, 1.0, 3.0]);
                 pair(&mut matrix, at, rate, frequency);
                 pair(&mut matrix, at + 2, rate, frequency);
                 (matrix[at][at + 2], matrix[at + 1][at + 3]) = (1.0, 1.0);
                 4
             }
             4 | 5 if left >= 2 => {
-                let frequency = draw.of(&[0.5, 1.0, 3.0, 40.0]);
-                pair(&mut matrix, at, draw.of(&[0.0, -0.125, -1.0, 0.0625]), frequency)
+                let frequency = draw.one_of(&[0.5, 1.0, 3.0, 40.0]);
+                pair(&mut matrix, at, draw.one_of(&[0.0, -0.125, -1.0, 0.0625]), frequency)
             }
             _ => {
-                matrix[at][at] = draw.of(&[rate, rate, 0.0625, -37.0, -1024.0, -1e6]);
+                matrix[at][at] = draw.one_of(&[rate, rate, 0.0625, -37.0, -1024.0, -1e6]);
                 1
             }
         };
@@ -106,7 +106,7 @@ fn pair(matrix: &mut [Vec<f64>], at: usize, rate: f64, frequency: f64) -> usize 
 fn mix(draw: &mut Draw, mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let size = matrix.len();
     for _ in 0..draw.below(2 * size) {
-        let (i, j, sign) = (draw.below(size), draw.below(size), draw.of(&[-1.0, 1.0]));
+        let (i, j, sign) = (draw.below(size), draw.below(size), draw.one_of(&[-1.0, 1.0]));
         if i == j {
             continue;
         }
@@ -170,7 +170,7 @@ pub fn system(seed: u64) -> String {
         for event in 0..1 + draw.below(2) {
             let name = format!("u{mode}{event}w");
             let (guard, value) = combination(&mut draw, &mut parameters, &name, &start);
-            let level = value + draw.of(&[0.125, 0.5, 1.0, 3.0]);
+            let level = value + draw.one_of(&[0.125, 0.5, 1.0, 3.0]);
             let _ = writeln!(parameters, "l{mode}{event} = {level:?}");
             let (state, other) = (draw.below(size), draw.below(size));
             let reset = match draw.below(3) {
@@ -190,7 +190,7 @@ pub fn system(seed: u64) -> String {
         for event in 0..draw.below(3) {
             let name = format!("s{mode}{event}w");
             let (guard, _) = combination(&mut draw, &mut parameters, &name, &start);
-            let direction = draw.of(&["rising", "falling", "both"]);
+            let direction = draw.one_of(&["rising", "falling", "both"]);
             let level = draw.below(9) as i64 - 4;
             let _ = writeln!(
                 modes,

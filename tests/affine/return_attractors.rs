@@ -70,7 +70,7 @@ fn own_labels(omega: f64, window: [f64; 4], columns: u32, rows: u32) -> Basins {
     let map = StrobeMap::new(Model::new(parameters).unwrap(), Instant::at(omega, 0.0, 0));
     let [left, right, low, high] = window;
     let window = Window { p: [left, right], y: [low, high] };
-    Basins::of(&map, &Grid { window, columns, rows, q: 0.0 }, 60, &|_| ())
+    Basins::new(&map, &Grid { window, columns, rows, q: 0.0 }, 60, &|_| ())
 }
 
 /// The census of each frame of Fig. 7, whose window it is, at xi = 0.1. Cells may differ whose own

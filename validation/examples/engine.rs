@@ -7,7 +7,7 @@ use percuss_validation::engine::{
     Accuracy, Class, Colours, Declaration, Engine, Equations, Event, Failure, Limits, Location,
     Numbers, Outcome, Role, Stepping, Task, Work,
 };
-use percuss_validation::system::{Affine, Values};
+use percuss_validation::system::{AffineEquations, Values};
 use std::process::ExitCode;
 
 /// Heun's method: a step of Euler, then one by the trapezoidal rule.
@@ -43,7 +43,7 @@ impl Engine for Heun {
         self.takes(task).map_err(Failure::new)?;
         let step = accuracy.step().ok_or_else(|| Failure::new("needs a step"))?;
         let step = step * task.shortest_time();
-        let equations = Affine::of(&task.system);
+        let equations = AffineEquations::new(&task.system);
         let mut heun = HeunRun { equations, work: Work::default() };
         let mut outcome = Outcome::default();
         let (mut t, mut mode, mut state) = (0.0, task.mode, task.state);
@@ -78,7 +78,7 @@ impl Engine for Heun {
 
 /// The equations, and what was counted.
 struct HeunRun<'a> {
-    equations: Affine<'a>,
+    equations: AffineEquations<'a>,
     work: Work,
 }
 

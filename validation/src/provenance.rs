@@ -6,5 +6,5 @@ pub use percuss_harness::provenance::Build;
 /// The build of this program on this machine.
 #[must_use]
 pub fn this() -> Build {
-    Build::of(env!("PERCUSS_COMMIT"), env!("PERCUSS_RUSTC"), env!("PERCUSS_TARGET_CPU"))
+    Build::new(env!("PERCUSS_COMMIT"), env!("PERCUSS_RUSTC"), env!("PERCUSS_TARGET_CPU"))
 }

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 fn case(name: &str) -> TimedCase {
     let library = Library::embedded().expect("the tables are read");
-    TimedCase::of(&exact::case(name), &library).expect("a case")
+    TimedCase::new(&exact::case(name), &library).expect("a case")
 }
 
 fn exact_solver() -> &'static dyn Engine {
@@ -67,7 +67,7 @@ fn system_cases() -> Vec<TimedCase> {
     let library = Library::embedded().expect("the tables are read");
     let cases = exact::of_systems();
     let named = |name: &&str| cases.iter().find(|it| it.name == **name).expect("a case");
-    SYSTEMS.iter().map(|it| TimedCase::of(named(it), &library).expect("a case")).collect()
+    SYSTEMS.iter().map(|it| TimedCase::new(named(it), &library).expect("a case")).collect()
 }
 
 /// Every system is timed, and the exact solver's answers are right: its own part is the same run.

@@ -8,7 +8,7 @@ use percuss_validation::integrators::all;
 
 fn outcome(engine: &dyn Engine) -> Outcome {
     let case = exact::case("chaos-from-rest");
-    let task = OscillatorTask::of(
+    let task = OscillatorTask::new(
         case.of_oscillator().expect("it is one"),
         SampleGrid { per_period: 4, count: 161 },
     );

@@ -48,7 +48,7 @@ fn one_record_does_not_stand_for_an_instant() {
         let first = &mut answer.events[0];
         (first.event, first.state) = (event, after);
     };
-    let meeting = Values::of(&[1.0, 2.0, 3.0, -9.0, -6.0, -3.0]);
+    let meeting = Values::from_slice(&[1.0, 2.0, 3.0, -9.0, -6.0, -3.0]);
     for found in forged_judgements("spheres-meet-inelastic", |case, it| {
         whole(case, it, "two-three", meeting)
     }) {

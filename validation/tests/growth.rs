@@ -44,7 +44,7 @@ fn run(case: &Case) -> (OscillatorTask, Truth) {
     let library = Library::embedded().expect("the manifest is read");
     let truth = library.truth(case).expect("the tables are there");
     let grid = SampleGrid { per_period: SAMPLES_PER_PERIOD, count: truth.samples.len() };
-    (OscillatorTask::of(case.of_oscillator().expect("it is one"), grid), truth)
+    (OscillatorTask::new(case.of_oscillator().expect("it is one"), grid), truth)
 }
 
 #[test]

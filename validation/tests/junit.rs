@@ -64,7 +64,7 @@ fn failures_are_annotated_under_the_service_only() {
 #[test]
 fn a_case_inside_the_binary_is_annotated_at_its_place_in_the_repository() {
     let case = percuss_validation::case::embedded().expect("cases").swap_remove(0);
-    let note = percuss_validation::report::CaseNote::of(&case, true);
+    let note = percuss_validation::report::CaseNote::new(&case, true);
     assert!(
         Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(&note.file).is_file(),
         "{note:?}"

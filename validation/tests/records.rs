@@ -54,7 +54,7 @@ pub(super) fn answered_to(
     let right = answer(engine, &case.task, accuracy, &limits).expect("an answer");
     let classes = defaults().expect("the limits are read").classes;
     let class = class_of(&classes, &declaration, accuracy).expect("a class");
-    (right, Allowance::of(class, declaration.stepping.unit(accuracy)))
+    (right, Allowance::new(class, declaration.stepping.unit(accuracy)))
 }
 
 pub(super) fn judged(
@@ -95,9 +95,11 @@ fn count_caught(variant: Variant) -> (usize, usize, Vec<WrongKind>) {
     let (mut caught, mut spoiled, mut kinds) = (0, 0, Vec::new());
     for case in cases() {
         let (right, allowance) = answer_of(engine, &case);
-        let Some(wrong) =
-            variant.of(&case.task, (&right, case.local.judged(&right)), allowance.tolerance)
-        else {
+        let Some(wrong) = variant.wrong_answer(
+            &case.task,
+            (&right, case.local.judged(&right)),
+            allowance.tolerance,
+        ) else {
             continue;
         };
         let found = judged(&case, &wrong, allowance);

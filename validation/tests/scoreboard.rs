@@ -32,7 +32,7 @@ fn report(version: &str) -> Value {
 
 fn board(reports: &[Value]) -> anyhow::Result<Board> {
     let read = |it: &Value| serde_json::from_value(it.clone()).expect("a report");
-    Board::of(&reports.iter().map(read).collect::<Vec<_>>())
+    Board::new(&reports.iter().map(read).collect::<Vec<_>>())
 }
 
 #[test]

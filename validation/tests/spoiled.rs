@@ -35,7 +35,7 @@ const fn spoiled(name: &'static str, change: fn(&mut Outcome)) -> Spoiled {
 
 /// Two events that are not there, from this time on.
 fn add_spurious(outcome: &mut Outcome, at: usize, elapsed: f64) {
-    let state = Values::of(&[0.0; 4]);
+    let state = Values::from_slice(&[0.0; 4]);
     let event =
         |phase, elapsed| Event { event: 0, mode: place(phase), elapsed, state, before: None };
     let pair = [event(Phase::Contact, elapsed), event(Phase::NoContact, elapsed + 1e-9)];
@@ -65,7 +65,7 @@ static FAILING: [Spoiled; 7] = [
 ];
 static ERRING: [Spoiled; 4] = [
     spoiled("exact-few-samples", |it| it.samples.truncate(2)),
-    spoiled("exact-surplus-sample", |it| it.samples.push(Values::of(&[0.0; 4]))),
+    spoiled("exact-surplus-sample", |it| it.samples.push(Values::from_slice(&[0.0; 4]))),
     spoiled("exact-event-without-time", |it| it.events[3].elapsed = f64::NAN),
     spoiled("exact-events-out-of-order", |it| it.events.swap(2, 5)),
 ];

@@ -291,7 +291,7 @@ fn the_exact_solver_is_sampled_between_events() {
         }
         let truth: Truth = library.truth(&case).expect("its table");
         let problem = Arc::new(case.problem().expect("it is taken"));
-        let task = Task::of(&problem, truth.span, truth.sample_times()).expect("a task");
+        let task = Task::from_problem(&problem, truth.span, truth.sample_times()).expect("a task");
         let run = answer(exact(), &task, Accuracy::Exact, &Limits::default());
         let outcome = run.expect("it runs");
         for (row, state) in truth.samples.iter().zip(&outcome.samples) {

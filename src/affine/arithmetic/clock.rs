@@ -25,8 +25,8 @@ pub struct Clock<T> {
 impl<T: Number> Time<T> {
     /// A rational time, rounded to two words.
     #[must_use]
-    pub fn of(number: &Rational) -> Self {
-        let real = BigReal::of(number, bits_for::<T>());
+    pub fn new(number: &Rational) -> Self {
+        let real = BigReal::new(number, bits_for::<T>());
         if is_f64::<T>() {
             let (high, low) = real.words();
             return Self { high: T::exact(high), low: T::exact(low) };
@@ -66,15 +66,15 @@ fn sum<T: Number>(a: T, b: T) -> Time<T> {
 }
 
 impl<T: Number> Clock<T> {
-    pub fn of(forcing: &Forcing) -> Self {
-        Self { omega: Time::of(&forcing.omega), phi: Time::of(&forcing.phi) }
+    pub fn new(forcing: &Forcing) -> Self {
+        Self { omega: Time::new(&forcing.omega), phi: Time::new(&forcing.phi) }
     }
 
     /// A bound of the rounding error of theta at a time: omega, times and their sums are rounded to
     /// 106 bits, whether those are one number or two, or to the bits of a wider arithmetic.
     #[inline]
     pub fn rounding(&self, time: &Time<T>) -> T::Bound {
-        let unit = T::unit().min(T::Bound::of(f64::EPSILON * f64::EPSILON));
+        let unit = T::unit().min(T::Bound::from_f64(f64::EPSILON * f64::EPSILON));
         let size = (self.omega.high * time.high).bound().abs() + self.phi.high.bound().abs();
         unit * size
     }

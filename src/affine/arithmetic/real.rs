@@ -42,7 +42,7 @@ impl BigReal {
     }
 
     /// A rational number, rounded to so many bits.
-    pub fn of(number: &Rational, bits: usize) -> Self {
+    pub fn new(number: &Rational, bits: usize) -> Self {
         Self(number.big().to_float::<HalfEven, 2>(bits).value().with_precision(bits).value())
     }
 
@@ -60,7 +60,7 @@ impl BigReal {
     /// The number, rounded to the digits of a bound.
     pub fn bound<B: Bound>(&self) -> B {
         let exponent = self.exponent();
-        B::of(self.scaled(-exponent).to_f64()).scaled(exponent as i64)
+        B::from_f64(self.scaled(-exponent).to_f64()).scaled(exponent as i64)
     }
 
     pub fn to_f64(&self) -> f64 {

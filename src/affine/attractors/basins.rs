@@ -57,7 +57,7 @@ pub struct UnresolvedReturn {
 }
 
 impl UnresolvedReturn {
-    fn of(catalog: &Catalog<SectionMotions<'_>>, start: &Place<f64>) -> Self {
+    fn new(catalog: &Catalog<SectionMotions<'_>>, start: &Place<f64>) -> Self {
         let late = described(&catalog.motions, catalog.limits, start);
         let (mode, time, state) = (start.mode, start.time.value(), start.state.clone());
         let point = Return { mode, time, state };
@@ -99,7 +99,7 @@ pub(super) struct PlaneStart<'a> {
 }
 
 impl<'a> PlaneStart<'a> {
-    pub(super) fn of(
+    pub(super) fn new(
         solver: &'a Solver<f64>,
         start: &'a StartPoint,
         axes: &[usize],
@@ -176,8 +176,8 @@ impl SectionMap<'_, f64> {
         limits: impl Into<SearchLimits>,
         seen: &(dyn Fn(u64) + Sync),
     ) -> Result<ReturnBasins, SystemError> {
-        let at = PlaneStart::of(self.solver(), start, &plane.axes)?;
-        let mut catalog = Catalog::new(SectionMotions::of(self), limits.into());
+        let at = PlaneStart::new(self.solver(), start, &plane.axes)?;
+        let mut catalog = Catalog::new(SectionMotions::new(self), limits.into());
         let lattice = Plane { columns: LATTICE_SIDE, rows: LATTICE_SIDE, ..*plane };
         catalog.label_all(&lattice.starts(&at)?, &|_| ());
         let starts = plane.starts(&at)?;
@@ -185,7 +185,7 @@ impl SectionMap<'_, f64> {
         let known: Vec<_> = catalog.known.iter().map(|it| it.attractor.clone()).collect();
         let mut basins = ReturnBasins::sorted(*plane, &known, labels);
         let examples = examples(&basins.labels).into_iter();
-        basins.unresolved = examples.map(|n| UnresolvedReturn::of(&catalog, &starts[n])).collect();
+        basins.unresolved = examples.map(|n| UnresolvedReturn::new(&catalog, &starts[n])).collect();
         Ok(basins)
     }
 }

@@ -27,7 +27,7 @@ pub struct SectionCoordinates {
 }
 
 impl SectionCoordinates {
-    pub fn of(map: &SectionMap<'_, f64>) -> Self {
+    pub fn new(map: &SectionMap<'_, f64>) -> Self {
         let system = map.system();
         let states = system.states.len();
         let mut sizes = [0.0; MAX_COORDINATES];

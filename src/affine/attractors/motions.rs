@@ -34,8 +34,8 @@ pub struct SectionMotions<'m> {
 }
 
 impl<'m> SectionMotions<'m> {
-    pub fn of(map: &'m SectionMap<'m, f64>) -> Self {
-        Self { map, coordinates: SectionCoordinates::of(map) }
+    pub fn new(map: &'m SectionMap<'m, f64>) -> Self {
+        Self { map, coordinates: SectionCoordinates::new(map) }
     }
 
     /// The derivative of one turn from a place, and that of its last return.

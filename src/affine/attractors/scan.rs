@@ -37,8 +37,8 @@ impl SectionMap<'_, f64> {
         period: u32,
         seen: &(dyn Fn(u64) + Sync),
     ) -> Result<Vec<Orbit>, SystemError> {
-        let motions = SectionMotions::of(self);
-        let starts = plane.starts(&PlaneStart::of(self.solver(), start, &plane.axes)?)?;
+        let motions = SectionMotions::new(self);
+        let starts = plane.starts(&PlaneStart::new(self.solver(), start, &plane.axes)?)?;
         let reached = parallel::map(&starts, |start| {
             let reached = motions.reached_orbits(start, period);
             seen(1);

@@ -32,7 +32,7 @@ pub enum BlockGrowth {
 }
 
 impl BlockGrowth {
-    pub fn of(block: &modal::Block) -> Self {
+    pub fn new(block: &modal::Block) -> Self {
         let never_grows = |rate: &BigReal| *rate <= BigReal::zero();
         match &block.kind {
             Kind::Real(rate) if rate.is_zero() => Self::Polynomial,
@@ -69,7 +69,7 @@ fn growth_by<B: Bound>(x: f64) -> B {
     /// it is e - 2.
     const MAX_QUOTIENT: f64 = 0.718_281_828_459_046;
     if x <= 1.0 {
-        B::of((1.0 + x * (1.0 + x * MAX_QUOTIENT)) * OUTWARD_FACTOR)
+        B::from_f64((1.0 + x * (1.0 + x * MAX_QUOTIENT)) * OUTWARD_FACTOR)
     } else {
         B::exp(x) * OUTWARD_FACTOR
     }
@@ -78,7 +78,7 @@ fn growth_by<B: Bound>(x: f64) -> B {
 /// The sum of `norms[j] length^j/j!`, where norms that are zero end it.
 #[inline]
 fn polynomial<B: Bound>(norms: &[B], length: f64) -> B {
-    let (mut sum, mut factor) = (B::ZERO, B::of(1.0));
+    let (mut sum, mut factor) = (B::ZERO, B::from_f64(1.0));
     for (j, norm) in norms.iter().enumerate() {
         if *norm == 0.0 {
             break;
@@ -143,7 +143,7 @@ fn norm<B: Bound>(part: &[BigReal]) -> B {
 
 /// Sorts blocks by their speed, the fastest first and those without a bound for all times last.
 pub fn ordered(mut blocks: Vec<modal::Block>) -> Vec<modal::Block> {
-    let speed = |block: &modal::Block| match BlockGrowth::of(block) {
+    let speed = |block: &modal::Block| match BlockGrowth::new(block) {
         BlockGrowth::Decaying | BlockGrowth::Bounded => modal::norm(&block.matrix),
         BlockGrowth::Polynomial | BlockGrowth::Growing(_) => -1.0,
     };

@@ -59,7 +59,7 @@ pub struct FlowBlock<T: Number> {
 
 impl<T: Number> ModeFlow<T> {
     /// A mode's closed form from its blocks.
-    pub fn of(blocks: &[modal::Block]) -> Self {
+    pub fn new(blocks: &[modal::Block]) -> Self {
         let dimension = blocks.iter().map(|it| it.matrix.len()).sum();
         let mut flow = Self {
             dimension,
@@ -82,7 +82,7 @@ impl<T: Number> ModeFlow<T> {
             let [columns, rows] = &block.errors;
             flow.errors[0].extend(by_columns(columns));
             errors.extend(rows.iter().cloned());
-            flow.blocks.push(FlowBlock::of(block, at));
+            flow.blocks.push(FlowBlock::new(block, at));
         }
         let rate = |block: &FlowBlock<T>| {
             if let BlockGrowth::Growing(rate) = block.growth { rate } else { 0.0 }
@@ -276,7 +276,7 @@ impl<T: Number> ModeFlow<T> {
     /// Bounds of the errors that underflow makes in each of `subspaces`: none in zeros.
     pub fn underflow(&self, y: &Vector<T>) -> Vector<T::Bound> {
         let lost = |norm: T::Bound| match norm > 0.0 {
-            true => T::Bound::UNDERFLOW * 4.0 * (T::Bound::of(1.0) + norm),
+            true => T::Bound::UNDERFLOW * 4.0 * (T::Bound::from_f64(1.0) + norm),
             false => T::Bound::ZERO,
         };
         self.norms(y).map(lost)
@@ -312,9 +312,9 @@ impl<T: Number> FlowBlock<T> {
         self.at..self.at + self.size
     }
 
-    fn of(block: &modal::Block, at: usize) -> Self {
-        let motion = BlockMotion::of(block, at);
-        let (size, growth) = (block.matrix.len(), BlockGrowth::of(block));
+    fn new(block: &modal::Block, at: usize) -> Self {
+        let motion = BlockMotion::new(block, at);
+        let (size, growth) = (block.matrix.len(), BlockGrowth::new(block));
         Self { at, size, speed: block.speed(), motion, growth }
     }
 }
@@ -333,7 +333,7 @@ fn subspaces(blocks: &[modal::Block]) -> Vec<Subspace> {
     let parts = |Subspace { block, range }: &Subspace| {
         let (block, Range { start, end }) = (*block, range.clone());
         let own = &blocks[block];
-        let is_kept = BlockGrowth::of(own) != BlockGrowth::Polynomial;
+        let is_kept = BlockGrowth::new(own) != BlockGrowth::Polynomial;
         let first = (1..range.len()).filter(|first| is_kept && own.moves_alone_from(*first));
         first.map(move |first| Subspace { block, range: start + first..end }).collect::<Vec<_>>()
     };

@@ -72,7 +72,7 @@ fn nonzero<T: Number>(value: &BigReal) -> Option<SplitNumber<T>> {
 
 impl<T: Number> BlockMotion<T> {
     /// The motion of a block whose co-ordinates begin at a place of the vector.
-    pub fn of(block: &modal::Block, at: usize) -> Self {
+    pub fn new(block: &modal::Block, at: usize) -> Self {
         match &block.kind {
             Kind::Real(rate) if rate.is_zero() => Self::Still,
             Kind::Real(rate) => Self::Real { rate: words(rate) },
@@ -84,11 +84,11 @@ impl<T: Number> BlockMotion<T> {
                 if index <= 1 && rate.is_zero() {
                     return Self::Still;
                 }
-                let (rate, triangular) = (nonzero(rate), SparseTriangular::of(&matrix, at));
+                let (rate, triangular) = (nonzero(rate), SparseTriangular::new(&matrix, at));
                 let matrix = matrix.iter().map(|row| vector(row)).collect();
                 Self::Nilpotent { rate, matrix, powers: index - 1, triangular }
             }
-            Kind::Cluster => Self::Cluster(Box::new(PowerTables::of(&block.matrix))),
+            Kind::Cluster => Self::Cluster(Box::new(PowerTables::new(&block.matrix))),
         }
     }
 
@@ -98,7 +98,7 @@ impl<T: Number> BlockMotion<T> {
         /// The factor by which an exponential is raised against its rounding and that of its
         /// exponent.
         const OUTWARD_FACTOR: f64 = 1.0 + 1e-9;
-        let one = T::Bound::of(1.0);
+        let one = T::Bound::from_f64(1.0);
         let by = |rate: f64, factor: f64| match rate < 0.0 {
             true => {
                 (T::Bound::exp(rate * time * (1.0 - 1e-12)) * (OUTWARD_FACTOR * factor)).min(one)
@@ -279,7 +279,7 @@ fn phase<T: Number>() -> f64 {
 #[inline]
 fn raised<T: Number>(factor: T, rate: &SplitNumber<T>, time: T) -> T::Bound {
     let angle = (rate.high * time).bound().abs();
-    factor.bound() * (T::Bound::of(1.0) + angle * phase::<T>())
+    factor.bound() * (T::Bound::from_f64(1.0) + angle * phase::<T>())
 }
 
 /// The table whose first power this is, which becomes the first of the next table.
@@ -300,7 +300,7 @@ impl<T: Number> PowerTables<T> {
     /// The number of steps that the tables do not hold any more.
     const MAX_STEPS: f64 = (1_u64 << (4 * Self::LEVELS)) as f64;
 
-    fn of(matrix: &[Vec<BigReal>]) -> Self {
+    fn new(matrix: &[Vec<BigReal>]) -> Self {
         /// The rounding of a logarithmic norm, relative to the norm.
         const ROUNDING_TOLERANCE: f64 = 1e-12;
         let size = modal::norm(matrix);

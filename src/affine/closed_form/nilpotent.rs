@@ -63,7 +63,7 @@ pub(super) fn nilpotent(block: &modal::Block, rate: &BigReal) -> (Vec<Vec<BigRea
 impl<T: Number> SparseTriangular<T> {
     /// The matrix of a block whose co-ordinates begin at a place of the vector; none if no order of
     /// its rows makes it triangular.
-    pub fn of(matrix: &[Vec<BigReal>], at: usize) -> Option<Self> {
+    pub fn new(matrix: &[Vec<BigReal>], at: usize) -> Option<Self> {
         let follows = |row: &usize, other: &usize| !matrix[*row][*other].is_zero();
         let mut left: Vec<usize> = (0..matrix.len()).collect();
         let mut rows = Vec::new();
@@ -71,7 +71,7 @@ impl<T: Number> SparseTriangular<T> {
             // A row on which no other row, nor itself, depends.
             let is_first = |row: &usize| !left.iter().any(|other| follows(other, row));
             let first = left.remove(left.iter().position(is_first)?);
-            rows.push(SparseRow::of(&matrix[first], first, at));
+            rows.push(SparseRow::new(&matrix[first], first, at));
         }
         rows.retain(|row| !row.entries.is_empty());
         Some(Self { rows })
@@ -104,7 +104,7 @@ impl<T: Number> SparseTriangular<T> {
 }
 
 impl<T: Number> SparseRow<T> {
-    fn of(row: &[BigReal], n: usize, at: usize) -> Self {
+    fn new(row: &[BigReal], n: usize, at: usize) -> Self {
         let there = row.iter().enumerate().filter(|(_, entry)| !entry.is_zero());
         let entry = |(column, entry): (usize, &BigReal)| {
             let factor = rounded::<T>(entry);
@@ -175,7 +175,7 @@ mod tests {
         #[test]
         fn a_chain_moves_as_its_powers_do(matrix in matrix(), time in 0.0..3.0_f64) {
             let at = 5;
-            let Some(triangular) = SparseTriangular::of(&big(&matrix), at) else {
+            let Some(triangular) = SparseTriangular::new(&big(&matrix), at) else {
                 return Err(TestCaseError::fail("the rows have an order"));
             };
             let (mut y, mut sizes) = ([7.0; LARGEST_DIMENSION], [3.0; LARGEST_DIMENSION]);
@@ -197,6 +197,6 @@ mod tests {
     #[test]
     fn a_circle_is_no_chain() {
         let matrix = [[1.0, -1.0], [1.0, -1.0]].map(|row| row.map(BigReal::exact).to_vec());
-        assert!(SparseTriangular::<f64>::of(&matrix, 0).is_none());
+        assert!(SparseTriangular::<f64>::new(&matrix, 0).is_none());
     }
 }

@@ -28,7 +28,7 @@ pub(super) struct OnLine {
 const END_DISTANCES: [f64; 2] = [2.0, 4.0];
 
 impl Sought {
-    pub fn of(found: &ReturnBifurcation) -> Self {
+    pub fn new(found: &ReturnBifurcation) -> Self {
         let ReturnBifurcation { kind, event, is_lost, .. } = *found;
         Self { kind, event, is_lost }
     }
@@ -43,10 +43,10 @@ impl Curve<'_> {
         let start = self.corrected_point(expected, -reach)?;
         match sought.kind {
             BifurcationKind::Fold => self.zero(&start, reach, &OrbitPoint::rate),
-            BifurcationKind::Flip => self.zero(&start, reach, &OrbitPoint::flip),
+            BifurcationKind::Flip => self.zero(&start, reach, &OrbitPoint::flip_test),
             BifurcationKind::NeimarkSacker => {
-                let (_, pairs) = start.torus();
-                self.zero(&start, reach, &|it| match it.torus() {
+                let (_, pairs) = start.neimark_sacker_test();
+                self.zero(&start, reach, &|it| match it.neimark_sacker_test() {
                     (test, count) if count == pairs => test,
                     _ => f64::NAN,
                 })

@@ -48,7 +48,7 @@ impl BifurcationCurve {
         let count = branch.bifurcations.len() as f64;
         for (n, found) in branch.bifurcations.iter().enumerate() {
             let mut share = |share: f64| progress((n as f64 + share) / count);
-            let tracer = Tracer { plane, sought: Sought::of(found) };
+            let tracer = Tracer { plane, sought: Sought::new(found) };
             let start = traced_point(found, second);
             let is_known = curves.iter().any(|(points, curve)| {
                 (curve.kind, curve.event) == (found.kind, found.event)
@@ -56,7 +56,7 @@ impl BifurcationCurve {
             });
             if !is_known {
                 let (points, endings) = whole_curve(&tracer, start, &mut share);
-                let own = Self::of(plane, found, &points, endings);
+                let own = Self::new(plane, found, &points, endings);
                 curves.push((points, own));
             }
             share(1.0);
@@ -64,7 +64,7 @@ impl BifurcationCurve {
         curves.into_iter().map(|(_, curve)| curve).collect()
     }
 
-    fn of(
+    fn new(
         plane: &ReturnPlane<'_>,
         found: &ReturnBifurcation,
         points: &[Traced],

@@ -222,7 +222,7 @@ impl Curve<'_> {
             images.rotate_right(1);
             self.family.at(value, |map| {
                 let images = images.iter().map(|it| map.rebased(it)).collect();
-                Shots::of(map, images)
+                Shots::new(map, images)
             })
         });
         let starts =

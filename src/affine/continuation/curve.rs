@@ -84,7 +84,7 @@ impl<'a> Curve<'a> {
     pub fn first(&self, value: f64, places: Vec<Place<f64>>, way: f64) -> Option<CurvePoint> {
         let points = vec![[0.0; MAX_COORDINATES]; places.len()];
         let along = Direction { points, rate: self.unit * way };
-        let shots = self.family.at(value, |map| Shots::of(map, places))?;
+        let shots = self.family.at(value, |map| Shots::new(map, places))?;
         self.point(value, shots, &along)
     }
 
@@ -100,7 +100,7 @@ impl<'a> Curve<'a> {
                 let place = map.take_up(point);
                 map.moved(&place, &change.map(|it| it * distance), &place)
             });
-            Shots::of(map, moved.collect())
+            Shots::new(map, moved.collect())
         })
     }
 
@@ -151,7 +151,7 @@ impl<'a> Curve<'a> {
                 let piece = &shots.images[(k + count - 1) % count].point;
                 map.moved(&map.take_up(point), change, piece)
             });
-            Shots::of(map, moved.collect())
+            Shots::new(map, moved.collect())
         })
     }
 

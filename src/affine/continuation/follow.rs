@@ -64,7 +64,7 @@ impl OrbitCurve for Curve<'_> {
                 let [a, b] = [a, b].map(|it| map.take_up(it));
                 map.moved(&a, &map.change_between(&a, &b).map(|it| share * it), &a)
             });
-            let shots = polish(map, Shots::of(map, between.collect())?);
+            let shots = polish(map, Shots::new(map, between.collect())?);
             shots.is_closed().then_some(shots)
         })?;
         self.point(value, shots, &next.tangent)

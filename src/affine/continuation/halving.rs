@@ -22,7 +22,7 @@ impl Curve<'_> {
                 let place = map.take_up(it);
                 map.moved(&place, &change.map(|by| 0.5 * by), &place)
             });
-            solve(map, Shots::of(map, points.collect())?).ok()
+            solve(map, Shots::new(map, points.collect())?).ok()
         })?;
         let along = Direction { points: vec![[0.0; MAX_COORDINATES]; half], rate: self.unit };
         self.point(point.value, middle, &along)

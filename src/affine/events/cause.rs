@@ -56,8 +56,8 @@ pub enum Cause {
 
 impl Cause {
     /// The cause of a run's ending, if it has one.
-    pub(super) fn of<T: Number>(run: &Run<'_, T>, system: &System) -> Option<Self> {
-        let name = |it: &What<T>| Kind::of(it).name(system).to_owned();
+    pub(super) fn new<T: Number>(run: &Run<'_, T>, system: &System) -> Option<Self> {
+        let name = |it: &What<T>| Kind::new(it).name(system).to_owned();
         match run.ending()? {
             Ending::BeyondGuard => {
                 Some(Self::BeyondGuard { event: name(&run.event_beyond_guard()?) })

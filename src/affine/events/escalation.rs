@@ -66,7 +66,7 @@ impl ProvedSolver {
             }
         };
         let steps = Steps::begin(solver, request, true)?;
-        let sizes = Sizes::of(&steps.run.start());
+        let sizes = Sizes::new(&steps.run.start());
         Ok(Box::new(InArithmetic { system: &self.system, steps, step: None, sizes }))
     }
 }
@@ -145,10 +145,10 @@ impl<'a, T: Number> InArithmetic<'a, T> {
     ) -> Event<'a, Proved> {
         let errors = event.errors.as_ref();
         let error = |it: Option<&T::Bound>| it.copied().unwrap_or(T::Bound::INFINITY);
-        let time = Proved::of(event.time.value(), error(errors.map(|it| &it.time)));
+        let time = Proved::new(event.time.value(), error(errors.map(|it| &it.time)));
         let state = event.state.iter().enumerate();
         let state = state
-            .map(|(n, value)| Proved::of(*value, error(errors.and_then(|it| it.state.get(n)))));
+            .map(|(n, value)| Proved::new(*value, error(errors.and_then(|it| it.state.get(n)))));
         Event {
             system: self.system,
             kind,
@@ -163,7 +163,7 @@ impl<'a, T: Number> InArithmetic<'a, T> {
 
 impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
     fn start(&self) -> Event<'a, Proved> {
-        let gradients = self.steps.walks.of_start(|it| Proved::of(it.0, it.1));
+        let gradients = self.steps.walks.of_start(|it| Proved::new(it.0, it.1));
         self.proved(&self.steps.run.start(), Kind::Start, gradients)
     }
 
@@ -197,12 +197,12 @@ impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
 
     fn event(&self) -> Option<Event<'a, Proved>> {
         let step = self.step.as_ref()?;
-        let gradients = self.steps.walks.of_last(|it| Proved::of(it.0, it.1));
+        let gradients = self.steps.walks.of_last(|it| Proved::new(it.0, it.1));
         Some(self.proved(&step.event, step.kind(), gradients))
     }
 
     fn cause(&self) -> Option<Cause> {
-        Cause::of(&self.steps.run, self.system)
+        Cause::new(&self.steps.run, self.system)
     }
 }
 
@@ -214,7 +214,7 @@ fn accumulation<T: Number>(last: &engine::Event<T>) -> Option<Box<[Proved; 2]>> 
     let middle = time + (from + to) * T::exact(0.5);
     // The rounding of these operations is below the last term.
     let width = 0.5 * (to - from).to_f64() + error + 1e-29 * time.to_f64().abs();
-    let end = |width: f64| Proved::of(middle + T::exact(width), T::Bound::ZERO);
+    let end = |width: f64| Proved::new(middle + T::exact(width), T::Bound::ZERO);
     Some(Box::new([end(-width), end(width)]))
 }
 
@@ -234,7 +234,7 @@ struct Escalating<'a> {
 /// and run out of work before they meet the guard that fewer of them left open.
 #[derive(Default)]
 struct LeftOpen<'a> {
-    /// The latest of their endings, after so many events.
+    /// The latest ending that a run in fewer bits came to, after this number of events and samples.
     ending: Option<(u64, Event<'a, Proved>)>,
     /// The last cause that names a guard.
     cause: Option<Cause>,
@@ -249,7 +249,7 @@ struct Count {
 }
 
 impl Count {
-    fn of(&mut self, is_sample: bool) -> &mut u64 {
+    fn counter(&mut self, is_sample: bool) -> &mut u64 {
         if is_sample { &mut self.samples } else { &mut self.events }
     }
 
@@ -259,7 +259,7 @@ impl Count {
 
     /// Takes a step off, and says whether it was among those that are counted.
     fn take(&mut self, is_sample: bool) -> bool {
-        let count = self.of(is_sample);
+        let count = self.counter(is_sample);
         let is_there = *count > 0;
         *count = count.saturating_sub(1);
         is_there
@@ -333,7 +333,7 @@ impl<'a> Running<'a, Proved> for Escalating<'a> {
             if is_undecided {
                 return self.left.ending.take().map(|(_, event)| event);
             }
-            *self.given.of(is_sample) += 1;
+            *self.given.counter(is_sample) += 1;
             return self.run.event();
         }
         None

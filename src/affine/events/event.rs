@@ -69,7 +69,7 @@ impl<T> From<&engine::Ending<T>> for Ending {
 }
 
 impl Kind {
-    pub(super) fn of<T>(what: &engine::What<T>) -> Self {
+    pub(super) fn new<T>(what: &engine::What<T>) -> Self {
         match what {
             engine::What::Start => Self::Start,
             engine::What::Until(mode, index) => Self::Until(*mode, *index),

@@ -177,7 +177,7 @@ fn have_too_few_digits<T: Number>(
     sizes: &mut [T::Bound],
     digits: usize,
 ) -> bool {
-    let share = T::Bound::of(0.5 * 10_f64.powi(-(digits as i32)));
+    let share = T::Bound::from_f64(0.5 * 10_f64.powi(-(digits as i32)));
     let cells = || std::iter::once(&gradient.time).chain(&gradient.state);
     for ((value, error), size) in cells().zip(&mut *sizes) {
         let value = value.bound().abs();
@@ -185,7 +185,7 @@ fn have_too_few_digits<T: Number>(
         *size = if value > *error { size.max(value) } else { *size };
     }
     let largest = sizes.iter().copied().fold(T::Bound::ZERO, Bound::max);
-    let largest = if largest > T::Bound::ZERO { largest } else { T::Bound::of(1.0) };
+    let largest = if largest > T::Bound::ZERO { largest } else { T::Bound::from_f64(1.0) };
     cells().zip(&*sizes).any(|((value, error), size)| {
         let value = value.bound().abs();
         let of_zero = if *size > T::Bound::ZERO { *size } else { largest };

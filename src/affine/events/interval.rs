@@ -18,7 +18,7 @@ pub(super) struct Interval {
 
 impl Interval {
     /// The middle and the half width as f64 whose sums they are, times a power of two.
-    pub fn of(words: &[f64], error: f64, shift: i32) -> Self {
+    pub fn new(words: &[f64], error: f64, shift: i32) -> Self {
         let exponents =
             words.iter().chain([&error]).filter(|it| **it != 0.0).map(|it| split(*it).1);
         let exponent = exponents.min().unwrap_or(0);

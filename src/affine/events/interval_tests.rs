@@ -9,7 +9,7 @@ use crate::numeric::number::Number;
 use dashu::rational::RBig as Rational;
 
 fn proved(value: DoubleDouble, error: f64, digits: usize) -> String {
-    Proved::of(value, error).to_digits(digits)
+    Proved::new(value, error).to_digits(digits)
 }
 
 fn shown(value: f64, error: f64, digits: usize) -> String {
@@ -45,7 +45,7 @@ fn both_words_count() {
 #[test]
 fn significant_digits_are_counted() {
     let digits =
-        |value: f64, error: f64| Proved::of(DoubleDouble::new(value, 0.0), error).digits(17);
+        |value: f64, error: f64| Proved::new(DoubleDouble::new(value, 0.0), error).digits(17);
     let counts = [(1.25, 1e-4), (-1.25, 1e-3), (1e-30, 1e-28), (0.9999, 0.01), (1.5, 0.0)];
     let counts = counts.map(|(value, error)| digits(value, error));
     assert_eq!(counts, [Some(4), Some(3), Some(0), Some(2), Some(17)]);
@@ -56,22 +56,22 @@ fn significant_digits_are_counted() {
 #[test]
 fn midpoint_and_error_enclose() {
     let third = DoubleDouble::exact(1.0) / DoubleDouble::exact(3.0);
-    let proved = Proved::of(third, 1e-30);
+    let proved = Proved::new(third, 1e-30);
     assert_eq!(proved.midpoint(), 1.0 / 3.0);
     assert!(proved.error() >= 1e-30 && proved.error() < 1.001e-30);
     let words = proved.to_two_words();
     assert_eq!((words.high, words.low), third.words());
-    let near = Proved::of(DoubleDouble::exact(0.5), 1e-3);
+    let near = Proved::new(DoubleDouble::exact(0.5), 1e-3);
     assert!(near.may_be(0.5009) && near.may_be(0.4991) && !near.may_be(0.5011));
     assert_eq!(near.lower(3), Some("0.498".to_owned()));
     assert_eq!(near.upper(3), Some("0.502".to_owned()));
-    let unknown = Proved::of(DoubleDouble::exact(f64::NAN), 0.0);
+    let unknown = Proved::new(DoubleDouble::exact(f64::NAN), 0.0);
     assert!(unknown.midpoint().is_nan() && unknown.error().is_infinite() && unknown.may_be(7.0));
 }
 
 #[test]
 fn proved_numbers_are_printed_as_wide_as_asked_for() {
-    let half = Proved::of(DoubleDouble::exact(0.5), 0.0);
+    let half = Proved::new(DoubleDouble::exact(0.5), 0.0);
     assert_eq!(format!("{half:.3}|{half:>8.3}|{half:<8.3}|"), "0.500|   0.500|0.500   |");
     assert_eq!(format!("{half:8.3}|{half:^8.3}|{half:4.3}|"), "   0.500| 0.500  |0.500|");
     assert_eq!(format!("{half:*^9.3}|{half:_<8.3}|{half:->8.3}|"), "**0.500**|0.500___|---0.500|");
@@ -81,7 +81,7 @@ fn proved_numbers_are_printed_as_wide_as_asked_for() {
 #[test]
 fn proved_numbers_are_padded_as_f64_are() {
     for value in [0.5, -0.5, 12.25, -12.25] {
-        let proved = Proved::of(DoubleDouble::exact(value), 0.0);
+        let proved = Proved::new(DoubleDouble::exact(value), 0.0);
         // As many significant digits as three after the point.
         let digits = if value.abs() < 1.0 { 3 } else { 5 };
         assert_eq!(format!("{proved:+.digits$}"), format!("{value:+.3}"));
@@ -96,11 +96,11 @@ fn proved_numbers_are_padded_as_f64_are() {
 
 #[test]
 fn numbers_without_a_proved_digit_are_padded_too() {
-    let zero = Proved::of(DoubleDouble::exact(0.0), 0.0);
+    let zero = Proved::new(DoubleDouble::exact(0.0), 0.0);
     assert_eq!(format!("{zero:+}|{zero:^5}|{zero:03}|"), "+0|  0  |000|");
-    let unknown = Proved::of(DoubleDouble::exact(1e-30), 1e-28);
+    let unknown = Proved::new(DoubleDouble::exact(1e-30), 1e-28);
     assert_eq!(format!("{unknown:>8}|{unknown:^8}|{unknown:08}|"), "   0e-27| 0e-27  |0000e-27|");
-    let small = Proved::of(DoubleDouble::exact(-1.5e-9), 1e-12);
+    let small = Proved::new(DoubleDouble::exact(-1.5e-9), 1e-12);
     assert_eq!(format!("{small:011}|{small:<11}|"), "-0001.50e-9|-1.50e-9   |");
     let third = DoubleDouble::exact(1.0) / DoubleDouble::exact(3.0);
     assert_eq!(

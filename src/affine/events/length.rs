@@ -54,7 +54,7 @@ impl Run<'_, Proved> {
 
 impl<'a, A: Answer> Run<'a, A> {
     /// A run of a system that is prepared, from a start if it has one.
-    pub(super) fn of(prepared: &'a A::Prepared, start: Option<Cow<'a, StartPoint>>) -> Self {
+    pub(super) fn new(prepared: &'a A::Prepared, start: Option<Cow<'a, StartPoint>>) -> Self {
         let tangents = Vec::new();
         Self { prepared, start, digits: DEFAULT_DIGITS, most_bits: MAX_BITS, tangents }
     }

@@ -119,11 +119,11 @@ impl<A: Answer> Solver<A> {
 
     /// A run from the system's own start, whose length is said next.
     pub fn run(&self) -> Run<'_, A> {
-        Run::of(&self.prepared, self.system().start.as_ref().map(Cow::Borrowed))
+        Run::new(&self.prepared, self.system().start.as_ref().map(Cow::Borrowed))
     }
 
     /// A run from another start, such as one of [`System::start_at`], whose length is said next.
     pub fn run_from(&self, start: &StartPoint) -> Run<'_, A> {
-        Run::of(&self.prepared, Some(Cow::Owned(start.clone())))
+        Run::new(&self.prepared, Some(Cow::Owned(start.clone())))
     }
 }

@@ -64,7 +64,7 @@ impl<'a, T: Number> Running<'a, T> for Plain<'a, T> {
     }
 
     fn cause(&self) -> Option<Cause> {
-        Cause::of(&self.steps.run, self.solver.system())
+        Cause::new(&self.steps.run, self.solver.system())
     }
 
     fn bits(&self) -> u32 {

@@ -57,7 +57,7 @@ enum Content {
 
 impl Proved {
     /// A number of some arithmetic with a bound of its error.
-    pub(super) fn of<T: Number>(value: T, error: T::Bound) -> Self {
+    pub(super) fn new<T: Number>(value: T, error: T::Bound) -> Self {
         let size = value.bound().abs();
         let exponent = size.max(error).parts().1;
         if exponent.abs() > MAX_PRINTED_EXPONENT {
@@ -73,7 +73,7 @@ impl Proved {
         }
         // What a value has below the exponents of f64 is an error, too.
         let error = if words.len() > 2 { error.abs() + f64::MIN_POSITIVE } else { error.abs() };
-        Self(Content::Within(Interval::of(&words, error, shift as i32)))
+        Self(Content::Within(Interval::new(&words, error, shift as i32)))
     }
 
     /// The f64 next to the middle of the numbers that are possible; NaN where none is known.
@@ -110,7 +110,7 @@ impl Proved {
         if !number.is_finite() {
             return false;
         }
-        let other = Interval::of(&[number], 0.0, 0);
+        let other = Interval::new(&[number], 0.0, 0);
         let shift = |it: &IBig, exponent: i32, least: i32| it << (exponent - least) as usize;
         let exponent = own.exponent.min(other.exponent);
         let number = shift(&other.middle, other.exponent, exponent);
@@ -163,7 +163,7 @@ impl Proved {
         if !high.is_finite() || high == 0.0 {
             return TwoWord { high, low: 0.0 };
         }
-        let first = Interval::of(&[high], 0.0, 0);
+        let first = Interval::new(&[high], 0.0, 0);
         let exponent = it.exponent.min(first.exponent);
         let at = |number: &IBig, own: i32| number << (own - exponent) as usize;
         let rest = at(&it.middle, it.exponent) - at(&first.middle, first.exponent);
@@ -198,7 +198,7 @@ macro_rules! printed {
         $(
             impl fmt::Display for $number {
                 fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                    Proved::of(*self, self.bound().abs() * <$number>::unit()).fmt(f)
+                    Proved::new(*self, self.bound().abs() * <$number>::unit()).fmt(f)
                 }
             }
         )*

@@ -8,7 +8,7 @@ pub(super) struct Sizes<B>(Vec<B>);
 
 impl<B: Bound> Sizes<B> {
     /// The sizes at the start of a run.
-    pub fn of<T: Number<Bound = B>>(start: &Event<T>) -> Self {
+    pub fn new<T: Number<Bound = B>>(start: &Event<T>) -> Self {
         Self(start.state.iter().map(|it| it.bound().abs()).collect())
     }
 
@@ -21,7 +21,7 @@ impl<B: Bound> Sizes<B> {
         digits: usize,
     ) -> bool {
         let Some(errors) = &event.errors else { return false };
-        let share = B::of(0.5 * 10_f64.powi(-(digits as i32)));
+        let share = B::from_f64(0.5 * 10_f64.powi(-(digits as i32)));
         let time = event.time.value().bound().abs();
         let mut too_few = time > errors.time && errors.time > time * share;
         for ((value, error), size) in event.state.iter().zip(&errors.state).zip(&mut self.0) {

@@ -34,7 +34,7 @@ pub(super) struct Step<T: Number> {
 
 impl<T: Number> Step<T> {
     pub fn kind(&self) -> Kind {
-        if self.is_sample { Kind::Sample } else { Kind::of(&self.event.what) }
+        if self.is_sample { Kind::Sample } else { Kind::new(&self.event.what) }
     }
 }
 
@@ -53,7 +53,7 @@ impl<'a, T: Number> Steps<'a, T> {
             true => solver.run_enclosed(start, horizon)?,
             false => solver.run(start, horizon)?,
         };
-        let sampling = Sampling::of(request, system, end, solver.is_backward());
+        let sampling = Sampling::new(request, system, end, solver.is_backward());
         let walks = Walks::begin(solver, request, &run.start())?;
         Ok(Self { run, walks, has_begun: false, sampling, is_over: false })
     }
@@ -104,7 +104,7 @@ fn unit<T: Number>(system: &System) -> T {
 }
 
 fn number<T: Number>(exact: &Rational) -> T {
-    Time::<T>::of(exact).value()
+    Time::<T>::new(exact).value()
 }
 
 /// The times of samples, so many in a unit of time.
@@ -122,7 +122,7 @@ struct Sampling<T> {
 
 impl<T: Number> Sampling<T> {
     /// The samples that are asked for, if there are any.
-    fn of(request: &Request, system: &System, end: T, is_backward: bool) -> Option<Self> {
+    fn new(request: &Request, system: &System, end: T, is_backward: bool) -> Option<Self> {
         let parts = T::exact(f64::from(request.samples?));
         let start = number(&request.start.time);
         let unit = if is_backward { -unit::<T>(system) } else { unit(system) };

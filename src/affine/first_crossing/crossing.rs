@@ -213,7 +213,7 @@ fn terms<T: Number>(row: &ModalRow<T>) -> usize {
 #[inline]
 fn series_reversion<T: Number>(orders: &[T; 4]) -> T::Bound {
     let [value, slope, bend, third] = orders.map(Number::bound);
-    let inverse = T::Bound::of(1.0) / slope;
+    let inverse = T::Bound::from_f64(1.0) / slope;
     let step = -value * inverse;
     let share = step * inverse;
     let (second, third) = (bend * 0.5 * share, third / 6.0 * step * share);

@@ -43,7 +43,7 @@ pub(super) struct Lengths<T> {
 
 impl<T: Number> Lengths<T> {
     #[inline]
-    pub fn of(length: T) -> Self {
+    pub fn new(length: T) -> Self {
         let square = length * length;
         let power = square * square * (square * square);
         Self {

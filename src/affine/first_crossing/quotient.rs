@@ -79,7 +79,7 @@ impl<const N: usize> Quotient<N> {
     /// summed from; `margin` is what rounding does to them relative to these sizes, `slack` what it
     /// did to the value, and `lost` what underflow takes from them.
     #[inline]
-    pub fn of(
+    pub fn new(
         [orders, sizes]: [&[f64; N]; 2],
         zeros: usize,
         margin: f64,
@@ -296,7 +296,7 @@ mod tests {
             orders[k] = powers[k] * factorial;
             factorial *= (k + 1) as f64;
         }
-        Quotient::of([&orders, &orders.map(f64::abs)], zeros, f64::EPSILON, [0.0; 2])
+        Quotient::new([&orders, &orders.map(f64::abs)], zeros, f64::EPSILON, [0.0; 2])
     }
 
     /// Coefficients of guards that begin with some zeros, below zero, and how far the root of the

@@ -147,7 +147,7 @@ mod tests {
             }
             let slack = 4.0 * f64::EPSILON * (self.decay.value.abs() + orders[0].abs());
             let sizes = orders.map(f64::abs);
-            let rest = Quotient::of([&orders, &sizes], 0, f64::EPSILON, [slack, 0.0]);
+            let rest = Quotient::new([&orders, &sizes], 0, f64::EPSILON, [slack, 0.0]);
             (QuotientWithDecay { rest, decay: self.decay }, self.powers[8].abs() * FACTORIAL)
         }
     }

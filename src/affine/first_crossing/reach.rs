@@ -310,7 +310,7 @@ fn length<B: Bound>(orders: &[B; 4], eighth: B, zeros: usize, size: impl Fn() ->
     if !eighth.is_finite() {
         return 0.0;
     }
-    let room = B::of(MAX_REMAINDER * REMAINDER_DIVISOR) / eighth;
+    let room = B::from_f64(MAX_REMAINDER * REMAINDER_DIVISOR) / eighth;
     let [value, slope, bend, _] = orders.map(Bound::abs);
     let smallest = size() * MIN_RELATIVE_SIZE;
     let by_value = if zeros > 0 { smallest } else { value.max(smallest) };

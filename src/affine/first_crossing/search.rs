@@ -254,7 +254,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         work: &mut SearchWork,
     ) -> Option<f64> {
         let until = ends.right.time;
-        let lengths = Lengths::of(until - ends.left.time);
+        let lengths = Lengths::new(until - ends.left.time);
         let (mut share, mut guards): (Option<f64>, u64) = (None, 0);
         for (n, track) in live_tracks(tracks) {
             if ends.passed.has(n, until) {

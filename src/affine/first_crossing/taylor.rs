@@ -148,7 +148,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let orders = self.rows[n].rounded_orders::<LONG_TERMS>(&at.modal.y, 0);
         let after = crossing.time - at.time;
         let root = after.to_f64();
-        let (step, _) = Quotient::of([&orders, &[0.0; LONG_TERMS]], 0, 0.0, [0.0; 2]).step(root);
+        let (step, _) = Quotient::new([&orders, &[0.0; LONG_TERMS]], 0, 0.0, [0.0; 2]).step(root);
         let better = crossing.time - T::exact(step * root);
         let [low, high] = crossing.between;
         if low < better && better < high {
@@ -187,7 +187,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         orders[..4].copy_from_slice(&at.orders[n].map(Number::to_f64));
         orders.iter_mut().for_each(|order| *order *= track.outward);
         let errors = self.errors(n, at);
-        Quotient::of([&orders, &sizes], track.zeros, self.margin.to_f64(), errors)
+        Quotient::new([&orders, &sizes], track.zeros, self.margin.to_f64(), errors)
     }
 
     /// The rounding error of a guard's value, and a bound of what underflow takes from its

@@ -167,7 +167,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let value = part_of(row, &row.parts[0], track, &at.modal.y).to_f64();
         let [mut orders, sizes] = row.orders_and_sizes::<N>(&at.modal, row.first_column(1));
         orders.iter_mut().for_each(|order| *order *= track.outward);
-        let rest = Quotient::of([&orders, &sizes], 0, self.margin.to_f64(), self.errors(n, at));
+        let rest = Quotient::new([&orders, &sizes], 0, self.margin.to_f64(), self.errors(n, at));
         Some(QuotientWithDecay { rest, decay: DecayTerm { value, rate } })
     }
 

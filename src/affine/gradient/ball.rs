@@ -31,11 +31,11 @@ impl<T: Number> Ball<T> {
     }
 
     /// A rational number.
-    pub fn of(number: &Rational) -> Self {
+    pub fn new(number: &Rational) -> Self {
         if number.is_zero() {
             return Self::zero();
         }
-        Self::computed(rounded(&BigReal::of(number, bits_for::<T>())), T::Bound::ZERO)
+        Self::computed(rounded(&BigReal::new(number, bits_for::<T>())), T::Bound::ZERO)
     }
 
     /// The result of an operation on middles, with the rounding that this made.
@@ -126,8 +126,8 @@ impl<T: Number> Jet<T> {
     }
 
     /// A rational number with its derivative.
-    pub fn of(value: &Rational, rate: &Rational) -> Self {
-        Self { value: Ball::of(value), rate: Ball::of(rate) }
+    pub fn new(value: &Rational, rate: &Rational) -> Self {
+        Self { value: Ball::new(value), rate: Ball::new(rate) }
     }
 
     pub fn plus(self, other: Self) -> Self {

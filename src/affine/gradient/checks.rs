@@ -130,7 +130,7 @@ impl<T: Number> Walk<'_, T> {
             return Ok(Begin::At { is_positive });
         }
         let side = self.side.filter(|_| order == 0).ok_or(NoGradient::OneSided)?;
-        let moved: Vec<Jet<T>> = row.iter().zip(rate).map(|(a, b)| Jet::of(a, b)).collect();
+        let moved: Vec<Jet<T>> = row.iter().zip(rate).map(|(a, b)| Jet::new(a, b)).collect();
         let moves_up = dot(&moved, &self.state).rate.sign().ok_or(NoGradient::Undecided)?;
         let is_positive = moves_up == (side == Side::Above);
         for order in 1..=matrix.len() {
@@ -144,7 +144,7 @@ impl<T: Number> Walk<'_, T> {
     }
 
     fn is_positive(&self, row: &Row) -> Result<bool, NoGradient> {
-        let row: Vec<Jet<T>> = row.iter().map(|it| Jet::fixed(Ball::of(it))).collect();
+        let row: Vec<Jet<T>> = row.iter().map(|it| Jet::fixed(Ball::new(it))).collect();
         dot(&row, &self.state).value.sign().ok_or(NoGradient::Undecided)
     }
 }

@@ -14,9 +14,9 @@ pub(super) struct ModeJets<T: Number> {
 
 impl<T: Number> ModeJets<T> {
     /// The coefficients of a mode, with the derivatives that stand in the places of another.
-    pub fn of((mode, rates): (&Mode, &Mode)) -> Self {
+    pub fn new((mode, rates): (&Mode, &Mode)) -> Self {
         let row = |(row, rate): (&Row, &Row)| -> Vec<Jet<T>> {
-            row.iter().zip(rate).map(|(a, b)| Jet::of(a, b)).collect()
+            row.iter().zip(rate).map(|(a, b)| Jet::new(a, b)).collect()
         };
         let rows = |a: &[Row], b: &[Row]| a.iter().zip(b).map(row).collect::<Vec<_>>();
         let guards = (0..mode.until.len() + mode.watch.len())

@@ -46,7 +46,7 @@ fn norm<T: Number>(matrix: &[Vec<Jet<T>>], part: fn(&Jet<T>) -> &Ball<T>) -> T::
 /// to at most 2 b a^n/n!, where b is the norm of the matrix's derivative.
 fn taylor_sum<T: Number>(small: &[Vec<Jet<T>>]) -> Matrix<T> {
     let [own, rate] = [norm(small, |it| &it.value), norm(small, |it| &it.rate)];
-    let (mut order, mut term) = (0_u32, T::Bound::of(1.0));
+    let (mut order, mut term) = (0_u32, T::Bound::from_f64(1.0));
     while term > T::unit() && own > T::Bound::ZERO {
         order += 1;
         term = term * own / f64::from(order) * (1.0 + 1e-15);

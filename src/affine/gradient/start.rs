@@ -14,7 +14,7 @@ pub(super) struct StartRows {
 
 impl StartRows {
     /// The rows of a start, and of the derivatives that stand in the places of another.
-    pub fn of(system: &System, tangent: &Tangent, [point, rates]: [&StartPoint; 2]) -> Self {
+    pub fn new(system: &System, tangent: &Tangent, [point, rates]: [&StartPoint; 2]) -> Self {
         let turn = turn(system, tangent, [point, rates]);
         let values = values(system, point);
         let slopes = slopes(&values, rates, &turn);
@@ -30,7 +30,7 @@ pub(super) fn nearby_values(system: &System) -> Option<Vec<Vec<Rational>>> {
 
 /// A row of factors at an angle, whose cosine and sine stand before 1.
 pub(super) fn at_angle<T: Number>(row: &[Rational; 3], angle: &[Ball<T>; 3]) -> Ball<T> {
-    let terms = row.iter().zip(angle).map(|(a, b)| Ball::of(a).times(*b));
+    let terms = row.iter().zip(angle).map(|(a, b)| Ball::new(a).times(*b));
     terms.fold(Ball::zero(), Ball::plus)
 }
 

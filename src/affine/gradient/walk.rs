@@ -56,7 +56,7 @@ impl<'a, T: Number> Walk<'a, T> {
         if solver.is_backward() {
             return None;
         }
-        let rows = StartRows::of(system, tangent, [point, rates]);
+        let rows = StartRows::new(system, tangent, [point, rates]);
         let is_at_zero = system.is_at_zero_angle(point);
         let [z, s] = [&rows.values, &rows.slopes].map(|it| independent(it, is_at_zero));
         let beside = tangent.nearby.as_ref();
@@ -67,7 +67,7 @@ impl<'a, T: Number> Walk<'a, T> {
             start.mode,
             &StartZeros { s: &s, z: &z, nearby: nearby.as_deref() },
         )?;
-        let modes = system.modes.iter().zip(&tangent.modes).map(ModeJets::of).collect();
+        let modes = system.modes.iter().zip(&tangent.modes).map(ModeJets::new).collect();
         let mut own = Self {
             solver,
             tangent: Arc::clone(tangent),
@@ -76,7 +76,7 @@ impl<'a, T: Number> Walk<'a, T> {
             mode: start.mode,
             time: start.time,
             time_error: T::Bound::ZERO,
-            time_rate: Ball::of(&rates.time),
+            time_rate: Ball::new(&rates.time),
             state: Vec::new(),
             fires: 0,
             entered_by: None,
@@ -100,7 +100,8 @@ impl<'a, T: Number> Walk<'a, T> {
         self.side.is_none() && self.refused == Some(NoGradient::OneSided)
     }
 
-    /// The walk on one side of the name's value, from the last event on.
+    /// A copy of this walk, from its last event on, whose derivatives hold for only the smaller or
+    /// only the larger values of the parameter or start state.
     #[must_use]
     pub fn on_side(&self, side: Side) -> Self {
         let mut own = Self { side: Some(side), ..self.clone() };
@@ -280,7 +281,7 @@ impl<'a, T: Number> Walk<'a, T> {
         let states = self.solver.system().states.len();
         let phase = self.solver.phase_roundings(&event.time)[states];
         // Sine and cosine themselves are good to a few units.
-        let error = Ball::<T>::of(&forcing.omega).size() * moved + phase + T::unit() * 8.0;
+        let error = Ball::<T>::new(&forcing.omega).size() * moved + phase + T::unit() * 8.0;
         [Ball::within(cos, error), Ball::within(sin, error), one]
     }
 

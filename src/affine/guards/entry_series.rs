@@ -31,7 +31,7 @@ pub(super) fn has_series(zeros: usize) -> bool {
 
 impl<T: Number> EntrySeries<T> {
     /// The series of a guard that begins with so many zeros; zero where it has none.
-    pub fn of(row: &ModalRow<T>, zeros: usize, entry: &SegmentEntry<T>) -> Self {
+    pub fn new(row: &ModalRow<T>, zeros: usize, entry: &SegmentEntry<T>) -> Self {
         let (mut coefficients, mut sizes) = ([T::zero(); ORDERS], [T::Bound::ZERO; ORDERS]);
         if !has_series(zeros) {
             return Self { coefficients, sizes };

@@ -146,7 +146,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
                 until: self.early,
             };
             let guards = self.rows.iter().zip(&self.zeros);
-            guards.map(|(row, zeros)| EntrySeries::of(row, *zeros, &entry)).collect()
+            guards.map(|(row, zeros)| EntrySeries::new(row, *zeros, &entry)).collect()
         })
     }
 

@@ -58,8 +58,8 @@ pub struct RowPart<B> {
 impl<T: Number> ModalRow<T> {
     /// A row of z in the modal co-ordinates of a closed form, of whose blocks `blocks` are the
     /// exact forms.
-    pub fn of(row: &Row, flow: &ModeFlow<T>, blocks: &[modal::Block]) -> Self {
-        let row: Vec<BigReal> = row.iter().map(|it| BigReal::of(it, bits_for::<T>())).collect();
+    pub fn new(row: &Row, flow: &ModeFlow<T>, blocks: &[modal::Block]) -> Self {
+        let row: Vec<BigReal> = row.iter().map(|it| BigReal::new(it, bits_for::<T>())).collect();
         let parts: Vec<_> = blocks.iter().map(|block| bound::derivatives(&row, block)).collect();
         let order = |k: usize| {
             let entries: Vec<_> = parts.iter().flat_map(|part| part[k].iter().cloned()).collect();

@@ -20,7 +20,7 @@ pub struct SearchWork {
     pub evaluations: u64,
     /// Pieces of segments on which the guards' signs were to be proved.
     pub pieces: u64,
-    /// Touches, entries, conditions and ties that rounding does not decide.
+    /// The number of ties, touches, entries and conditions that rounding leaves undecided.
     pub undecidable: u64,
     /// The first guard that rounding left open by itself, as its number among those of its mode:
     /// the events that end it come first, then the watched ones.

@@ -126,7 +126,7 @@ fn connected_blocks(exact: &[Row], time_scale: f64, bits: usize) -> Vec<Block> {
     let scales = scales(exact);
     let scaled = |(i, row): (usize, &Row)| -> Vec<BigReal> {
         let entries = row.iter().zip(&scales);
-        entries.map(|(it, scale)| BigReal::of(it, bits).scaled(scale - scales[i])).collect()
+        entries.map(|(it, scale)| BigReal::new(it, bits).scaled(scale - scales[i])).collect()
     };
     let matrix: BigMatrix = exact.iter().enumerate().map(scaled).collect();
     let taken_apart = |roots: Vec<Eigenvalue>| -> Option<Vec<_>> {

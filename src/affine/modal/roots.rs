@@ -24,14 +24,14 @@ pub fn simple_roots(polynomial: &[Rational], bits: usize) -> Option<Vec<BigCompl
 fn of_quadratic(constant: &Rational, linear: &Rational, bits: usize) -> Vec<BigComplex> {
     let middle = -linear / Rational::from(2);
     let discriminant = &middle * &middle - constant;
-    let root = BigReal::of(&discriminant, bits).abs().sqrt();
-    let middle = BigReal::of(&middle, bits);
+    let root = BigReal::new(&discriminant, bits).abs().sqrt();
+    let middle = BigReal::new(&middle, bits);
     if discriminant < Rational::ZERO {
         return vec![BigComplex::new(middle, root)];
     }
     // The larger root is a sum without cancellation, and the product of both is the constant.
     let larger = if middle < BigReal::zero() { &middle - &root } else { &middle + &root };
-    let smaller = &BigReal::of(constant, bits) / &larger;
+    let smaller = &BigReal::new(constant, bits) / &larger;
     [smaller, larger].map(BigComplex::real).to_vec()
 }
 
@@ -40,7 +40,7 @@ fn of_quadratic(constant: &Rational, linear: &Rational, bits: usize) -> Vec<BigC
 fn roots_away_from_zero(polynomial: &[Rational], bits: usize) -> Option<Vec<BigComplex>> {
     /// The number of steps of all roots after which the iteration is given up.
     const MAX_ROUNDS: usize = 2000;
-    let coefficients: Vec<_> = polynomial.iter().map(|it| BigReal::of(it, bits)).collect();
+    let coefficients: Vec<_> = polynomial.iter().map(|it| BigReal::new(it, bits)).collect();
     let degree = coefficients.len() - 1;
     if degree == 1 {
         return Some(vec![BigComplex::real(&-&coefficients[0] / &coefficients[1])]);

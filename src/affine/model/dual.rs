@@ -21,7 +21,8 @@ impl Dual {
         Self { value, rate: Rational::ZERO }
     }
 
-    /// Whether number and derivative are zero: what is zero for one value of the name alone is not.
+    /// Whether the number and its derivative are both zero. A number that is zero only at the
+    /// current value of the parameter generally has a derivative that is not.
     pub fn is_zero(&self) -> bool {
         self.value.is_zero() && self.rate.is_zero()
     }

@@ -224,11 +224,11 @@ impl SystemFile {
     /// # Errors
     /// Text that is not TOML of this shape, with file and line.
     pub fn read(file: &str, text: &str) -> Result<Self, SystemError> {
-        Self::of(SourceText::of_file(file, text))
+        Self::new(SourceText::of_file(file, text))
     }
 
     /// The tables of a text.
-    pub(super) fn of(text: SourceText) -> Result<Self, SystemError> {
+    pub(super) fn new(text: SourceText) -> Result<Self, SystemError> {
         let mut tables: Tables = text.parse()?;
         let parameters = placed(&text, std::mem::take(&mut tables.parameters));
         let start = tables.start.take().map(|it| start(&text, it)).transpose()?;

@@ -138,7 +138,7 @@ fn sign_in<T: Number>(factors: &[Rational; 3], theta: &Rational) -> Option<Order
     let (sin, cos) = theta.sin_cos();
     let value = (a * cos + b * sin + c).bound();
     let terms = a.bound().abs() + b.bound().abs() + c.bound().abs();
-    let room = T::unit() * ROUNDINGS * terms * (T::Bound::of(1.0) + theta.bound().abs());
+    let room = T::unit() * ROUNDINGS * terms * (T::Bound::from_f64(1.0) + theta.bound().abs());
     if value > room {
         return Some(Ordering::Greater);
     }

@@ -301,7 +301,7 @@ impl System {
     /// # Ok::<(), percuss::SystemError>(())
     /// ```
     pub fn from_toml(text: &str) -> Result<Self, SystemError> {
-        SystemFile::of(SourceText { file: None, text: text.to_owned() })?.system()
+        SystemFile::new(SourceText { file: None, text: text.to_owned() })?.system()
     }
 
     /// Reads a system from a file.

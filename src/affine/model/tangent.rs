@@ -129,7 +129,7 @@ impl SystemFile {
             let mut file = self.clone();
             if let Name::Parameter(name) = by {
                 let parameter = file.parameters.get_mut(name)?;
-                parameter.value = Scalar::Exact(other_value(&parameter.value.number()?, sign));
+                parameter.value = Scalar::Exact(perturbed_value(&parameter.value.number()?, sign));
             }
             let mut system = file.system().ok()?;
             if let Some(mut start) = system.start.take() {
@@ -193,9 +193,9 @@ impl System {
     }
 }
 
-/// Another value than this, by a share of it that no model has.
-fn other_value(value: &Rational, sign: i32) -> Rational {
-    /// A prime, which no model's share has.
+/// The value, changed by a small fraction of itself; a value of zero becomes this small fraction.
+fn perturbed_value(value: &Rational, sign: i32) -> Rational {
+    /// A large prime, because no model's own value is expected to have it as a denominator.
     const DENOMINATOR: i32 = 1_048_583;
     let size = if value.is_zero() { Rational::ONE } else { value.abs() };
     value + size * Rational::from(sign) / Rational::from(DENOMINATOR)
@@ -205,7 +205,7 @@ fn other_value(value: &Rational, sign: i32) -> Rational {
 fn move_start(start: &mut StartPoint, states: &[String], by: &Name, sign: i32) {
     let Some(entry) = by.start_index(states) else { return };
     if let Some([.., one]) = start.state.get_mut(entry) {
-        *one = other_value(one, sign);
+        *one = perturbed_value(one, sign);
     }
 }
 

@@ -31,7 +31,7 @@ impl SectionMap<'_, f64> {
         let mut walk = Walk::begin(self, place, false);
         let mut crossings = Vec::new();
         walk.next(&mut |from, to| {
-            if let Some(guard) = Guard::of(&to.what) {
+            if let Some(guard) = Guard::new(&to.what) {
                 let time = to.time.since(&place.time).value();
                 crossings.push(Crossing { guard, time, rate: self.rate_of(guard, from, to) });
             }

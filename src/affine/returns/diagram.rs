@@ -40,7 +40,7 @@ pub struct ReturnDiagramStep {
     pub points: Vec<Return<f64>>,
     /// The reason for which the motion is left out, if it is.
     pub left_out: Option<LeftOut>,
-    /// The number of ties, touches and entries that rounding does not decide.
+    /// The number of ties, touches, entries and conditions that rounding leaves undecided.
     pub undecidable: u64,
 }
 

@@ -75,9 +75,9 @@ impl SectionMap<'_, f64> {
         returns: u64,
         seen: &mut dyn FnMut(u64),
     ) -> Result<Exponents, NoReturn> {
-        let batches = Batches::of(returns);
+        let batches = Batches::new(returns);
         let mut walk = Walk::begin(self, place, false).for_many();
-        let mut frame = Frame::of(self.solver());
+        let mut frame = Frame::new(self.solver());
         let mut marks: Vec<Mark> = Vec::new();
         let (mut passed, mut drift) = (0, self.drift_of(&place.state));
         for k in 0..=batches.count() {
@@ -156,7 +156,7 @@ struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    fn of(solver: &'a Solver<f64>) -> Self {
+    fn new(solver: &'a Solver<f64>) -> Self {
         let variation = Variation::of_each_state(solver);
         let growth = vec![0.0; solver.system().states.len()];
         Self { solver, variation, growth, time: f64::NAN }

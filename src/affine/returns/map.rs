@@ -219,7 +219,7 @@ fn time_of<T: Number>(forcing: &Forcing, turns: f64, angle: f64) -> Time<T> {
 }
 
 fn rounded_time<T: Number>(forcing: &Forcing, turns: f64, angle: f64) -> T {
-    let omega = Time::<T>::of(&forcing.omega).value();
+    let omega = Time::<T>::new(&forcing.omega).value();
     (T::exact(turns) * full_turn::<T>() + T::exact(angle)) / omega
 }
 

@@ -90,7 +90,7 @@ impl<T: Number> SectionMap<'_, T> {
         let mut events = Vec::new();
         let event = walk.next_with_derivative(&mut |from, to| {
             variation.pass(self.solver(), from, to);
-            events.extend(Guard::of(&to.what));
+            events.extend(Guard::new(&to.what));
         })?;
         let image = walk.place()?;
         let (at_return, delays) = (variation.columns.clone(), variation.delays.clone());

@@ -121,7 +121,7 @@ pub struct Guard {
 
 impl Guard {
     /// The guard of an event of a run; none of a start or an ending.
-    pub(super) fn of<T>(what: &What<T>) -> Option<Self> {
+    pub(super) fn new<T>(what: &What<T>) -> Option<Self> {
         match *what {
             What::Until(mode, index) => Some(Self { mode, index, is_watched: false }),
             What::Watch(mode, index) => Some(Self { mode, index, is_watched: true }),

@@ -91,7 +91,7 @@ impl<P: Clone, W: Clone> Shots<P, W> {
     }
 
     /// These points, each with its image; none where a motion does not return.
-    pub fn of<M>(map: &M, points: Vec<P>) -> Option<Self>
+    pub fn new<M>(map: &M, points: Vec<P>) -> Option<Self>
     where
         M: ReturnMap<Point = P, Way = W>,
     {
@@ -192,11 +192,11 @@ impl<M: ReturnMap> Shooting<M> for Shots<M::Point, M::Way> {
             let piece = &self.images[(k + count - 1) % count].point;
             map.moved(point, &change.map(|it| it * share), piece)
         });
-        Self::of(map, moved.collect())
+        Self::new(map, moved.collect())
     }
 
     fn first(&self, map: &M, count: usize) -> Option<Self> {
-        Self::of(map, self.points[..count].to_vec())
+        Self::new(map, self.points[..count].to_vec())
     }
 
     fn orbit_distance(&self, map: &M, other: &Self) -> f64 {
@@ -209,7 +209,7 @@ impl<M: ReturnMap> Shooting<M> for Shots<M::Point, M::Way> {
             let half = map.change_between(one, other).map(|it| 0.5 * it);
             map.moved(one, &half, one)
         });
-        Self::of(map, between.collect())
+        Self::new(map, between.collect())
     }
 }
 

@@ -116,7 +116,7 @@ impl<'a, T: Number> Walk<'a, T> {
             }
             (What::End(ending), _) => Err(NoReturn::Ended(Ending::from(ending))),
             (what, Returning::Events(guards)) => {
-                Ok(Guard::of(what).is_some_and(|it| guards.contains(&it)))
+                Ok(Guard::new(what).is_some_and(|it| guards.contains(&it)))
             }
             (_, Returning::Strobe(_)) => Ok(false),
         }
@@ -146,7 +146,7 @@ pub struct Return<T> {
 
 impl<T: Number> Return<T> {
     /// The mode, time and state of an event.
-    fn of(event: Event<T>) -> Self {
+    fn new(event: Event<T>) -> Self {
         Self { mode: event.mode, time: event.time.value(), state: event.state }
     }
 }
@@ -179,10 +179,10 @@ impl<'a, T: Number> Returns<'a, T> {
     /// ends that does not return.
     #[must_use]
     pub fn last_event(&self) -> Return<T> {
-        Return::of(self.walk.last.clone())
+        Return::new(self.walk.last.clone())
     }
 
-    /// The number of ties, touches and entries so far that rounding does not decide.
+    /// The number of ties, touches, entries and conditions that rounding leaves undecided.
     #[must_use]
     pub fn undecidable(&self) -> u64 {
         self.walk.undecidable()
@@ -196,7 +196,7 @@ impl<T: Number> Iterator for Returns<'_, T> {
         if self.is_over {
             return None;
         }
-        let next = self.walk.next(&mut |_, _| ()).map(Return::of);
+        let next = self.walk.next(&mut |_, _| ()).map(Return::new);
         self.is_over = next.is_err();
         Some(next)
     }

@@ -54,7 +54,7 @@ impl<T: Number> Solver<T> {
         sizes.iter_mut().zip(phase).for_each(|(size, turned)| *size += turned);
         sizes[self.system.dimension() - 1] = T::Bound::ZERO;
         run.exact = Some(ExactRun::at_start(&self.system, start, run.entered));
-        run.begin(Some(Enclosure::of(&sizes)));
+        run.begin(Some(Enclosure::new(&sizes)));
         Ok(run)
     }
 
@@ -118,11 +118,11 @@ impl<T: Number> Solver<T> {
 
     /// The time and the state of a start, rounded to the arithmetic.
     fn time_and_state(&self, start: &StartPoint) -> (Time<T>, Vector<T>) {
-        let time = Time::of(&start.time);
+        let time = Time::new(&start.time);
         let (sin, cos) = self.sin_cos(&time);
         let mut states = [T::zero(); LARGEST_DIMENSION];
         for (entry, [c, s, one]) in states.iter_mut().zip(&start.state) {
-            let number = |it| rounded::<T>(&BigReal::of(it, bits_for::<T>()));
+            let number = |it| rounded::<T>(&BigReal::new(it, bits_for::<T>()));
             *entry = number(c) * cos + number(s) * sin + number(one);
         }
         (time, self.complete(&states[..start.state.len()], &time))

@@ -98,7 +98,7 @@ impl<T: Number> EnclosedCrossing<'_, T> {
 
 impl<B: Bound> Enclosure<B> {
     /// Independent errors of the entries of a state.
-    pub fn of(errors: &[B]) -> Self {
+    pub fn new(errors: &[B]) -> Self {
         let mut enclosure = Self { columns: Vec::new() };
         enclosure.add_box(errors);
         enclosure

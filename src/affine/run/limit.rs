@@ -152,7 +152,7 @@ impl<T: Number> Run<'_, T> {
 
     /// Whether the time left is so many bits below the system's unit of time.
     fn is_within(&self, remaining: &Remaining<T>, bits: u32) -> bool {
-        let scale = T::Bound::of(self.solver.system.time_scale);
+        let scale = T::Bound::from_f64(self.solver.system.time_scale);
         remaining.latest.bound() <= scale.scaled(-i64::from(bits))
     }
 

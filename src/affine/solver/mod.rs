@@ -88,10 +88,10 @@ impl<T: Number> Solver<T> {
             let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale, bits_for::<T>());
             blocks.push(bound::ordered(blocks_of_mode));
         }
-        let graph = ZeroGraph::of(&system);
+        let graph = ZeroGraph::new(&system);
         let graph = graph.ok_or_else(|| SystemError::Undecidable { item: system.name.clone() })?;
-        let flows: Vec<ModeFlow<T>> = blocks.iter().map(|it| ModeFlow::of(it)).collect();
-        let row = |row: &Row, mode: usize| ModalRow::of(row, &flows[mode], &blocks[mode]);
+        let flows: Vec<ModeFlow<T>> = blocks.iter().map(|it| ModeFlow::new(it)).collect();
+        let row = |row: &Row, mode: usize| ModalRow::new(row, &flows[mode], &blocks[mode]);
         let mode = |(n, mode): (usize, &Mode)| {
             let until = mode.until.iter().map(|it| &it.guard);
             let guards: Vec<_> = until.chain(mode.watch.iter().map(|it| &it.guard)).collect();
@@ -116,8 +116,8 @@ impl<T: Number> Solver<T> {
             }
         };
         let modes = system.modes.iter().enumerate().map(mode).collect();
-        let clock = system.forcing.as_ref().map(Clock::of);
-        Ok(Self { modes, clock, pool: CachePool::of(graph), backward, system })
+        let clock = system.forcing.as_ref().map(Clock::new);
+        Ok(Self { modes, clock, pool: CachePool::new(graph), backward, system })
     }
 
     /// The state at a time in the segment that an event of a run of this solver begins.
@@ -187,7 +187,7 @@ impl<T: Number> Solver<T> {
     /// The exact rows of a mode.
     pub(super) fn exact_mode(&self, mode: usize) -> &ExactMode {
         let own = &self.modes[mode];
-        own.exact.get_or_init(|| ExactMode::of(&self.system, &self.system.modes[mode]))
+        own.exact.get_or_init(|| ExactMode::new(&self.system, &self.system.modes[mode]))
     }
 
     /// The place of cos theta in z, which sin theta follows, where the system is forced.
@@ -211,7 +211,7 @@ impl<T: Number> Solver<T> {
 pub(super) fn numbers<T: Number>(row: &Row) -> Vector<T> {
     let mut vector = [T::zero(); LARGEST_DIMENSION];
     for (entry, number) in vector.iter_mut().zip(row) {
-        *entry = rounded(&BigReal::of(number, bits_for::<T>()));
+        *entry = rounded(&BigReal::new(number, bits_for::<T>()));
     }
     vector
 }
@@ -220,7 +220,7 @@ pub(super) fn numbers<T: Number>(row: &Row) -> Vector<T> {
 fn changes<T: Number>(reset: &[Row]) -> Vec<Change<T>> {
     let factors = |row: &Row| {
         let there = row.iter().enumerate().filter(|(_, it)| !it.is_zero());
-        there.map(|(k, it)| (k, rounded(&BigReal::of(it, bits_for::<T>())))).collect()
+        there.map(|(k, it)| (k, rounded(&BigReal::new(it, bits_for::<T>())))).collect()
     };
     let changed = reset.iter().enumerate().filter(|(n, row)| !is_unit(row, *n));
     changed.map(|(n, row)| (n, factors(row))).collect()

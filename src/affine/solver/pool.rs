@@ -35,7 +35,7 @@ pub struct Loan<'a, T> {
 }
 
 impl<T> CachePool<T> {
-    pub fn of(blank: ZeroGraph) -> Self {
+    pub fn new(blank: ZeroGraph) -> Self {
         Self { blank, returned: Arc::default() }
     }
 

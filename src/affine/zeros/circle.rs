@@ -24,7 +24,7 @@ pub struct Circle {
 
 impl Circle {
     /// A guard of a system with so many states, if it depends on the forcing angle alone.
-    pub fn of(guard: &Row, states: usize) -> Option<Self> {
+    pub fn new(guard: &Row, states: usize) -> Option<Self> {
         let (own, angle) = guard.split_at(states);
         let [a, b, c] = angle else { return None };
         own.iter().all(Rational::is_zero).then(|| Self::with([a, b], c))?
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn a_guard_of_the_angle_has_its_points() {
-        let circle = Circle::of(&guard([0, 0, 10, -6]), 1).unwrap();
+        let circle = Circle::new(&guard([0, 0, 10, -6]), 1).unwrap();
         assert!(!circle.keeps_sign);
         let fifth = |n: i32| Rational::from(n) / Rational::from(5);
         assert_eq!(circle.points, Some([[fifth(-4), fifth(3)], [fifth(4), fifth(3)]]));
@@ -102,17 +102,17 @@ mod tests {
 
     #[test]
     fn touches_and_guards_of_states_have_none() {
-        let touch = Circle::of(&guard([0, 3, 4, -5]), 1).unwrap();
+        let touch = Circle::new(&guard([0, 3, 4, -5]), 1).unwrap();
         assert!(touch.keeps_sign && touch.points.is_none());
         assert_eq!(touch.touch, Some(4.0_f64.atan2(3.0)));
-        let from_above = Circle::of(&guard([0, 3, 4, 5]), 1).unwrap().touch;
+        let from_above = Circle::new(&guard([0, 3, 4, 5]), 1).unwrap().touch;
         assert_eq!(from_above, Some((-4.0_f64).atan2(-3.0)));
-        assert!(!Circle::of(&guard([0, 3, 4, -4]), 1).unwrap().keeps_sign);
-        assert!(Circle::of(&guard([0, 3, 4, -4]), 1).unwrap().points.is_some());
-        assert!(Circle::of(&guard([0, 1, 1, -1]), 1).unwrap().points.is_some());
-        assert!(Circle::of(&guard([0, 2, 1, -1]), 1).unwrap().points.is_some());
-        assert!(Circle::of(&guard([0, 2, 2, -1]), 1).unwrap().points.is_none());
-        assert_eq!(Circle::of(&guard([1, 3, 4, -5]), 1), None);
-        assert_eq!(Circle::of(&guard([0, 0, 0, -5]), 1), None);
+        assert!(!Circle::new(&guard([0, 3, 4, -4]), 1).unwrap().keeps_sign);
+        assert!(Circle::new(&guard([0, 3, 4, -4]), 1).unwrap().points.is_some());
+        assert!(Circle::new(&guard([0, 1, 1, -1]), 1).unwrap().points.is_some());
+        assert!(Circle::new(&guard([0, 2, 1, -1]), 1).unwrap().points.is_some());
+        assert!(Circle::new(&guard([0, 2, 2, -1]), 1).unwrap().points.is_none());
+        assert_eq!(Circle::new(&guard([1, 3, 4, -5]), 1), None);
+        assert_eq!(Circle::new(&guard([0, 0, 0, -5]), 1), None);
     }
 }

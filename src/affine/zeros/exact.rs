@@ -56,7 +56,7 @@ pub type Entries = Vec<Option<Rational>>;
 
 impl Chain {
     /// The chain of a row in a mode's motion.
-    pub fn of(row: &Row, matrix: &[Row]) -> Self {
+    pub fn new(row: &Row, matrix: &[Row]) -> Self {
         let is_zero = |row: &Row| row.iter().all(Rational::is_zero);
         let mut rows = vec![row.clone()];
         let kind = loop {
@@ -118,7 +118,7 @@ impl Chain {
                 (parabola::keeps_sign(&values, rises), parabola::touch(&values, rises))
             }
             (Kind::Oscillation(square), _) => {
-                let own = Oscillation::of(&values, square);
+                let own = Oscillation::new(&values, square);
                 own.map_or((false, None), |it| (it.keeps_sign(), it.touch()))
             }
             _ => (false, None),
@@ -136,7 +136,9 @@ impl Chain {
                 let error = error / time.abs() + 2.0 * f64::EPSILON;
                 nearest(parabola::roots(&values), away, error).map(Instant::Time)
             }
-            Kind::Oscillation(square) => Oscillation::of(&values, square)?.zero_near([time, error]),
+            Kind::Oscillation(square) => {
+                Oscillation::new(&values, square)?.zero_near([time, error])
+            }
             Kind::Other => None,
         }
     }
@@ -157,7 +159,7 @@ impl Chain {
                 Some(orders.fold(Rational::ZERO, step))
             }
             (Kind::Oscillation(own), Some(Instant::Turn { square, cos, sin })) if own == square => {
-                Some(Oscillation::of(&values, own)?.at(cos, sin))
+                Some(Oscillation::new(&values, own)?.at(cos, sin))
             }
             _ => None,
         }
@@ -216,7 +218,7 @@ struct Oscillation<'a> {
 
 impl<'a> Oscillation<'a> {
     /// The oscillation with these derivatives, by the square of its frequency.
-    fn of(values: &'a [Rational], square: &'a Rational) -> Option<Self> {
+    fn new(values: &'a [Rational], square: &'a Rational) -> Option<Self> {
         let [value, sin, bend] = values else { return None };
         let cos = -(bend / square);
         let amplitude = &cos * &cos + sin * sin / square;
@@ -292,21 +294,22 @@ mod tests {
             vec![Rational::ONE, Rational::ZERO, -Rational::from(above) / Rational::from(parts)]
         };
         let start = known(&[0, 2, 1]);
-        let fate = |level| Chain::of(&level, &matrix).fate(&start).unwrap();
+        let fate = |level| Chain::new(&level, &matrix).fate(&start).unwrap();
         assert!(fate(level(1, 4)).keeps_sign);
         assert!(fate(level(1, 3)).keeps_sign);
         let touches = [level(1, 4), level(1, 3)].map(|it| fate(it).touch);
         assert_eq!(touches, [Some(Touch::Once(0.25)), None]);
         assert!(!fate(level(3, 16)).keeps_sign && !fate(level(1, 8)).keeps_sign);
         assert_eq!(fate(level(0, 1)).begin, Some((1, true)));
-        let zero = |level, time| Chain::of(&level, &matrix).zero_near(&start, [time, 0.0]);
+        let zero = |level, time| Chain::new(&level, &matrix).zero_near(&start, [time, 0.0]);
         let eighth = |n: i32| Some(Instant::Time(Rational::from(n) / Rational::from(8)));
         assert_eq!(zero(level(3, 16), 0.125), eighth(1));
         assert_eq!(zero(level(3, 16), 0.375), eighth(3));
         assert_eq!(zero(level(3, 16), 0.25), None);
         assert_eq!(zero(level(1, 8), 0.25 - 0.125_f64.sqrt() / 2.0), None);
         // A time of too large an error tells no zero from another.
-        let eighth_of = |error| Chain::of(&level(3, 16), &matrix).zero_near(&start, [0.125, error]);
+        let eighth_of =
+            |error| Chain::new(&level(3, 16), &matrix).zero_near(&start, [0.125, error]);
         assert_eq!([eighth_of(1e-6), eighth_of(1e-3)], [eighth(1), None]);
     }
 
@@ -317,7 +320,7 @@ mod tests {
         let start = known(&[3, 8, 1]);
         let fate = |level: i32| {
             let guard = vec![Rational::ONE, Rational::ZERO, -Rational::from(level)];
-            Chain::of(&guard, &matrix).fate(&start).unwrap()
+            Chain::new(&guard, &matrix).fate(&start).unwrap()
         };
         assert!(fate(5).keeps_sign && fate(6).keeps_sign && fate(-5).keeps_sign);
         assert!(!fate(4).keeps_sign);
@@ -338,7 +341,7 @@ mod tests {
     fn two_guards_of_an_oscillation_meet_at_a_rational_cosine() {
         let matrix = rows(&[&[0, 1, 0], &[-4, 0, 0], &[0, 0, 0]]);
         let start = known(&[5, 0, 1]);
-        let chain = |row: [i32; 3]| Chain::of(&row.map(Rational::from).to_vec(), &matrix);
+        let chain = |row: [i32; 3]| Chain::new(&row.map(Rational::from).to_vec(), &matrix);
         let instant = chain([1, 0, -3]).zero_near(&start, [0.5 * 0.6_f64.acos(), 0.0]).unwrap();
         let fifth = |n: i32| Rational::from(n) / Rational::from(5);
         let (square, cos) = (Rational::from(4), fifth(3));
@@ -352,6 +355,6 @@ mod tests {
         let matrix = rows(&[&[0, 1, 0], &[0, 0, -8], &[0, 0, 0]]);
         let guard = vec![Rational::ONE, Rational::ZERO, Rational::ZERO];
         let start = vec![Some(Rational::ZERO), None, Some(Rational::ONE)];
-        assert!(Chain::of(&guard, &matrix).fate(&start).is_none());
+        assert!(Chain::new(&guard, &matrix).fate(&start).is_none());
     }
 }

@@ -31,14 +31,14 @@ pub struct ExactMode {
 
 impl TurningGuard {
     /// A guard of a system with so many states, if the forcing angle is in it.
-    fn of(guard: &Row, states: usize, matrix: &[Row]) -> Option<Self> {
+    fn new(guard: &Row, states: usize, matrix: &[Row]) -> Option<Self> {
         let [a, b, _] = &guard[states..] else { return None };
         if a.is_zero() && b.is_zero() {
             return None;
         }
         let mut rest = guard.clone();
         rest[states..states + 2].fill(Rational::ZERO);
-        Some(Self { turn: [a.clone(), b.clone()], rest: Chain::of(&rest, matrix) })
+        Some(Self { turn: [a.clone(), b.clone()], rest: Chain::new(&rest, matrix) })
     }
 
     /// The guard as one of the angle and a constant, on a segment on which the rest is known and
@@ -51,24 +51,24 @@ impl TurningGuard {
 
 impl ExactMode {
     /// The rows of a system's mode.
-    pub fn of(system: &System, mode: &Mode) -> Self {
+    pub fn new(system: &System, mode: &Mode) -> Self {
         let states = system.states.len();
         let until = mode.until.iter().map(|it| &it.guard);
         let guards = until.chain(mode.watch.iter().map(|it| &it.guard));
         let condition = |it: &Successor| {
-            it.when.as_ref().map(|when| Chain::of(when, &system.modes[it.mode].matrix))
+            it.when.as_ref().map(|when| Chain::new(when, &system.modes[it.mode].matrix))
         };
         let unit = |n: usize| -> Row {
             (0..mode.matrix.len()).map(|k| Rational::from(u8::from(k == n))).collect()
         };
         Self {
-            turning: guards.clone().map(|it| TurningGuard::of(it, states, &mode.matrix)).collect(),
-            guards: guards.map(|it| Chain::of(it, &mode.matrix)).collect(),
+            turning: guards.clone().map(|it| TurningGuard::new(it, states, &mode.matrix)).collect(),
+            guards: guards.map(|it| Chain::new(it, &mode.matrix)).collect(),
             conditions: mode
                 .exits()
                 .map(|(_, next)| next.iter().map(condition).collect())
                 .collect(),
-            entries: (0..mode.matrix.len()).map(|n| Chain::of(&unit(n), &mode.matrix)).collect(),
+            entries: (0..mode.matrix.len()).map(|n| Chain::new(&unit(n), &mode.matrix)).collect(),
         }
     }
 

@@ -95,9 +95,9 @@ pub struct ZeroGraph {
 
 impl ZeroGraph {
     /// The graph of a system, without a node; none if a coefficient has no residue.
-    pub fn of(system: &System) -> Option<Self> {
+    pub fn new(system: &System) -> Option<Self> {
         let states = system.states.len();
-        let modes = system.modes.iter().map(|it| ModeResidues::of(it, states));
+        let modes = system.modes.iter().map(|it| ModeResidues::new(it, states));
         let modes = modes.collect::<Option<_>>()?;
         Some(Self { modes, nodes: Vec::new(), known: HashMap::new() })
     }
@@ -276,7 +276,7 @@ fn is_impact(own: &ModeResidues, until: usize, zeros: &ZeroSpace, after: &ZeroSp
 }
 
 impl ModeResidues {
-    fn of(mode: &Mode, states: usize) -> Option<Self> {
+    fn new(mode: &Mode, states: usize) -> Option<Self> {
         let until = mode.until.iter().map(|it| &it.guard);
         let rows = until.chain(mode.watch.iter().map(|it| &it.guard));
         let guards = rows.clone().map(|it| residues(it));
@@ -301,7 +301,7 @@ impl ModeResidues {
 /// For each rational point at which a guard of the forcing angle is zero, the rows cos theta - p
 /// and sin theta - q; none if a coefficient has no residue.
 fn points(guard: &Row, states: usize) -> Option<[Vec<Residues>; 2]> {
-    let Some(points) = Circle::of(guard, states).and_then(|it| it.points) else {
+    let Some(points) = Circle::new(guard, states).and_then(|it| it.points) else {
         return Some([Vec::new(), Vec::new()]);
     };
     let row = |at: usize, value: &Rational| {

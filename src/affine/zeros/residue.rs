@@ -27,7 +27,7 @@ impl Residue {
 
     /// The residues of a number; none if its denominator, or its numerator but for 0, is a multiple
     /// of a prime.
-    pub fn of(number: &Rational) -> Option<Self> {
+    pub fn new(number: &Rational) -> Option<Self> {
         let (above, below) = (number.big().numerator(), number.big().denominator());
         let mut residues = [0; 2];
         for (residue, prime) in residues.iter_mut().zip(PRIMES) {
@@ -77,7 +77,7 @@ impl Residue {
 
 /// The residues of a row; none if a number has none.
 pub fn residues(row: &[Rational]) -> Option<Residues> {
-    row.iter().map(Residue::of).collect()
+    row.iter().map(Residue::new).collect()
 }
 
 /// `row * matrix`.

@@ -61,7 +61,7 @@ impl Grid {
 }
 
 impl BlockLabeller {
-    /// Looks for attractors from a coarse lattice of the grid's window, as [`Basins::of`] does.
+    /// Looks for attractors from a coarse lattice of the grid's window, as [`Basins::new`] does.
     #[must_use]
     pub fn new(map: &StrobeMap, grid: &Grid, limits: impl Into<SearchLimits>) -> Self {
         let mut shared = AttractorCatalog::new(*map, limits);
@@ -92,7 +92,7 @@ impl Basins {
     /// `limits` say how many forcing periods a start is followed at first (a number alone is that),
     /// and how long orbits may be; `seen` is told of how many starts more the label is known.
     #[must_use]
-    pub fn of(
+    pub fn new(
         map: &StrobeMap,
         grid: &Grid,
         limits: impl Into<SearchLimits>,

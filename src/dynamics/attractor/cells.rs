@@ -58,7 +58,7 @@ fn in_order<T: serde::Serialize + Ord, S: serde::Serializer>(
 
 impl<C: Coordinates> CellSet<C> {
     /// The cells in which these spots lie.
-    pub fn of(coordinates: &C, spots: &[C::Spot]) -> Self {
+    pub fn new(coordinates: &C, spots: &[C::Spot]) -> Self {
         let dimension = spots.first().map_or(0, |it| coordinates.at(it).len());
         let extent = |n: usize| {
             let ends = (f64::INFINITY, f64::NEG_INFINITY);

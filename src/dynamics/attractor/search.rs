@@ -31,7 +31,7 @@ impl<C: Coordinates> Settled<C> {
     fn after(self, coordinates: &C, run: &[C::Spot]) -> Self {
         match self {
             Self::New(mut new) => {
-                new.transient = Some(CellSet::of(coordinates, run));
+                new.transient = Some(CellSet::new(coordinates, run));
                 Self::New(new)
             }
             known @ Self::Label(_) => known,
@@ -174,7 +174,7 @@ impl<M: Motions> AttractorSearch<'_, M> {
             return Ok(Some(settled.after(coordinates, &spots)));
         }
         let attractor = M::of_run(kind, &points, &means);
-        Ok(Some(Settled::new(attractor, Evidence::Cells(CellSet::of(coordinates, &spots)))))
+        Ok(Some(Settled::new(attractor, Evidence::Cells(CellSet::new(coordinates, &spots)))))
     }
 }
 

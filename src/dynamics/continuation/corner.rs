@@ -88,11 +88,11 @@ impl FamilyCurve {
         let along = &from.tangent;
         let probed = self.family.map(from.value + step * along.rate).ok().and_then(|map| {
             let points = shifted(&from.iterate.points, &along.points, step);
-            let iterate = ShootingIterate::of(&map, &points)?;
+            let iterate = ShootingIterate::new(&map, &points)?;
             let mut images: Vec<StrobePoint> =
                 iterate.passages.iter().map(|it| it.point()).collect();
             images.rotate_right(1);
-            Some([Some(iterate), ShootingIterate::of(&map, &images)])
+            Some([Some(iterate), ShootingIterate::new(&map, &images)])
         });
         let other = |probe: &ShootingIterate| !probe.is_on_piece_of(&from.iterate);
         probed.into_iter().flatten().flatten().filter(other).collect()

@@ -36,7 +36,7 @@ impl Doubling {
     /// The doubled branch at a flip, followed until the parameter leaves the interval from `from`
     /// to `to`; none if no doubled orbit is found. `progress` is told where the parameter is in it,
     /// 0 to 1.
-    pub fn of(
+    pub fn new(
         family: &Family,
         flip: &Bifurcation,
         from: f64,
@@ -54,7 +54,7 @@ impl Doubling {
 impl FamilyCurve {
     fn doubled_orbit(&self, flip: &Bifurcation) -> Option<ContinuationPoint> {
         let map = self.family.map(flip.value).ok()?;
-        let single = ShootingIterate::of(&map, &flip.orbit.points)?;
+        let single = ShootingIterate::new(&map, &flip.orbit.points)?;
         let first = flipped(&single)?;
         let none = vec![[0.0; 3]; single.points.len()];
         let there = single.spread_changes(first, &none);
@@ -63,8 +63,8 @@ impl FamilyCurve {
         let points: Vec<StrobePoint> =
             there.iter().copied().chain(back).map(|it| it.map(|x| x * scale)).collect();
         let iterate =
-            ShootingIterate::of(&map, &[&flip.orbit.points[..], &flip.orbit.points].concat())?;
-        let orbit = Orbit::of(&iterate);
+            ShootingIterate::new(&map, &[&flip.orbit.points[..], &flip.orbit.points].concat())?;
+        let orbit = Orbit::new(&iterate);
         let base = ContinuationPoint {
             value: flip.value,
             iterate,
@@ -81,8 +81,8 @@ impl FamilyCurve {
         let offset = doubled.value - flip.value;
         let below = |value: f64| {
             let map = self.family.map(value).ok()?;
-            let iterate = solve(&map, ShootingIterate::of(&map, &flip.orbit.points)?).ok()?;
-            let multipliers = Orbit::of(&iterate).multipliers;
+            let iterate = solve(&map, ShootingIterate::new(&map, &flip.orbit.points)?).ok()?;
+            let multipliers = Orbit::new(&iterate).multipliers;
             Some(multipliers.iter().filter(|it| it[1] == 0.0 && it[0] < -1.0).count())
         };
         match below(flip.value + offset)?.cmp(&below(flip.value - offset)?) {

@@ -64,7 +64,7 @@ impl OrbitCurve for FamilyCurve {
         let between: Vec<_> =
             pairs.map(|(a, b)| std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))).collect();
         let map = self.family.map(value).ok()?;
-        let iterate = polish(&map, ShootingIterate::of(&map, &between)?);
+        let iterate = polish(&map, ShootingIterate::new(&map, &between)?);
         iterate.is_closed().then(|| self.point(value, iterate, &next.tangent))
     }
 

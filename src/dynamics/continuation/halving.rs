@@ -28,7 +28,7 @@ impl FamilyCurve {
             .zip(second)
             .map(|(a, b)| std::array::from_fn(|i| 0.5 * (a[i] + b[i])))
             .collect();
-        let iterate = solve(&map, ShootingIterate::of(&map, &middle)?).ok()?;
+        let iterate = solve(&map, ShootingIterate::new(&map, &middle)?).ok()?;
         let along = BranchTangent { points: vec![[0.0; 3]; half], rate: self.unit };
         Some(self.point(point.value, iterate, &along))
     }

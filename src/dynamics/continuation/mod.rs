@@ -210,7 +210,7 @@ impl Branch {
     ) -> Result<Self, NoOrbit> {
         let map = family.map(from).map_err(|it| NoOrbit::from(super::orbit::Reason::Guess(it)))?;
         let orbit = Orbit::find(&map, guess, period)?;
-        let iterate = ShootingIterate::of(&map, &orbit.points)
+        let iterate = ShootingIterate::new(&map, &orbit.points)
             .ok_or(NoOrbit::from(super::orbit::Reason::Escaped))?;
         let curve = FamilyCurve::new(family, from, to);
         let towards = BranchTangent {

@@ -57,7 +57,7 @@ impl FamilyCurve {
         let mut strobes = shifted(&base.iterate.points, points, distance);
         let mut best: Option<(f64, ShootingIterate)> = None;
         for _ in 0..ITERATIONS {
-            let iterate = ShootingIterate::of(&self.family.map(value).ok()?, &strobes)?;
+            let iterate = ShootingIterate::new(&self.family.map(value).ok()?, &strobes)?;
             let left = self.distance_along(base, &iterate, value) - distance;
             let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
             let closed = in_place && iterate.is_closed();
@@ -88,7 +88,7 @@ impl FamilyCurve {
         along: &BranchTangent,
     ) -> ContinuationPoint {
         let tangent = self.tangent(&iterate, value, along);
-        let orbit = Orbit::of(&iterate);
+        let orbit = Orbit::new(&iterate);
         ContinuationPoint { value, iterate, tangent, orbit }
     }
 

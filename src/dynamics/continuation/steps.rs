@@ -37,7 +37,7 @@ pub(crate) trait OrbitPoint: Clone {
     fn change_of_multipliers(&self, other: &Self) -> f64;
 
     /// The product of all 1 + mu: zero at a flip.
-    fn flip(&self) -> f64 {
+    fn flip_test(&self) -> f64 {
         // The imaginary part of a pair's product vanishes.
         let [re, _] = self.multipliers().iter().fold([1.0, 0.0], |[re, im], [a, b]| {
             [re * (1.0 + a) - im * b, re * b + im * (1.0 + a)]
@@ -47,7 +47,7 @@ pub(crate) trait OrbitPoint: Clone {
 
     /// The product over complex pairs of their modulus less one, zero at a Neimark-Sacker point,
     /// and the number of pairs.
-    fn torus(&self) -> (f64, usize) {
+    fn neimark_sacker_test(&self) -> (f64, usize) {
         let pairs = self.multipliers().iter().filter(|it| it[1] > 0.0);
         pairs.fold((1.0, 0), |(all, count), it| (all * (modulus(*it) - 1.0), count + 1))
     }
@@ -137,7 +137,7 @@ pub(crate) trait OrbitCurve {
         let single = self.half(point, next)?;
         let located = FLIP_DISTANCES.iter().find_map(|distance| {
             let start = self.corrected_point(&single, -distance)?;
-            self.located(&start, 2.0 * distance, &OrbitPoint::flip)
+            self.located(&start, 2.0 * distance, &OrbitPoint::flip_test)
         })?;
         let error = self.error(&located);
         Some(Noted { kind: BifurcationKind::Flip, point: located.point, error, turns: true })
@@ -311,10 +311,10 @@ impl<C: OrbitCurve> Follower<'_, C> {
             }
         };
         seek(BifurcationKind::Fold, &OrbitPoint::rate);
-        seek(BifurcationKind::Flip, &OrbitPoint::flip);
+        seek(BifurcationKind::Flip, &OrbitPoint::flip_test);
         // With another number of pairs it is another function.
-        let (_, pairs) = point.torus();
-        seek(BifurcationKind::NeimarkSacker, &|it| match it.torus() {
+        let (_, pairs) = point.neimark_sacker_test();
+        seek(BifurcationKind::NeimarkSacker, &|it| match it.neimark_sacker_test() {
             (test, count) if count == pairs => test,
             _ => f64::NAN,
         });

@@ -46,15 +46,15 @@ impl Orbit {
     /// [`NoOrbit`] says why none was reached and how close it came.
     pub fn find(map: &StrobeMap, guess: StrobePoint, period: u32) -> Result<Self, NoOrbit> {
         let iterate = ShootingIterate::shot(map, guess, period)?;
-        Ok(Self::of(&minimal_orbit(map, solve(map, iterate)?)))
+        Ok(Self::new(&minimal_orbit(map, solve(map, iterate)?)))
     }
 
     /// The orbit of a converged iterate.
-    pub(crate) fn of(iterate: &ShootingIterate) -> Self {
+    pub(crate) fn new(iterate: &ShootingIterate) -> Self {
         Self {
             points: iterate.points.clone(),
             phases: iterate.phases(),
-            multipliers: multipliers::of(iterate),
+            multipliers: multipliers::multipliers(iterate),
             residual: iterate.residual,
             drift_per_period: iterate.drift() / iterate.points.len() as f64,
         }

@@ -14,7 +14,7 @@ pub(crate) struct Invariants {
 }
 
 impl Invariants {
-    pub(crate) fn of(iterate: &ShootingIterate) -> Self {
+    pub(crate) fn new(iterate: &ShootingIterate) -> Self {
         let around = derivative_around(iterate);
         let reversed = iterate
             .jacobians
@@ -26,9 +26,9 @@ impl Invariants {
 
 /// The multipliers of an orbit. With any contact one multiplier is zero and the others follow from
 /// two invariants; without, all three are computed.
-pub(super) fn of(iterate: &ShootingIterate) -> [ReIm; 3] {
+pub(super) fn multipliers(iterate: &ShootingIterate) -> [ReIm; 3] {
     if touches(iterate) {
-        let Invariants { sum, pairs } = Invariants::of(iterate);
+        let Invariants { sum, pairs } = Invariants::new(iterate);
         let [first, second] = roots(sum, pairs);
         [first, second, [0.0; 2]]
     } else {

@@ -5,8 +5,8 @@
 const MAX_STEPS: usize = 60;
 /// The shortest share of a step that is tried.
 const MIN_STEP_SHARE: f64 = 1.0 / 64.0;
-/// Steps in a row that may lead away: beyond a corner of the map another derivative holds, and the
-/// way down may begin by a way up.
+/// The largest number of Newton steps in one solve that may fail to reduce the residual. Beyond a
+/// corner the map has another derivative, so that the residual may have to rise before it falls.
 const MAX_RISING_STEPS: usize = 6;
 /// Steps without a better residual that end the polishing.
 const MAX_IDLE_STEPS: usize = 3;

@@ -135,5 +135,5 @@ fn from_least(map: &StrobeMap, orbit: Orbit) -> Orbit {
         |(_, a): &(usize, &StrobePoint), (_, b): &(usize, &StrobePoint)| a[0].total_cmp(&b[0]);
     let first = points.iter().enumerate().min_by(least).map_or(0, |(first, _)| first);
     points.rotate_left(first);
-    ShootingIterate::of(map, &points).map_or(orbit, |iterate| Orbit::of(&iterate))
+    ShootingIterate::new(map, &points).map_or(orbit, |iterate| Orbit::new(&iterate))
 }

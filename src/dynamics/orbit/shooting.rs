@@ -39,11 +39,11 @@ impl ShootingIterate {
         let first = map.entry(guess).map_err(Reason::Guess)?;
         let strobes = map.strobes(first, u64::from(period) - 1);
         let points: Vec<_> = strobes.map(|strobe| strobe.point()).collect();
-        Self::of(map, &points).ok_or_else(|| Reason::Escaped.into())
+        Self::new(map, &points).ok_or_else(|| Reason::Escaped.into())
     }
 
     /// These strobes, each with its own forcing period; none where one is out of range.
-    pub(crate) fn of(map: &StrobeMap, points: &[StrobePoint]) -> Option<Self> {
+    pub(crate) fn new(map: &StrobeMap, points: &[StrobePoint]) -> Option<Self> {
         let count = points.len();
         let mut iterate = Self {
             points: Vec::with_capacity(count),
@@ -179,11 +179,11 @@ impl Shooting<StrobeMap> for ShootingIterate {
         let points: Vec<StrobePoint> = moved
             .map(|(point, change)| std::array::from_fn(|i| point[i] + share * change[i]))
             .collect();
-        Self::of(map, &points)
+        Self::new(map, &points)
     }
 
     fn first(&self, map: &StrobeMap, count: usize) -> Option<Self> {
-        Self::of(map, &self.points[..count])
+        Self::new(map, &self.points[..count])
     }
 
     fn orbit_distance(&self, _: &StrobeMap, other: &Self) -> f64 {
@@ -194,7 +194,7 @@ impl Shooting<StrobeMap> for ShootingIterate {
         let pairs = self.points.iter().zip(other.points.iter().cycle());
         let between: Vec<StrobePoint> =
             pairs.map(|(a, b)| std::array::from_fn(|i| 0.5 * (a[i] + b[i]))).collect();
-        Self::of(map, &between)
+        Self::new(map, &between)
     }
 }
 

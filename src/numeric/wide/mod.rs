@@ -270,7 +270,7 @@ impl<const WORDS: usize, const BITS: usize> Number for Wide<WORDS, BITS> {
     fn bound(self) -> ScaledF64 {
         match self.kind {
             Kind::Zero => ScaledF64::ZERO,
-            Kind::Unknown => ScaledF64::of(f64::NAN),
+            Kind::Unknown => ScaledF64::from_f64(f64::NAN),
             Kind::Ordinary => {
                 // An odd word keeps on which side of a tie the others are.
                 let rest = self.words[..WORDS - 1].iter().any(|it| *it != 0);

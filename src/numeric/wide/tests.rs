@@ -95,7 +95,7 @@ fn known_values_hold_to_sixty_digits() {
             .fold(Small::zero(), |sum, digit| sum * ten + Small::exact(f64::from(digit - b'0')));
         digits.bytes().fold(whole, |it, _| it / ten)
     };
-    let near = |a: Small, b: Small| (a - b).bound().abs() < ScaledF64::of(1e-59);
+    let near = |a: Small, b: Small| (a - b).bound().abs() < ScaledF64::from_f64(1e-59);
     let (sin, cos) = Small::one().sin_cos();
     assert!(near(sin, parsed("841470984807896506652502321630298999622563060798371065672752")));
     assert!(near(cos, parsed("540302305868139717400936607442976603732310420617922227670097")));

@@ -116,9 +116,9 @@ mod tests {
             Floor { chained_ns: 40.0, independent_ns: 20.0 },
         );
         Bench {
-            build: Build::of("", "rustc", "any"),
+            build: Build::new("", "rustc", "any"),
             rounds: 1,
-            events: vec![EventCost::of(&entry, Some(&exact), floor)],
+            events: vec![EventCost::new(&entry, Some(&exact), floor)],
             cases: vec![entry],
             results: vec![exact, engine, row("another", 1e9, 1e6, 1e-9)],
             floor,

@@ -46,7 +46,7 @@ pub struct HarnessShare {
 }
 
 impl HarnessShare {
-    fn of(part: &RoundTimes, whole: &RoundTimes) -> Option<Self> {
+    fn new(part: &RoundTimes, whole: &RoundTimes) -> Option<Self> {
         let (share, spread) = (1.0 - part.ratio_to(whole), part.ratio_spread(whole));
         (share.is_finite() && spread.is_finite()).then_some(Self { share, spread })
     }
@@ -108,7 +108,7 @@ fn timed_runs(
         let (whole, library_part) = (next(), library_part.map(|_| next()));
         let whole = whole?;
         let part = library_part.and_then(Result::ok);
-        let harness_share = part.and_then(|part| HarnessShare::of(&part, &whole));
+        let harness_share = part.and_then(|part| HarnessShare::new(&part, &whole));
         let scale = 1.0 / (timed.runs() * periods);
         let series = RoundTimes(whole.0.into_iter().map(|time| time * scale).collect());
         Ok(Timed { score: timed.score()?, work: timed.work(), series, harness_share })

@@ -61,7 +61,7 @@ pub struct Figures {
 impl HistoryRecord {
     /// The line of a program.
     #[must_use]
-    pub fn of(build: Build, bench: &str, figures: Figures) -> Self {
+    pub fn new(build: Build, bench: &str, figures: Figures) -> Self {
         let Build { schema, percuss, commit, rustc, cpu, target_cpu } = build;
         let Figures { instructions, best_ns, median_ns, .. } = figures;
         let Figures { floor_ns, floors, floors_again, .. } = figures;
@@ -197,7 +197,7 @@ mod tests {
             evaluations_per_switch: 1.05,
             state_error_max: 1e-13,
         };
-        HistoryRecord::of(Build::of(commit, "rustc", "any"), bench, figures)
+        HistoryRecord::new(Build::new(commit, "rustc", "any"), bench, figures)
     }
 
     #[test]

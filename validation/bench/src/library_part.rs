@@ -103,7 +103,12 @@ impl ExactSteps<'_> {
                 }
                 Step::Last(segment) => {
                     let end = segment.at_instant(&task.horizon);
-                    return Some(Values::of(&[end.state.p, end.state.y, end.state.q, end.v]));
+                    return Some(Values::from_slice(&[
+                        end.state.p,
+                        end.state.y,
+                        end.state.q,
+                        end.v,
+                    ]));
                 }
             }
         }

@@ -51,7 +51,7 @@ enum Times {
 }
 
 impl Times {
-    fn of(self, row: &BenchRow) -> Option<f64> {
+    fn ns_per_period(self, row: &BenchRow) -> Option<f64> {
         match self {
             // The exact solver is the unit as a whole.
             Self::Net if row.engine == REFERENCE => row.ns_per_period,
@@ -70,7 +70,7 @@ impl Times {
 
 fn work_precision(bench: &Bench, case: &str, times: Times) -> Curves {
     let rows: Vec<&BenchRow> = bench.results.iter().filter(|row| row.case == case).collect();
-    let point = |row: &&BenchRow| Some((times.of(row)?, row.state_error_max?));
+    let point = |row: &&BenchRow| Some((times.ns_per_period(row)?, row.state_error_max?));
     let left_out = rows.iter().filter(|row| point(row).is_none()).count();
     let curves = rows.chunk_by(|a, b| a.engine == b.engine);
     let curves =

@@ -165,7 +165,7 @@ pub struct EventCost {
 impl EventCost {
     /// The cost by the exact solver's row on a case.
     #[must_use]
-    pub fn of(case: &CaseEntry, exact: Option<&BenchRow>, floor: Floor) -> Self {
+    pub fn new(case: &CaseEntry, exact: Option<&BenchRow>, floor: Floor) -> Self {
         let per_event = |it: Option<f64>| it.and_then(|it| case.per_event(it));
         let ns = per_event(exact.and_then(|row| row.ns_per_period));
         let without = (case.events == 0).then(|| "the run has no event".to_owned());
@@ -216,7 +216,7 @@ impl Bench {
             Floor { chained_ns: floors.chained.best(), independent_ns: floors.independent.best() };
         let exact =
             |case: &str| results.iter().find(|it| it.case == case && it.engine == REFERENCE);
-        let cost = |it: &CaseEntry| EventCost::of(it, exact(&it.case), floor);
+        let cost = |it: &CaseEntry| EventCost::new(it, exact(&it.case), floor);
         Self {
             build,
             rounds,

@@ -63,7 +63,7 @@ impl RoundTimes {
     /// The median over the rounds.
     #[must_use]
     pub fn median(&self) -> f64 {
-        Spread::of(self.0.clone()).median
+        Spread::new(self.0.clone()).median
     }
 
     /// The least of all rounds.
@@ -75,7 +75,7 @@ impl RoundTimes {
     /// The median over the rounds of the quotient of the two times in one round.
     #[must_use]
     pub fn ratio_to(&self, other: &Self) -> f64 {
-        Spread::of(self.quotients(other)).median
+        Spread::new(self.quotients(other)).median
     }
 
     /// Half the distance between the least and the largest of these quotients.

@@ -77,7 +77,7 @@ impl TimedCase {
     /// # Errors
     /// [`FileError`] for reference data that are missing, altered or of another case, and for a
     /// system that engines do not take.
-    pub fn of(case: &Case, library: &Library) -> Result<Self, FileError> {
+    pub fn new(case: &Case, library: &Library) -> Result<Self, FileError> {
         Self::with_truth(case, library.truth(case)?)
     }
 
@@ -99,12 +99,12 @@ impl TimedCase {
     fn with_truth(case: &Case, truth: Truth) -> Result<Self, FileError> {
         let problem = Arc::new(case.problem()?);
         let task = match &case.oscillator {
-            Some(own) => Task::of_oscillator(&OscillatorTask::of(own, NO_SAMPLES)),
-            None => Task::of(&problem, truth.span, Vec::new()),
+            Some(own) => Task::of_oscillator(&OscillatorTask::new(own, NO_SAMPLES)),
+            None => Task::from_problem(&problem, truth.span, Vec::new()),
         };
-        let task = task.map_err(|failure| FileError::of(&case.file, failure))?;
+        let task = task.map_err(|failure| FileError::new(&case.file, failure))?;
         let system = task.system.system();
-        let (names, rule) = (EventNames::of(case, system), ErrorRule::of(case, system));
+        let (names, rule) = (EventNames::new(case, system), ErrorRule::new(case, system));
         let occurrences = names.of_truth(&truth);
         let (name, kind) = (case.name.clone(), case.kind(" "));
         Ok(Self { name, kind, task, problem, truth, names, rule, occurrences })
@@ -142,7 +142,7 @@ impl TimedCase {
         let same = self.occurrences.len() == found.len()
             && self.occurrences.iter().zip(&found).all(is_same);
         if !same {
-            let matched = Matching::of(&self.occurrences, &found, window).pairs.len();
+            let matched = Matching::new(&self.occurrences, &found, window).pairs.len();
             let (missed, spurious) = (self.occurrences.len() - matched, found.len() - matched);
             return Err(Failure::new(format!(
                 "wrong: {missed} events missed, {spurious} spurious"

@@ -10,7 +10,7 @@ use std::fmt::Debug;
 /// Numbers side by side: the states of a system, or a mode's guards.
 pub trait Numbers: Copy + Debug + Default + PartialEq + AsRef<[f64]> + AsMut<[f64]> {
     /// Holds a copy of these numbers.
-    fn of(values: &[f64]) -> Self;
+    fn from_slice(values: &[f64]) -> Self;
 
     /// Repeats a value `count` times; an array ignores `count`, because its length is fixed.
     fn all(count: usize, value: f64) -> Self;
@@ -20,7 +20,7 @@ impl<const N: usize> Numbers for [f64; N]
 where
     [f64; N]: Default,
 {
-    fn of(values: &[f64]) -> Self {
+    fn from_slice(values: &[f64]) -> Self {
         std::array::from_fn(|i| values[i])
     }
 

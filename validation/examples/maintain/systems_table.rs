@@ -30,7 +30,7 @@ pub(crate) fn run(Arguments { report, page }: &Arguments) -> Result<()> {
 
 /// The system of each case inside the binary.
 pub(crate) fn systems() -> Result<BTreeMap<String, String>> {
-    let notes = embedded()?.into_iter().map(|it| CaseNote::of(&it, true));
+    let notes = embedded()?.into_iter().map(|it| CaseNote::new(&it, true));
     Ok(notes.map(|it| (it.name, it.system)).collect())
 }
 

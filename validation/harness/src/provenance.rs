@@ -24,7 +24,7 @@ impl Build {
     /// A program that was built from this commit (empty where it is not known), by this compiler
     /// and for this processor, here.
     #[must_use]
-    pub fn of(commit: &str, rustc: &str, target_cpu: &str) -> Self {
+    pub fn new(commit: &str, rustc: &str, target_cpu: &str) -> Self {
         Self {
             schema: 1,
             percuss: env!("CARGO_PKG_VERSION").to_owned(),

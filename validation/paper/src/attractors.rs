@@ -31,7 +31,7 @@ pub(super) const fn grid(cells: u32) -> Grid {
 
 /// The attractors that a coarse grid of starts reaches.
 pub(super) fn found(omega: f64) -> Result<Vec<Attractor>, Failure> {
-    Ok(Basins::of(&map(omega)?, &grid(SEARCH_STARTS), TRANSIENT_PERIODS, &|_| {}).attractors)
+    Ok(Basins::new(&map(omega)?, &grid(SEARCH_STARTS), TRANSIENT_PERIODS, &|_| {}).attractors)
 }
 
 /// The one of a period.

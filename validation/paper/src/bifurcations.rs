@@ -87,7 +87,7 @@ fn flips(work: &ItemWork<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Fai
     let mut claim = Claim::settle(
         &work.paper,
         id,
-        ClaimVerdict::of(printed.agrees(flip.value)),
+        ClaimVerdict::new(printed.agrees(flip.value)),
         format!(
             "the flip between periods {} and {} is at omega = {:.7}",
             period,
@@ -152,7 +152,7 @@ fn criticality(work: &ItemWork<'_>, id: &str, flip: &Bifurcation) -> Result<Clai
     let grows =
         matches!((near, far), (Some(near), Some(far)) if (1.6..2.5).contains(&(far / near)));
     let within = (flip.value - 0.01, flip.value + 0.01);
-    let doubling = Doubling::of(&family(), flip, within.0, within.1, &mut |_| {});
+    let doubling = Doubling::new(&family(), flip, within.0, within.1, &mut |_| {});
     let followed = doubling.map(|it| it.criticality);
     let verdict = match (followed, grows) {
         (Some(Criticality::Subcritical), false) => ClaimVerdict::Reproduced,
@@ -202,7 +202,7 @@ fn disappears(work: &ItemWork<'_>, four: &Attractor) -> Result<Claim, Failure> {
     let mut claim = Claim::settle(
         &work.paper,
         ID,
-        ClaimVerdict::of(printed.agrees(fold.value)),
+        ClaimVerdict::new(printed.agrees(fold.value)),
         format!("period four ends in a fold at omega = {:.7}", fold.value),
     )?
     .evidence("continuation with multipliers", said(&fold))
@@ -252,7 +252,7 @@ fn red(work: &ItemWork<'_>, cascade: &Bifurcation) -> Result<Claim, Failure> {
         "period twelve ends in a fold at omega = {:.7}; the cascade's attractor is there from {there:.4} on",
         fold.value
     );
-    Ok(Claim::settle(&work.paper, "red-emerges", ClaimVerdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "red-emerges", ClaimVerdict::new(holds), computed)?
         .note(format!(
             "it is born chaotic at its crisis and passes backwards through the cascade that ends at {:.7}; at 1.56 it is periodic",
             cascade.value
@@ -274,7 +274,7 @@ fn five(work: &ItemWork<'_>) -> Result<Claim, Failure> {
     let holds = flip.value > 1.58 && flip.value < 1.6;
     let computed =
         format!("period five is stable from omega = {:.7} to {:.7}", flip.value, fold.value);
-    Ok(Claim::settle(&work.paper, "five-emerges", ClaimVerdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "five-emerges", ClaimVerdict::new(holds), computed)?
         .note("below it doubles; above it ends in a fold")
         .evidence("continuation with multipliers", format!("{}; {}", said(&flip), said(&fold)))
         .evidence(

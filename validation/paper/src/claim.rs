@@ -82,7 +82,7 @@ impl Claim {
 impl ClaimVerdict {
     /// The verdict `reproduced` if everything that was checked holds.
     #[must_use]
-    pub const fn of(holds: bool) -> Self {
+    pub const fn new(holds: bool) -> Self {
         if holds { Self::Reproduced } else { Self::Differs }
     }
 

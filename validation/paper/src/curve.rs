@@ -19,7 +19,7 @@ pub(super) fn pieces(
             _ => segment.elapsed_at(last),
         };
         let begins = segment.entry().instant.tau(omega);
-        MotionPiece::of(segment, begins, lasts, lasts / spacing)
+        MotionPiece::new(segment, begins, lasts, lasts / spacing)
     };
     segments.iter().map(piece).collect()
 }

@@ -33,7 +33,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     (work.step)();
     let uncorrected = diagram(four.points[0], OMEGA_RANGE.0, OMEGA_RANGE.1, VALUES, Follow::Reset)?;
     (work.step)();
-    let stable = Stable::of(four, FIRST_OMEGA)?;
+    let stable = Stable::new(four, FIRST_OMEGA)?;
     let mut findings = Findings::default();
     findings.claims.push(settle_a(work, &corrected, &stable)?);
     findings.claims.push(settle_b(work, &uncorrected, &stable)?);
@@ -95,7 +95,7 @@ struct Stable {
 
 impl Stable {
     /// The window of an orbit at some frequency, as far as the range goes.
-    fn of(orbit: &Attractor, omega: f64) -> Result<Self, Failure> {
+    fn new(orbit: &Attractor, omega: f64) -> Result<Self, Failure> {
         let flip = first(BifurcationKind::Flip, orbit, omega, OMEGA_RANGE.0)?;
         let fold = first(BifurcationKind::Fold, orbit, omega, OMEGA_RANGE.1)?;
         Ok(Self { flip, fold })
@@ -135,7 +135,7 @@ fn settle_a(work: &ItemWork<'_>, steps: &[DiagramStep], stable: &Stable) -> Resu
         "carried along, the motion stays on period four at all {four} of {all} values between omega = {:.4} and {:.4}",
         stable.flip.value, stable.fold.value
     );
-    Ok(Claim::settle(&work.paper, "fig10a", ClaimVerdict::of(four == all && all > 0), computed)?
+    Ok(Claim::settle(&work.paper, "fig10a", ClaimVerdict::new(four == all && all > 0), computed)?
         .note(format!(
             "range of omega assumed: {} to {}; each value starts from where the last ended",
             OMEGA_RANGE.0, OMEGA_RANGE.1
@@ -168,7 +168,7 @@ fn settle_b(work: &ItemWork<'_>, steps: &[DiagramStep], stable: &Stable) -> Resu
         .take(5)
         .map(|step| format!("{:.4} ({} points)", step.value, count(step)))
         .collect();
-    Ok(Claim::settle(&work.paper, "fig10b", ClaimVerdict::of(!off.is_empty()), computed)?
+    Ok(Claim::settle(&work.paper, "fig10b", ClaimVerdict::new(!off.is_empty()), computed)?
         .note("every value starts from the orbit's strobe at omega = 1.4; the paper does not print its start")
         .evidence("strobes after a transient, value by value", format!("first at {}", first.join(", "))))
 }
@@ -186,13 +186,13 @@ fn settle_12(
         .filter(|step| count(step) == 12)
         .map(|step| format!("{:.4}", step.value))
         .collect();
-    let beside = Stable::of(twelve, OMEGA)?;
+    let beside = Stable::new(twelve, OMEGA)?;
     let untouched = stable.flip.value < beside.flip.value && stable.fold.value > beside.fold.value;
     let computed = format!(
         "period four has no bifurcation between {:.4} and {:.4}; period twelve is stable beside it from {:.6} to {:.6}",
         stable.flip.value, stable.fold.value, beside.flip.value, beside.fold.value
     );
-    Ok(Claim::settle(&work.paper, "false-12", ClaimVerdict::of(untouched), computed)?
+    Ok(Claim::settle(&work.paper, "false-12", ClaimVerdict::new(untouched), computed)?
         .evidence("orbits at omega = 1.45 by Newton", format!("{}; {}", described(four), described(twelve)))
         .evidence("continuation of both orbits", "period twelve ends in a fold above and loses stability in a flip below, period four in neither")
         .evidence(

@@ -15,7 +15,7 @@ const POINTS_PER_PERIOD: f64 = 600.0;
 const DRIFT_ROUNDINGS: f64 = 4.0;
 
 pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
-    // The paper prints no parameters: those of Fig. 3.
+    // The paper prints no parameters for Fig. 2, so those of Fig. 3 are assumed.
     let parameters = table_1_model();
     let (model, rest) = from_rest(parameters)?;
     let end = rest.instant.after_periods(PERIODS, 1);
@@ -59,7 +59,7 @@ fn settle(work: &ItemWork<'_>, pieces: &[MotionPiece]) -> Result<Claim, Failure>
         "in {PERIODS} periods v rises by {gained:.4} in {risers} steps, level between; p stays in \
          [{p_low:.3}, {p_high:.3}]; x reaches {x_high:.3}"
     );
-    let claim = Claim::settle(&work.paper, "fig2", ClaimVerdict::of(holds), computed)?;
+    let claim = Claim::settle(&work.paper, "fig2", ClaimVerdict::new(holds), computed)?;
     Ok(claim.note("parameters assumed: those of Figs. 3 and 4, from rest").evidence(
         "exact solver, every phase sampled",
         "v constant outside progression, never falling",

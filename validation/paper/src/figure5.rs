@@ -54,7 +54,7 @@ fn settle(
          while the slider's top returns; contact between p = g and g + 1; progression reaches p = {settled:.6}",
         100.0 * share
     );
-    Ok(Claim::settle(&work.paper, "fig5", ClaimVerdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "fig5", ClaimVerdict::new(holds), computed)?
         .note(format!("from rest, after {TRANSIENT} periods"))
         .evidence("exact solver, every phase sampled", "each phase's range of p"))
 }

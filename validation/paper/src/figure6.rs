@@ -42,7 +42,7 @@ fn section(engine: &dyn Engine, accuracy: Accuracy) -> Result<RunSection, Failur
     let refused = || Failure::new("the start is refused");
     let task = run_of(chaotic_model(), Start::default(), TRANSIENT + POINTS).ok_or_else(refused)?;
     let limits = Limits { calls: 1_000_000_000, events: 1_000_000, ..Limits::default() };
-    RunSection::of(
+    RunSection::new(
         &task,
         &answer(engine, &Task::of_oscillator(&task)?, accuracy, &limits)?,
         TRANSIENT,
@@ -79,7 +79,7 @@ fn settle(
         exact.points.len(),
         exact.lyapunov
     );
-    let first = Claim::settle(&work.paper, "fig6a", ClaimVerdict::of(strange), computed)?
+    let first = Claim::settle(&work.paper, "fig6a", ClaimVerdict::new(strange), computed)?
         .note(format!("from rest, after {TRANSIENT} periods"))
         .evidence(
             "exact solver, a point a forcing period",
@@ -93,7 +93,7 @@ fn settle(
         other.points.len(),
         comparisons.len(),
     );
-    let mut second = Claim::settle(&work.paper, "fig6b", ClaimVerdict::of(agree), computed)?.note(
+    let mut second = Claim::settle(&work.paper, "fig6b", ClaimVerdict::new(agree), computed)?.note(
         "one-dimensional distances of p, y, q and their delay pairs, phase words, exponent, drift; limits that none \
          of 20,000 exact runs exceeded",
     );

@@ -69,7 +69,7 @@ fn settle(
     periods.sort_unstable();
     let chaotic = strange.lyapunov_per_period > 4.0 * strange.lyapunov_error;
     let holds = periods == figure.periods && chaotic && attractors.len() == periods.len() + 1;
-    Ok(Claim::settle(&work.paper, figure.id, ClaimVerdict::of(holds), said.join("; "))?
+    Ok(Claim::settle(&work.paper, figure.id, ClaimVerdict::new(holds), said.join("; "))?
         .note("strobes at omega tau = 0; the attractors that a grid of starts reaches")
         .evidence("Newton on the exact strobe map, multipliers", said.join("; "))
         .evidence("picture", format!("{}.png", figure.name)))

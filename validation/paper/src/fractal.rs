@@ -53,7 +53,7 @@ fn measure(omega: f64) -> Result<FrequencyMeasured, Failure> {
     catalog.label_all(&grid(32).starts(), &|_| {});
     let uncertainty =
         uncertainty_of(|start| catalog.label(start), &WINDOW, 0.0, SCALE_EXPONENTS, STARTS);
-    let basins = Basins::of(&map, &grid(CELLS), TRANSIENT_PERIODS, &|_| {});
+    let basins = Basins::new(&map, &grid(CELLS), TRANSIENT_PERIODS, &|_| {});
     Ok(FrequencyMeasured { omega, uncertainty, entropy: entropy(&basins, BOX_CELLS) })
 }
 

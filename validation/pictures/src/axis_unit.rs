@@ -20,7 +20,7 @@ pub(super) struct AxisUnit {
 
 impl AxisUnit {
     /// The plainest unit in which the labels of an axis over these values are short.
-    pub fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub fn new(values: impl Iterator<Item = f64>) -> Self {
         let range = around(values);
         let largest = |origin: f64| (range.start - origin).abs().max((range.end - origin).abs());
         let exponent = |origin: f64| largest(origin).log10().floor() as i32;
@@ -54,8 +54,8 @@ impl AxisUnit {
         if self.exponent < 0 { moved * power } else { moved / power }
     }
 
-    /// The name of an axis with what it counts in, at most `room` pixels wide as far as the name
-    /// can be cut: without what it counts in, the labels would be wrong.
+    /// The name of an axis, followed by its unit. The name is shortened to fit into `room` pixels;
+    /// the unit is always kept whole, because without it the labels would be wrong.
     pub fn named(&self, name: &str, room: f64) -> String {
         let unit = self.words();
         let room = (room - font::width(&unit, TEXT_SIZE)).max(font::width("\u{2026}", TEXT_SIZE));
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     fn named(values: &[f64]) -> String {
-        AxisUnit::of(values.iter().copied()).named("height", 900.0)
+        AxisUnit::new(values.iter().copied()).named("height", 900.0)
     }
 
     #[test]
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(named(&[2.0, 2.0 + 1e-9]), "height \u{2212} 1.99999999, in 10⁻⁸");
         for size in [1e-300, 1e-12, 1e-5, 0.3, 70.0, 99_999.0, 1e6, 1e15, 1e300] {
             for from in [0.0, size, -size, 1e3 * size] {
-                let unit = AxisUnit::of([from, from + size].into_iter());
+                let unit = AxisUnit::new([from, from + size].into_iter());
                 let range = around([from, from + size].into_iter());
                 assert!(unit.has_short_labels(range.start, range.end), "{size} from {from}");
             }
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn what_an_axis_counts_in_is_never_cut() {
-        let unit = AxisUnit::of([0.0, 1.5e6].into_iter());
+        let unit = AxisUnit::new([0.0, 1.5e6].into_iter());
         let name = unit.named("a_name_of_many_letters", 130.0);
         assert!(name.contains('\u{2026}') && name.ends_with(", in 10⁶"), "{name}");
         assert!((unit.shown(1.5e6) - 1.5).abs() < 1e-12);

@@ -108,8 +108,8 @@ impl Drawing for Encounter {
 
 impl Encounter {
     fn stretch(&self, canvas: &mut Canvas, it: &TimeStretch, (left, right): (f64, f64)) {
-        let times = Factor::of([it.from, it.to].into_iter());
-        let values = Factor::of(it.shown_values());
+        let times = Factor::new([it.from, it.to].into_iter());
+        let values = Factor::new(it.shown_values());
         let (from, to) = (times.scaled(it.from), times.scaled(it.to));
         let vertical = Ruler::over(AxisScale::Linear, it.shown_values().map(|v| values.scaled(v)));
         let Some(y) = vertical.filter(|_| from < to) else { return };
@@ -233,7 +233,7 @@ impl Trail {
 struct Factor(i32);
 
 impl Factor {
-    fn of(values: impl Iterator<Item = f64>) -> Self {
+    fn new(values: impl Iterator<Item = f64>) -> Self {
         let largest = values.map(f64::abs).filter(|v| v.is_finite()).fold(0.0, f64::max);
         let exponent = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
         Self(if (-1..=3).contains(&exponent) { 0 } else { exponent })
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn axes_count_in_powers_of_ten_where_that_is_shorter() {
-        assert_eq!(Factor::of([-3e-7, 1e-7].into_iter()).with_factor("gap"), "gap, in 10⁻⁷");
-        assert_eq!(Factor::of([0.5, f64::NAN].into_iter()).with_factor("gap"), "gap");
+        assert_eq!(Factor::new([-3e-7, 1e-7].into_iter()).with_factor("gap"), "gap, in 10⁻⁷");
+        assert_eq!(Factor::new([0.5, f64::NAN].into_iter()).with_factor("gap"), "gap");
     }
 }

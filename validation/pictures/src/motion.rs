@@ -94,7 +94,7 @@ impl Drawing for DrawnMotion {
 impl DrawnMotion {
     /// The phases of a run up to `last`.
     #[must_use]
-    pub fn of(problem: &Problem, segments: &[Segment], last: &Instant) -> Self {
+    pub fn new(problem: &Problem, segments: &[Segment], last: &Instant) -> Self {
         let parameters = problem.model.parameters();
         let percuss::Parameters { a, b, xi, omega, g, .. } = *parameters;
         let begins = problem.entry.instant;
@@ -105,7 +105,7 @@ impl DrawnMotion {
                 Exit::Switch(_) | Exit::Undecidable => segment.duration(),
                 _ => last.since(&segment.entry().instant, omega).value(),
             };
-            MotionPiece::of(segment, begins.tau(omega) + since, lasts, RUN_POINTS * lasts / span)
+            MotionPiece::new(segment, begins.tau(omega) + since, lasts, RUN_POINTS * lasts / span)
         });
         Self {
             title: format!("a = {a}, b = {b}, \u{3be} = {xi}, \u{3c9} = {omega}, g = {g}"),

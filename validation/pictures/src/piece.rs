@@ -18,7 +18,7 @@ impl MotionPiece {
     /// A phase from where it `begins` for as long as it `lasts`, both in tau, in about so many
     /// `points`.
     #[must_use]
-    pub fn of(segment: &Segment, begins: f64, lasts: f64, points: f64) -> Self {
+    pub fn new(segment: &Segment, begins: f64, lasts: f64, points: f64) -> Self {
         let count = points.ceil();
         let count = if count.is_finite() { (count as usize).max(MIN_POINTS) } else { MIN_POINTS };
         let point = |i: usize| {

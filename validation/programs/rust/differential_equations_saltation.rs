@@ -113,7 +113,7 @@ impl Solout<Dual, Watched> for Last {
 }
 
 /// Derivatives at fixed times along a stretch without events.
-fn along(
+fn derivatives_along(
     course: &Course,
     stretch: &Stretch<'_>,
     states: Vec<Vec<f64>>,
@@ -139,5 +139,5 @@ fn along(
 
 /// Makes a run, with its derivatives where they are asked for.
 pub fn make(course: &mut Course) -> Result<(), Box<dyn Error>> {
-    saltation::make(course, "differential-equations-rkv655e", along)
+    saltation::make(course, "differential-equations-rkv655e", derivatives_along)
 }

@@ -73,7 +73,7 @@ fn parse(file: &str, text: &str, folder: &Path) -> Result<Vec<Program>, FileErro
     let source = ProgramsFile { file, text };
     let wire: Wire = toml::from_str(text).map_err(|error| FileError::toml(file, text, &error))?;
     if wire.program.is_empty() {
-        return Err(FileError::of(file, "names no program; accepted is a [[program]] or more"));
+        return Err(FileError::new(file, "names no program; accepted is a [[program]] or more"));
     }
     let mut programs: Vec<Program> = Vec::new();
     for one in wire.program {
@@ -151,7 +151,7 @@ impl ProgramsFile<'_> {
     fn error(&self, offset: usize, what: &str) -> FileError {
         let before = self.text.bytes().take(offset);
         let line = 1 + before.filter(|byte| *byte == b'\n').count();
-        FileError::of(&format!("{}:{line}", self.file), what)
+        FileError::new(&format!("{}:{line}", self.file), what)
     }
 }
 

@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 }
 
 fn line(case: &Case, library: &Library) -> Result<Line, FileError> {
-    let note = CaseNote::of(case, true);
+    let note = CaseNote::new(case, true);
     Ok(Line {
         name: note.name,
         regime: case.kind(" "),

@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let baseline = judged.baseline()?;
     let _programs = arguments.programs.start()?;
     let engines = chosen_engines(&arguments.engine)?;
-    let wrong = WrongEngines::of(arguments)?;
+    let wrong = WrongEngines::new(arguments)?;
     let probed = wrong.count() > 0 || suite::probes_any(&engines, &scope);
     let derivatives_of = gradients::names(&judged.chosen, &engines);
     let cases = judged.open(&derivatives_of)?.prepare(probed.then_some(arguments.suite))?;
@@ -137,7 +137,7 @@ fn scope(arguments: &Arguments) -> Result<SuiteScope> {
 struct WrongEngines(Vec<(WrongEngine, Standard)>);
 
 impl WrongEngines {
-    fn of(arguments: &Arguments) -> Result<Self> {
+    fn new(arguments: &Arguments) -> Result<Self> {
         if !arguments.power {
             return Ok(Self::default());
         }

@@ -149,7 +149,7 @@ pub struct FaultRow {
 impl CaseNote {
     /// What this case says of itself; `embedded`: it stands inside the binary.
     #[must_use]
-    pub fn of(case: &Case, embedded: bool) -> Self {
+    pub fn new(case: &Case, embedded: bool) -> Self {
         let folder = if embedded { "validation/" } else { "" };
         let system = if case.oscillator.is_some() { OSCILLATOR } else { &case.system.name };
         Self {

@@ -19,7 +19,7 @@ impl ReportEvidence {
         embedded: bool,
     ) -> Self {
         let mut evidence = Self {
-            cases: cases.iter().map(|it| CaseNote::of(&it.case, embedded)).collect(),
+            cases: cases.iter().map(|it| CaseNote::new(&it.case, embedded)).collect(),
             faults: findings.iter().map(fault).collect(),
             ..Self::default()
         };

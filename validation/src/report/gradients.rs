@@ -58,10 +58,10 @@ impl GradientCounts {
                 names.push(row.engine);
             }
         }
-        names.into_iter().map(|engine| Self::of(engine, rows)).collect()
+        names.into_iter().map(|engine| Self::new(engine, rows)).collect()
     }
 
-    fn of(engine: &'static str, rows: &[GradientEntry]) -> Self {
+    fn new(engine: &'static str, rows: &[GradientEntry]) -> Self {
         let own: Vec<&GradientEntry> = rows.iter().filter(|it| it.engine == engine).collect();
         let counts = Verdict::ALL.map(|kind| own.iter().filter(|it| it.verdict == kind).count());
         let missing = own.iter().find_map(|it| {

@@ -42,7 +42,7 @@ struct GrazingEntry {
 
 impl Grazing {
     /// The table that follows from the evidence, or from the rows of cases that state a margin.
-    pub fn of(report: &Report, evidence: &ReportEvidence) -> Self {
+    pub fn new(report: &Report, evidence: &ReportEvidence) -> Self {
         let mut entries = if evidence.grazes.is_empty() {
             of_rows(report, evidence)
         } else {

@@ -39,10 +39,10 @@ const MIN_CASES: usize = 10;
 /// The orders of all engines that claim one and have settings enough.
 #[must_use]
 pub fn orders(engines: &[EngineEntry], rows: &[ReportRow]) -> Vec<Order> {
-    engines.iter().filter_map(|engine| of(engine, rows)).collect()
+    engines.iter().filter_map(|engine| order(engine, rows)).collect()
 }
 
-fn of(entry: &EngineEntry, rows: &[ReportRow]) -> Option<Order> {
+fn order(entry: &EngineEntry, rows: &[ReportRow]) -> Option<Order> {
     let (engine, claimed) = (entry.name, entry.order?);
     let mut own: Vec<_> = rows
         .iter()
@@ -51,7 +51,7 @@ fn of(entry: &EngineEntry, rows: &[ReportRow]) -> Option<Order> {
         .collect();
     own.dedup_by_key(|it| it.0);
     let cases = own.len();
-    let found = Spread::of(own.into_iter().map(|it| it.1).collect()).median;
+    let found = Spread::new(own.into_iter().map(|it| it.1).collect()).median;
     (cases > 0).then_some(Order { engine, claimed, found, cases })
 }
 

@@ -27,7 +27,7 @@ pub type PictureFile = (String, Vec<u8>);
 /// # Errors
 /// [`DrawError`] with the drawing library's reason.
 pub fn pictures(report: &Report, evidence: &ReportEvidence) -> Result<Vec<PictureFile>, DrawError> {
-    let palette = Palette::of(report, evidence);
+    let palette = Palette::new(report, evidence);
     let summaries = summary::engines(report);
     let mut curves = palette.work_precision(report, &summaries);
     curves.extend(
@@ -35,7 +35,7 @@ pub fn pictures(report: &Report, evidence: &ReportEvidence) -> Result<Vec<Pictur
             .map(|(case, runs)| (format!("error-growth-{case}"), palette.growth(case, &runs))),
     );
     let mut heat_maps = vec![("recall".to_owned(), recall(report, &summaries))];
-    let grazing = Grazing::of(report, evidence);
+    let grazing = Grazing::new(report, evidence);
     if !grazing.lines.is_empty() {
         heat_maps.push(("grazing".to_owned(), touches(grazing)));
     }
@@ -98,7 +98,7 @@ pub(super) struct Palette {
 
 impl Palette {
     /// The looks of the engines of the report, and of those that only the evidence knows.
-    fn of(report: &Report, evidence: &ReportEvidence) -> Self {
+    fn new(report: &Report, evidence: &ReportEvidence) -> Self {
         let mut names: Vec<(&str, &str)> =
             report.engines.iter().map(|it| (it.name, it.library)).collect();
         let growth = evidence.growth.iter().map(|it| it.engine.as_str());

@@ -72,7 +72,7 @@ pub struct TimeQuantiles {
 }
 
 impl JudgedRecords {
-    pub(super) fn of(measures: &Measures) -> Self {
+    pub(super) fn new(measures: &Measures) -> Self {
         measures.local.as_ref().map_or_else(|| Self::by_table(measures), Self::by_continuations)
     }
 
@@ -98,23 +98,23 @@ impl JudgedRecords {
             events_spurious: Some(local.spurious),
             events_wrong_mode: Some(local.wrong_mode),
             events_undecidable: Some(local.undecidable),
-            first_wrong: local.first_wrong.as_ref().map(FirstWrongRecord::of),
+            first_wrong: local.first_wrong.as_ref().map(FirstWrongRecord::new),
             defect: DefectQuantiles {
-                location: Quantiles::of(&defects.location),
+                location: Quantiles::new(&defects.location),
                 time: TimeQuantiles {
-                    size: Quantiles::of(&defects.time),
-                    signed_median: finite(Spread::of(defects.time.clone()).median),
+                    size: Quantiles::new(&defects.time),
+                    signed_median: finite(Spread::new(defects.time.clone()).median),
                 },
-                state: Quantiles::of(&defects.state),
-                sample: Quantiles::of(&defects.sample),
+                state: Quantiles::new(&defects.state),
+                sample: Quantiles::new(&defects.sample),
             },
-            inconsistency_max: Quantiles::of(&defects.inconsistency).max,
+            inconsistency_max: Quantiles::new(&defects.inconsistency).max,
         }
     }
 }
 
 impl FirstWrongRecord {
-    fn of(first: &FirstWrong) -> Self {
+    fn new(first: &FirstWrong) -> Self {
         let exact = first.exact.clone();
         Self {
             n: first.n,
@@ -133,7 +133,7 @@ impl FirstWrongRecord {
 }
 
 impl Quantiles {
-    fn of(defects: &[f64]) -> Self {
+    fn new(defects: &[f64]) -> Self {
         let Spread { median, q99, max } = Defects::spread(defects);
         Self { median: finite(median), q99: finite(q99), max: finite(max) }
     }

@@ -167,13 +167,13 @@ impl Report {
     /// The report of these rows.
     #[must_use]
     pub fn new<E: Engine + ?Sized>(suite: Suite, engines: &[&E], rows: &[Scored]) -> Self {
-        let mut results: Vec<ReportRow> = rows.iter().map(ReportRow::of).collect();
+        let mut results: Vec<ReportRow> = rows.iter().map(ReportRow::new).collect();
         fill_orders(&mut results);
         Self {
             build: Build { schema: SCHEMA, ..provenance::this() },
             suite,
-            engines: engines.iter().map(|engine| EngineEntry::of(*engine)).collect(),
-            summary: Summary::of(&results),
+            engines: engines.iter().map(|engine| EngineEntry::new(*engine)).collect(),
+            summary: Summary::new(&results),
             ranking: ranking(&results),
             results,
             gradients: Vec::new(),
@@ -203,7 +203,7 @@ fn fill_orders(rows: &mut [ReportRow]) {
 }
 
 impl EngineEntry {
-    fn of(engine: &(impl Engine + ?Sized)) -> Self {
+    fn new(engine: &(impl Engine + ?Sized)) -> Self {
         let Declaration { name, library, version, method, order, .. } = engine.declaration();
         Self { name, library, version, method, language: engine.language().to_owned(), order }
     }
@@ -212,7 +212,7 @@ impl EngineEntry {
 impl Summary {
     /// Counts the rows of each class.
     #[must_use]
-    pub fn of(rows: &[ReportRow]) -> Self {
+    pub fn new(rows: &[ReportRow]) -> Self {
         let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
         Self {
             pass: count(Verdict::Pass),
@@ -228,13 +228,13 @@ impl Summary {
 }
 
 impl RestartFigures {
-    fn of(restart: &Restart) -> Self {
+    fn new(restart: &Restart) -> Self {
         Self { runs: restart.runs, with_impact: restart.with_impact, error: restart.units }
     }
 }
 
 impl ValidHorizons {
-    fn of(horizons: &Horizons) -> Self {
+    fn new(horizons: &Horizons) -> Self {
         Self {
             runs: horizons.runs.len(),
             median: horizons.valid.median,
@@ -264,7 +264,7 @@ impl ReportRow {
         self.events_matched == Some(self.events_total) && self.records.events_spurious == Some(0)
     }
 
-    fn of(scored: &Scored) -> Self {
+    fn new(scored: &Scored) -> Self {
         let empty = Self::empty(scored);
         let Status::Ok(measures, outcome) = &scored.status else { return empty };
         let whole_ns = |time: Duration| u64::try_from(time.as_nanos()).ok();
@@ -274,7 +274,7 @@ impl ReportRow {
             horizon_periods: measures.horizon_periods,
             events_expected: Some(measures.expected),
             events_matched: Some(measures.matched),
-            records: JudgedRecords::of(measures),
+            records: JudgedRecords::new(measures),
             phase_word_ok: Some(measures.phase_sequence_ok),
             event_time_error: measures.event_time,
             state_error: measures.state,
@@ -287,8 +287,8 @@ impl ReportRow {
             steps: work.map(|it| it.steps),
             wall_ns: Some(scored.wall).filter(|wall| !wall.is_zero()).and_then(whole_ns),
             own_ns: outcome.own_time.and_then(whole_ns),
-            valid_horizon: measures.probed.horizons.as_ref().map(ValidHorizons::of),
-            restart: measures.probed.restart.as_ref().map(RestartFigures::of),
+            valid_horizon: measures.probed.horizons.as_ref().map(ValidHorizons::new),
+            restart: measures.probed.restart.as_ref().map(RestartFigures::new),
             distance: measures
                 .probed
                 .attractor

@@ -52,7 +52,7 @@ impl EngineSummary {
 }
 
 impl SettingSummary {
-    fn of(rows: &[&ReportRow]) -> Self {
+    fn new(rows: &[&ReportRow]) -> Self {
         let ran: Vec<&ReportRow> = rows.iter().copied().filter(|row| row.was_run()).collect();
         // As in the ranking: what is not scored counts as not found.
         let scored = || ran.iter().filter(|row| row.verdict != Verdict::NotScored);
@@ -61,10 +61,10 @@ impl SettingSummary {
         let error = |figure: fn(&ReportRow) -> f64, is_lost: fn(&ReportRow) -> bool| {
             let lost = |row: &ReportRow| row.status != "ok" || (rows.len() > 1 && is_lost(row));
             let of = |row: &&ReportRow| if lost(row) { f64::INFINITY } else { figure(row) };
-            Spread::of(ran.iter().map(of).filter(|error| !error.is_nan()).collect()).median
+            Spread::new(ran.iter().map(of).filter(|error| !error.is_nan()).collect()).median
         };
         let work = |figure: fn(&ReportRow) -> Option<u64>| {
-            Spread::of(ran.iter().filter_map(|row| figure(row)).map(|work| work as f64).collect())
+            Spread::new(ran.iter().filter_map(|row| figure(row)).map(|work| work as f64).collect())
                 .median
         };
         Self {
@@ -138,5 +138,5 @@ fn one(report: &Report, engine: &str) -> EngineSummary {
     let fineness = |row: &ReportRow| row.tolerance.or(row.step).unwrap_or(0.0);
     rows.sort_by(|a, b| fineness(b).total_cmp(&fineness(a)));
     let same = |a: &&ReportRow, b: &&ReportRow| a.setting() == b.setting();
-    EngineSummary { counts, settings: rows.chunk_by(same).map(SettingSummary::of).collect() }
+    EngineSummary { counts, settings: rows.chunk_by(same).map(SettingSummary::new).collect() }
 }

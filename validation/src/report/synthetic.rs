@@ -74,7 +74,7 @@ pub(crate) fn report(results: Vec<ReportRow>) -> Report {
         build: provenance::this(),
         suite: Suite::Quick,
         engines: names.into_iter().map(engine).collect(),
-        summary: Summary::of(&results),
+        summary: Summary::new(&results),
         ranking: ranking(&results),
         results,
     }

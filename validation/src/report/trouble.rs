@@ -45,7 +45,7 @@ pub(super) struct Trouble {
 
 impl Trouble {
     /// The matrix of a report; without lines where none of its cases is of a system.
-    pub fn of(report: &Report, evidence: &ReportEvidence) -> Self {
+    pub fn new(report: &Report, evidence: &ReportEvidence) -> Self {
         let mut kinds: Vec<&String> = evidence.cases.iter().flat_map(|it| &it.trouble).collect();
         kinds.sort();
         kinds.dedup();

@@ -26,7 +26,7 @@ impl Palette {
             let (label, _) = shown;
             let engines = report.engines.iter().zip(summaries);
             let curves = Curves {
-                title: format!("Work-precision, {label}: {}", of(report)),
+                title: format!("Work-precision, {label}: {}", cases(report)),
                 note: note.clone(),
                 x: logarithmic("right-hand sides (exact: closed-form evaluations)"),
                 y: logarithmic(label),
@@ -64,7 +64,7 @@ impl Palette {
 }
 
 /// The one case, or how many there are.
-fn of(report: &Report) -> String {
+fn cases(report: &Report) -> String {
     match (report.number_of_cases(), report.results.first()) {
         (1, Some(row)) => row.case.clone(),
         (cases, _) => format!("median of {cases} cases"),

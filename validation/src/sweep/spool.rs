@@ -37,14 +37,14 @@ impl Spool {
     pub fn new(first: &Array, folder: &Path) -> Result<Self> {
         let file = BufWriter::new(tempfile::tempfile_in(folder)?);
         let shape = vec![0; first.shape.len()];
-        Ok(Self { name: first.name.clone(), kind: NumberType::of(&first.values), shape, file })
+        Ok(Self { name: first.name.clone(), kind: NumberType::new(&first.values), shape, file })
     }
 
     /// Adds the array of the next point.
     pub fn add(&mut self, array: &Array) -> Result<()> {
         let alike = array.name == self.name
             && array.shape.len() == self.shape.len()
-            && NumberType::of(&array.values) == self.kind;
+            && NumberType::new(&array.values) == self.kind;
         if !alike {
             bail!("the points differ in the array {}", self.name);
         }
@@ -75,7 +75,7 @@ impl Spool {
 }
 
 impl NumberType {
-    const fn of(values: &ArrayValues) -> Self {
+    const fn new(values: &ArrayValues) -> Self {
         match values {
             ArrayValues::F8(_) => Self::F8,
             ArrayValues::I4(_) => Self::I4,

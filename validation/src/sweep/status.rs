@@ -37,7 +37,7 @@ impl SweepStatus {
 
     /// Looks at all shards of a sweep.
     #[must_use]
-    pub fn of(sweep: &Sweep<'_>) -> Self {
+    pub fn new(sweep: &Sweep<'_>) -> Self {
         let (mut seconds, mut done, mut left) = (0.0, 0, 0);
         let mut shards = Vec::new();
         for shard in 0..sweep.plan.shards {

@@ -25,10 +25,10 @@ pub struct Tiling {
 impl Tiling {
     /// The tiles of a plan with this work.
     pub fn new(plan: &Plan, work: &dyn SweepVerb) -> Self {
-        Self::of(plan.points(), work.tiles(), plan.shards)
+        Self::from_counts(plan.points(), work.tiles(), plan.shards)
     }
 
-    fn of(points: u64, blocks: u32, shards: u32) -> Self {
+    fn from_counts(points: u64, blocks: u32, shards: u32) -> Self {
         let fit = points.div_ceil(MAX_WHOLE_TILES).min(points / u64::from(shards));
         let together = if blocks == 1 { fit.max(1) } else { 1 };
         Self { points, blocks, together }
@@ -102,7 +102,7 @@ mod tests {
         for (points, blocks, shards) in
             [(1, 1, 1), (65_537, 1, 1), (200_000, 1, 100_000), (1 << 24, 1, 7), (100, 200, 1000)]
         {
-            let tiling = Tiling::of(points, blocks, shards);
+            let tiling = Tiling::from_counts(points, blocks, shards);
             let most = MAX_WHOLE_TILES
                 .max(2 * u64::from(shards))
                 .max(points.min(MAX_WHOLE_TILES) * u64::from(blocks));

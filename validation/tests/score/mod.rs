@@ -36,7 +36,7 @@ struct Files {
 }
 
 impl Files {
-    fn of(run: &Outcome, task: &Task) -> Self {
+    fn new(run: &Outcome, task: &Task) -> Self {
         let system = task.system.system();
         let names = system.states.join(",");
         let has_before = run.events.iter().all(|it| it.before.is_some());
@@ -87,7 +87,7 @@ fn answers(engine: &str, accuracy: Accuracy, pattern: &str, folder: &Path) -> Ve
     for case in &cases {
         let row = one(case, *engine, accuracy, Suite::Quick, &defaults);
         let Status::Ok(_, run) = row.status else { continue };
-        Files::of(&run, &case.task).write(folder, &case.case.name);
+        Files::new(&run, &case.task).write(folder, &case.case.name);
         answered.push(case.case.name.clone());
     }
     answered

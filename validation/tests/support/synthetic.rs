@@ -214,7 +214,7 @@ pub fn report() -> Report {
         suite: Suite::Quick,
         engines: ENGINES.iter().map(engine).collect(),
         ranking: ranking(),
-        summary: Summary::of(&results),
+        summary: Summary::new(&results),
         results,
     }
 }

@@ -14,7 +14,7 @@ pub struct Edit {
 
 impl Edit {
     /// Reads a file of the repository and changes its text.
-    pub fn of(
+    pub fn new(
         root: &Folder,
         path: &str,
         change: impl FnOnce(&str) -> Result<String>,

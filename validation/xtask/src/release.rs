@@ -127,7 +127,7 @@ fn plan(root: &Folder, version: &Version, day: &str) -> Result<Plan> {
         "{version} may not break what {old} promised, but {} says **Breaking:**",
         changelog::FILE
     );
-    let mut edits = vec![Edit::of(root, changelog::FILE, |_| changelog.released(version, day))?];
+    let mut edits = vec![Edit::new(root, changelog::FILE, |_| changelog.released(version, day))?];
     edits.extend(versions::edits(root, &old, version, day)?);
     Ok(Plan {
         edits,

@@ -36,7 +36,7 @@ pub fn may_break(old: &Version, new: &Version) -> bool {
 /// pages tell users to depend on, citation.
 pub fn edits(root: &Folder, old: &Version, new: &Version, day: &str) -> Result<Vec<Edit>> {
     let manifests = manifests(root)?;
-    let mut edits = vec![Edit::of(root, ROOT, |text| workspace(text, new))?];
+    let mut edits = vec![Edit::new(root, ROOT, |text| workspace(text, new))?];
     let mut packages = BTreeSet::new();
     for path in &manifests {
         packages.extend(package_of_the_version(&root.read(path)?).with_context(|| path.clone())?);
@@ -44,18 +44,18 @@ pub fn edits(root: &Folder, old: &Version, new: &Version, day: &str) -> Result<V
             let after_workspace = edits[0].after.clone();
             edits[0].after = dependencies(&after_workspace, old, new).context(ROOT)?;
         } else {
-            edits.push(Edit::of(root, path, |text| dependencies(text, old, new))?);
+            edits.push(Edit::new(root, path, |text| dependencies(text, old, new))?);
         }
     }
     for path in root.output("git", &["ls-files", "Cargo.lock", "*/Cargo.lock"])?.lines() {
-        edits.push(Edit::of(root, path, |text| lock(text, &packages, new))?);
+        edits.push(Edit::new(root, path, |text| lock(text, &packages, new))?);
     }
     for path in root.output("git", &["ls-files", "*.md"])?.lines() {
         if path != changelog::FILE && !path.starts_with(ARCHIVE_FOLDER) {
-            edits.push(Edit::of(root, path, |text| Ok(page(text, old, new)))?);
+            edits.push(Edit::new(root, path, |text| Ok(page(text, old, new)))?);
         }
     }
-    edits.push(Edit::of(root, CITATION, |text| citation(text, new, day))?);
+    edits.push(Edit::new(root, CITATION, |text| citation(text, new, day))?);
     edits.retain(Edit::changes);
     Ok(edits)
 }

@@ -43,7 +43,7 @@ impl SystemFile {
     /// # Errors
     /// An expression that is not affine, and unknown names with those that are accepted.
     pub fn observable(&self, text: &str, place: &str) -> Result<Observable, SystemError> {
-        let mut names = Names::of(self, None)?;
+        let mut names = Names::new(self, None)?;
         let forcing = names.forcing()?;
         let form = names.affine(&Scalar::Text(text.to_owned()));
         let form = form.map_err(|what| SystemError::at(place, &what))?;
@@ -68,7 +68,7 @@ fn trouble(file: &SystemFile, kind: &Spanned<String>) -> Result<String, SystemEr
 }
 
 fn system(file: &SystemFile, by: Option<&Name>) -> Result<System, SystemError> {
-    let mut names = Names::of(file, by)?;
+    let mut names = Names::new(file, by)?;
     let forcing = names.forcing()?;
     names.check_lets()?;
     let tables = &file.tables;

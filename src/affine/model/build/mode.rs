@@ -20,7 +20,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toml::Spanned;
 
-/// A reader of a mode's tables, with all that they refer to but the names of expressions.
+/// A reader of the tables of modes; the names that expressions may use are passed separately.
 pub(super) struct ModeReader<'a> {
     pub(super) file: &'a SystemFile,
     pub(super) places: &'a BTreeMap<String, usize>,

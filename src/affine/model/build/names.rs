@@ -37,7 +37,7 @@ pub(super) enum Accepts {
 }
 
 impl<'a> Names<'a> {
-    pub(super) fn of(file: &'a SystemFile, by: Option<&'a Name>) -> Result<Self, SystemError> {
+    pub(super) fn new(file: &'a SystemFile, by: Option<&'a Name>) -> Result<Self, SystemError> {
         let tables = &file.tables;
         if *tables.schema.get_ref() != 1 {
             return Err(file.error(&tables.schema.span(), "the schema that is accepted is 1"));

@@ -80,7 +80,7 @@ pub fn quotients(
         let mut sides = both(pair, life)?;
         for (i, bench) in benches.iter().enumerate() {
             let own = sides.rounds(bench, pair.burden)?;
-            lives[i].push(Spread::of(own.clone()).median);
+            lives[i].push(Spread::new(own.clone()).median);
             rounds[i].extend(own);
             done();
         }
@@ -90,7 +90,7 @@ pub fn quotients(
         let most = lives[i].iter().copied().fold(0.0, f64::max);
         TimeQuotient {
             bench: bench.clone(),
-            value: Spread::of(rounds[i].clone()).median,
+            value: Spread::new(rounds[i].clone()).median,
             spread: most - least,
         }
     };

@@ -48,7 +48,7 @@ pub fn changes(old: &HistoryRecord, new: &HistoryRecord) -> Vec<RecordedChange> 
     all.push(settled("evaluations", evaluations));
     all.push(change("state_error", errors(old, new), accuracy(errors(old, new))));
     let quotients = [new.floors / old.floors, new.floors_again / old.floors_again];
-    let verdict = match WorkloadVerdict::of(&quotients) {
+    let verdict = match WorkloadVerdict::new(&quotients) {
         WorkloadVerdict::Fail if counted.is_some() => WorkloadVerdict::Warn,
         verdict => verdict,
     };
@@ -102,7 +102,7 @@ mod tests {
             evaluations_per_switch,
             state_error_max: 0.0,
         };
-        HistoryRecord::of(Build::of("", "rustc", "any"), "one", figures)
+        HistoryRecord::new(Build::new("", "rustc", "any"), "one", figures)
     }
 
     fn words(old: &HistoryRecord, new: &HistoryRecord) -> Vec<(&'static str, &'static str)> {

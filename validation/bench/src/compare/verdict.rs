@@ -23,7 +23,7 @@ pub enum WorkloadVerdict {
 impl WorkloadVerdict {
     /// The verdict on successive quotients of new to old.
     #[must_use]
-    pub fn of(quotients: &[f64]) -> Self {
+    pub fn new(quotients: &[f64]) -> Self {
         if quotients.windows(2).any(|pair| pair.iter().all(|it| is_doubtful(*it))) {
             Self::Fail
         } else if quotients.iter().all(|it| *it < WARNING_QUOTIENT) {
@@ -56,34 +56,34 @@ mod tests {
 
     #[test]
     fn slower_by_two_percent_twice_in_a_row_fails() {
-        assert_eq!(WorkloadVerdict::of(&[1.03, 1.03]), WorkloadVerdict::Fail);
-        assert_eq!(WorkloadVerdict::of(&[1.02, 1.02]), WorkloadVerdict::Fail);
-        assert_eq!(WorkloadVerdict::of(&[1.0, 1.05, 1.021]), WorkloadVerdict::Fail);
+        assert_eq!(WorkloadVerdict::new(&[1.03, 1.03]), WorkloadVerdict::Fail);
+        assert_eq!(WorkloadVerdict::new(&[1.02, 1.02]), WorkloadVerdict::Fail);
+        assert_eq!(WorkloadVerdict::new(&[1.0, 1.05, 1.021]), WorkloadVerdict::Fail);
     }
 
     #[test]
     fn once_or_not_in_a_row_is_a_warning() {
-        assert_eq!(WorkloadVerdict::of(&[1.03]), WorkloadVerdict::Warn);
-        assert_eq!(WorkloadVerdict::of(&[1.03, 1.0]), WorkloadVerdict::Warn);
-        assert_eq!(WorkloadVerdict::of(&[1.03, 1.0, 1.03]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::new(&[1.03]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::new(&[1.03, 1.0]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::new(&[1.03, 1.0, 1.03]), WorkloadVerdict::Warn);
     }
 
     #[test]
     fn slower_by_one_and_a_half_percent_is_a_warning_however_often() {
-        assert_eq!(WorkloadVerdict::of(&[1.015, 1.015, 1.015]), WorkloadVerdict::Warn);
-        assert_eq!(WorkloadVerdict::of(&[1.01]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::new(&[1.015, 1.015, 1.015]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::new(&[1.01]), WorkloadVerdict::Warn);
     }
 
     #[test]
     fn faster_or_the_same_passes() {
-        assert_eq!(WorkloadVerdict::of(&[1.009]), WorkloadVerdict::Pass);
-        assert_eq!(WorkloadVerdict::of(&[0.5, 0.5]), WorkloadVerdict::Pass);
+        assert_eq!(WorkloadVerdict::new(&[1.009]), WorkloadVerdict::Pass);
+        assert_eq!(WorkloadVerdict::new(&[0.5, 0.5]), WorkloadVerdict::Pass);
     }
 
     #[test]
     fn a_nan_passes_nothing() {
-        assert_eq!(WorkloadVerdict::of(&[f64::NAN]), WorkloadVerdict::Warn);
-        assert_eq!(WorkloadVerdict::of(&[f64::NAN, f64::NAN]), WorkloadVerdict::Fail);
+        assert_eq!(WorkloadVerdict::new(&[f64::NAN]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::new(&[f64::NAN, f64::NAN]), WorkloadVerdict::Fail);
         assert!(is_doubtful(f64::NAN) && is_doubtful(1.02) && !is_doubtful(1.0199));
     }
 }

@@ -116,7 +116,7 @@ mod tests {
         let asked = "names\nbest idle 7 2\nrun idle 7\nbest idle 13 1\nbest idle 0 1\nbest idle 1 x\nbest no 1 1\nstray\n\n";
         let mut said = Vec::new();
         let workloads: [Box<dyn Workload>; 1] = [Box::new(Idle)];
-        let build = Build::of("", "rustc", "any");
+        let build = Build::new("", "rustc", "any");
         let served = serve(&build, &workloads, asked.as_bytes(), &mut said);
         let said = String::from_utf8(said).unwrap_or_default();
         assert!(served.is_ok(), "{served:?}");

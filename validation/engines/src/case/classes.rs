@@ -84,7 +84,7 @@ impl ClassBounds {
     /// The bounds of an engine's class at an accuracy; those of explicit methods where an engine
     /// declares none, and none for closed forms.
     #[must_use]
-    pub fn of(
+    pub fn new(
         classes: &[Self],
         (class, order): (Option<Class>, Option<u32>),
         stepping: Stepping,

@@ -37,7 +37,7 @@ pub fn from_directory(folder: &Path) -> Result<Vec<Case>, FileError> {
         |path: PathBuf| parse_case(&path.display().to_string(), &read_text(&path)?, path.parent());
     let cases = case_files(folder)?.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
     if cases.is_empty() {
-        return Err(FileError::of(&folder.display().to_string(), "holds no case (*.toml)"));
+        return Err(FileError::new(&folder.display().to_string(), "holds no case (*.toml)"));
     }
     ordered(cases)
 }
@@ -45,7 +45,7 @@ pub fn from_directory(folder: &Path) -> Result<Vec<Case>, FileError> {
 fn collect(folder: &Dir<'_>, cases: &mut Vec<Case>) -> Result<(), FileError> {
     for file in folder.files().filter(|file| is_case(file.path())) {
         let name = format!("cases/{}", file.path().display());
-        let text = file.contents_utf8().ok_or_else(|| FileError::of(&name, "not UTF-8"))?;
+        let text = file.contents_utf8().ok_or_else(|| FileError::new(&name, "not UTF-8"))?;
         cases.push(parse_case(&name, text, None)?);
     }
     folder.dirs().try_for_each(|inner| collect(inner, cases))

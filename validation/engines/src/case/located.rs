@@ -14,7 +14,7 @@ pub struct FileError(pub String);
 
 impl FileError {
     /// `file: what`.
-    pub fn of(file: &str, what: impl std::fmt::Display) -> Self {
+    pub fn new(file: &str, what: impl std::fmt::Display) -> Self {
         Self(format!("{file}: {}", one_line(&what.to_string())))
     }
 
@@ -43,7 +43,7 @@ impl FileError {
     #[must_use]
     pub fn lacks(file: &str, text: &str, table: &str, accepted: &str) -> Self {
         let line = last_line(text);
-        Self::of(&format!("{file}:{line}"), missing_key(table, accepted))
+        Self::new(&format!("{file}:{line}"), missing_key(table, accepted))
     }
 
     /// The file cannot be read.

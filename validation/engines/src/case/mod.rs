@@ -106,7 +106,7 @@ impl Case {
     /// # Errors
     /// It is written in those of its system.
     pub fn of_oscillator(&self) -> Result<&OscillatorCase, FileError> {
-        let lacking = || FileError::of(&self.file, "is no case in the oscillator's own words");
+        let lacking = || FileError::new(&self.file, "is no case in the oscillator's own words");
         self.oscillator.as_ref().ok_or_else(lacking)
     }
 
@@ -147,7 +147,7 @@ impl Case {
     /// [`FileError`] for a system that the solver or the engines do not take.
     pub fn problem(&self) -> Result<SystemProblem, FileError> {
         SystemProblem::new(self.system.clone(), self.backward)
-            .map_err(|failure: Failure| FileError::of(&self.file, failure))
+            .map_err(|failure: Failure| FileError::new(&self.file, failure))
     }
 
     /// The times since the start at which the state is tabulated, as far as `end`.

@@ -64,7 +64,7 @@ pub fn percussive_oscillator(problem: &Problem) -> Result<System, FileError> {
     for (name, value) in parameters {
         file.set(name, value, name).map_err(refused)?;
     }
-    let start = start(problem).ok_or_else(|| FileError::of(NAME, "the start is not finite"))?;
+    let start = start(problem).ok_or_else(|| FileError::new(NAME, "the start is not finite"))?;
     let mut system = file.system().map_err(refused)?;
     system.start = Some(start);
     Ok(system)

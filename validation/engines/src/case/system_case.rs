@@ -173,5 +173,5 @@ fn named_like_its_file(read: SystemFile, path: &Path, name: &str) -> Result<Syst
         return Ok(read);
     }
     let what = format!("name = {own:?} is not accepted: in this file it is {name:?}");
-    Err(FileError::of(&path.display().to_string(), what))
+    Err(FileError::new(&path.display().to_string(), what))
 }

@@ -177,7 +177,7 @@ pub(super) fn parse_oscillator_case(file: &str, text: &str) -> Result<Case, File
         }
         margin => margin.as_ref().map(|margin| *margin.get_ref()),
     };
-    let run = Case::of_run(problem, horizon).map_err(|it| FileError::of(file, it))?;
+    let run = Case::of_run(problem, horizon).map_err(|it| FileError::new(file, it))?;
     let probed = source.probed(&wire.probes)?;
     let own = |own| OscillatorCase { regime: wire.case.regime, margin, probed, ..own };
     Ok(Case {

@@ -88,7 +88,7 @@ mod tests {
         let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == "small-b");
         let Some(case) = case else { unreachable!("small-b is embedded") };
         let Some(own) = &case.oscillator else { unreachable!("it is of the oscillator") };
-        let task = OscillatorTask::of(own, SampleGrid { per_period: 8, count: SAMPLES });
+        let task = OscillatorTask::new(own, SampleGrid { per_period: 8, count: SAMPLES });
         let Ok(task) = Task::of_oscillator(&task) else { unreachable!("it is a system") };
         task
     }
@@ -103,7 +103,7 @@ mod tests {
         let task = task();
         let mut outcome = complete_outcome(&task);
         assert_eq!(complete(&outcome, &task), Ok(()));
-        outcome.samples.push(Values::of(&[0.0; 4]));
+        outcome.samples.push(Values::from_slice(&[0.0; 4]));
         let refused = |outcome: &Outcome| complete(outcome, &task).map_err(|it| it.reason);
         let said = |count| Err(format!("gave {count} samples where {SAMPLES} were asked for"));
         assert_eq!(refused(&outcome), said(SAMPLES + 1));
@@ -117,7 +117,7 @@ mod tests {
         let outcome = complete_outcome(&task);
         let late = outcome.events.last().map_or(0.0, |it| it.elapsed);
         for elapsed in [f64::NAN, f64::INFINITY, 0.5 * late] {
-            let (mode, state) = (1, Values::of(&[0.0; 4]));
+            let (mode, state) = (1, Values::from_slice(&[0.0; 4]));
             let event = Event { event: 0, mode, elapsed, state, before: None };
             let events = [outcome.events.as_slice(), &[event]].concat();
             let odd = Outcome { events, ..outcome.clone() };
@@ -131,7 +131,7 @@ mod tests {
         let outcome = complete_outcome(&task);
         let mut mode = outcome.clone();
         mode.events[1].mode = 3;
-        let short = Values::of(&[0.5; 3]);
+        let short = Values::from_slice(&[0.5; 3]);
         let mut sample = outcome.clone();
         sample.samples[1] = short;
         for odd in [mode, sample, Outcome { end: short, ..outcome }] {

@@ -40,7 +40,7 @@ pub struct OscillatorTask {
 impl OscillatorTask {
     /// The run that a case asks for.
     #[must_use]
-    pub fn of(case: &OscillatorCase, grid: SampleGrid) -> Self {
+    pub fn new(case: &OscillatorCase, grid: SampleGrid) -> Self {
         let (problem, parameters) = (case.problem, *case.parameters());
         let horizon = match case.horizon {
             Horizon::Periods(periods) => problem.entry.instant.after_periods(u64::from(periods), 1),

@@ -4,7 +4,7 @@ use super::{OscillatorTask, Watched};
 use crate::accuracy::shortest_time;
 use crate::equations::Numbers;
 use crate::failure::Failure;
-use crate::system::{CheckedSystem, Rates, SystemProblem, Values};
+use crate::system::{CheckedSystem, CoefficientDerivatives, SystemProblem, Values};
 use std::sync::Arc;
 
 /// A run of a system that is to be made.
@@ -29,7 +29,7 @@ pub struct Task {
     /// oscillator's equations written by hand may take them instead of the system's matrices.
     pub oscillator: Option<Arc<OscillatorTask>>,
     /// The names by which derivatives are asked for, with those of the coefficients.
-    pub gradients: Option<Arc<Vec<Rates>>>,
+    pub gradients: Option<Arc<Vec<CoefficientDerivatives>>>,
 }
 
 impl Task {
@@ -56,7 +56,7 @@ impl Task {
         if !(span.is_finite() && span > 0.0 && samples.is_sorted()) {
             return Err(Failure::new("a run takes a positive time, with samples in order"));
         }
-        let state = Values::of(state);
+        let state = Values::from_slice(state);
         Ok(Self {
             system,
             mode,
@@ -74,7 +74,11 @@ impl Task {
     ///
     /// # Errors
     /// Fails as [`Task::new`] does.
-    pub fn of(problem: &Arc<SystemProblem>, span: f64, samples: Vec<f64>) -> Result<Self, Failure> {
+    pub fn from_problem(
+        problem: &Arc<SystemProblem>,
+        span: f64,
+        samples: Vec<f64>,
+    ) -> Result<Self, Failure> {
         let system = Arc::clone(&problem.checked);
         let task = Self::new(system, problem.start.mode, &problem.state(), span, samples)?;
         Ok(Self { exact: Some(Arc::clone(problem)), ..task })

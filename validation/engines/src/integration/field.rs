@@ -30,7 +30,7 @@ pub(crate) trait Coordinates: Equations<State = [f64; 4], Guards = [f64; GUARDS]
     }
 
     /// The model's equations; `angle` is omega tau + phi at the start.
-    fn of(parameters: &Parameters, angle: f64) -> Self;
+    fn new(parameters: &Parameters, angle: f64) -> Self;
 
     /// p, y, q and v in these co-ordinates.
     fn of_bounded(&self, state: &[f64; 4]) -> [f64; 4];
@@ -82,7 +82,7 @@ pub struct Oscillator {
 impl Oscillator {
     /// The model's equations; `angle` is omega tau + phi at the start.
     #[must_use]
-    pub fn of(parameters: &Parameters, angle: f64) -> Self {
+    pub fn new(parameters: &Parameters, angle: f64) -> Self {
         let Parameters { a, b, xi, omega, g, .. } = *parameters;
         Self { a, b, omega, g, two_xi: 2.0 * xi, angle }
     }
@@ -97,8 +97,8 @@ impl Oscillator {
 }
 
 impl Coordinates for Oscillator {
-    fn of(parameters: &Parameters, angle: f64) -> Self {
-        Self::of(parameters, angle)
+    fn new(parameters: &Parameters, angle: f64) -> Self {
+        Self::new(parameters, angle)
     }
 
     fn of_bounded(&self, state: &[f64; 4]) -> [f64; 4] {

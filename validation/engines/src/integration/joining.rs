@@ -8,7 +8,7 @@ use crate::accuracy::shortest_time;
 use crate::engine::{Event, OscillatorTask, Outcome, Task, Watched, place};
 use crate::equations::{Entered, Equations, Numbers};
 use crate::failure::Failure;
-use crate::system::{Affine, Values};
+use crate::system::{AffineEquations, Values};
 use percuss::Ending;
 use std::f64::consts::TAU;
 
@@ -38,8 +38,8 @@ pub(crate) struct Integration<'a, E: Equations> {
 
 impl<'a, E: Coordinates> Integration<'a, E> {
     /// The integration of the oscillator that a task asks for, in the oscillator's own words too.
-    pub(crate) fn of(task: &'a Task, own: &OscillatorTask) -> Self {
-        Self::by(task, own, E::of(&own.parameters, own.forcing_angle))
+    pub(crate) fn new(task: &'a Task, own: &OscillatorTask) -> Self {
+        Self::by(task, own, E::new(&own.parameters, own.forcing_angle))
     }
 
     /// The integration of a task of the oscillator by these equations.
@@ -57,12 +57,12 @@ impl<'a, E: Coordinates> Integration<'a, E> {
     }
 }
 
-impl<'a> Integration<'a, Affine<'a>> {
+impl<'a> Integration<'a, AffineEquations<'a>> {
     /// The integration of the system that a task asks for.
     pub(crate) fn of_system(task: &'a Task) -> Self {
         let system = &*task.system;
         Self {
-            equations: Affine::of(system),
+            equations: AffineEquations::new(system),
             mode: task.mode,
             state: task.state,
             span: task.span,
@@ -189,7 +189,7 @@ pub(crate) fn join<E: Equations>(
 
 /// A state as an outcome has it.
 fn reported<E: Equations>(equations: &E, state: &E::State) -> Values {
-    Values::of(equations.reported(state).as_ref())
+    Values::from_slice(equations.reported(state).as_ref())
 }
 
 /// Notes what the search has found in a stretch, where a run is to be repeated without it.

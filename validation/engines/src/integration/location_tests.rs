@@ -14,7 +14,7 @@ fn first(force: fn(f64) -> f64, rate: fn(f64) -> f64) -> Option<GuardRise> {
 fn searched(force: fn(f64) -> f64, rate: fn(f64) -> f64) -> (Option<GuardRise>, u32) {
     let parameters = Parameters { a: 0.0, b: 0.0, ..Parameters::default() };
     let meter = Meter::new(&Limits::default());
-    let equations = Made { oscillator: Oscillator::of(&parameters, 0.0), force, rate };
+    let equations = Made { oscillator: Oscillator::new(&parameters, 0.0), force, rate };
     let from = Moment::start(&equations, 1, [0.0; 4]);
     let search = GuardSearch::new(equations, &from, &meter);
     let mut looks = 0;

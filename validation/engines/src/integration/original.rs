@@ -41,7 +41,7 @@ impl Coordinates for OriginalOscillator {
         if is_oscillator { Ok(()) } else { Err(NOT_THE_OSCILLATOR) }
     }
 
-    fn of(parameters: &Parameters, angle: f64) -> Self {
+    fn new(parameters: &Parameters, angle: f64) -> Self {
         let Parameters { a, b, xi, omega, g, .. } = *parameters;
         Self { a, b, omega, g, two_xi: 2.0 * xi, angle }
     }
@@ -135,8 +135,8 @@ mod tests {
     #[test]
     fn the_transformation_decouples() {
         let parameters = Parameters::default();
-        let bounded = Oscillator::of(&parameters, 0.3);
-        let original = OriginalOscillator::of(&parameters, 0.3);
+        let bounded = Oscillator::new(&parameters, 0.3);
+        let original = OriginalOscillator::new(&parameters, 0.3);
         let state = [0.62, 1.7, 0.6, 2.5];
         let near = |left: [f64; 4], right: [f64; 4]| {
             left.iter().zip(right).all(|(a, b)| (a - b).abs() <= 1e-13 * (1.0 + b.abs()))

@@ -11,14 +11,14 @@ use crate::equations::{Entered, Equations, NO_GUARD, Numbers};
 /// The methods are not compiled into every stage of every integrator: that would take half as long
 /// again, and a call costs little beside the loops that it runs.
 #[derive(Clone, Copy, Debug)]
-pub struct Affine<'a> {
+pub struct AffineEquations<'a> {
     system: &'a CheckedSystem,
 }
 
-impl<'a> Affine<'a> {
+impl<'a> AffineEquations<'a> {
     /// The equations of a system that was checked.
     #[must_use]
-    pub fn of(system: &'a CheckedSystem) -> Self {
+    pub fn new(system: &'a CheckedSystem) -> Self {
         Self { system }
     }
 
@@ -60,7 +60,7 @@ impl<'a> Affine<'a> {
     }
 }
 
-impl Equations for Affine<'_> {
+impl Equations for AffineEquations<'_> {
     type State = Values;
     type Guards = Guards;
 
@@ -166,7 +166,7 @@ impl Equations for Affine<'_> {
     }
 }
 
-impl Affine<'_> {
+impl AffineEquations<'_> {
     fn jacobian(&self, mode: &CheckedMode, w: &[f64], dw: &mut [f64]) {
         for (rate, row) in dw.iter_mut().zip(mode.a.chunks_exact(w.len())) {
             *rate = row.iter().zip(w).map(|(entry, w)| entry * w).sum();

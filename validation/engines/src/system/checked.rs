@@ -165,7 +165,7 @@ impl CheckedSystem {
         TAU / self.rates().turning
     }
 
-    /// The fastest rate at which every mode decays.
+    /// The smallest, over all modes, of the rate at which a mode's fastest part decays.
     #[must_use]
     pub fn decay(&self) -> f64 {
         self.rates().decay

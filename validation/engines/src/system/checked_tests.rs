@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::equations::{Equations, Numbers};
-use crate::system::{Affine, Until, Values, Watch};
+use crate::system::{AffineEquations, Until, Values, Watch};
 
 /// A ball that does not rebound from a shaking table, A = 1 and omega = 1.25.
 fn table() -> System {
@@ -48,8 +48,8 @@ fn a_detachment_begins_a_flight_with_a_triple_zero() {
     assert_eq!(checked.modes[1].until[0].next[0].zeros, [0b00111]);
     // The angle at which the table lets go, but for an error that rounding does not make.
     let t = (TAU - 0.64_f64.acos() - 1e-9) / 1.25;
-    let equations = Affine::of(&checked);
-    let (mode, state) = equations.after_event(1, 0, t, &Values::of(&[0.0, 0.0]));
+    let equations = AffineEquations::new(&checked);
+    let (mode, state) = equations.after_event(1, 0, t, &Values::from_slice(&[0.0, 0.0]));
     let entered = equations.enter(Some((1, 0)), mode, t, &state);
     assert!(mode == 0 && entered.is_zero(0) && entered.fires.is_none(), "{entered:?}");
     // Without the event it is not known, and the ball seems to be past the table's threshold.

@@ -15,11 +15,11 @@ mod problem;
 mod rates;
 mod spectrum;
 
-pub use affine::Affine;
+pub use affine::AffineEquations;
 pub use checked::CheckedSystem;
 pub use numbers::{MAX_GUARDS, MAX_STATES, Values};
 pub use problem::SystemProblem;
-pub use rates::Rates;
+pub use rates::CoefficientDerivatives;
 
 /// Coefficients of x, cos theta, sin theta and 1.
 pub type Row = Vec<f64>;

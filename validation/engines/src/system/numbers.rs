@@ -26,7 +26,7 @@ pub type Guards = Inline<MAX_GUARDS>;
 
 impl<const MOST: usize> Numbers for Inline<MOST> {
     /// These numbers, of which those past the most are left out.
-    fn of(values: &[f64]) -> Self {
+    fn from_slice(values: &[f64]) -> Self {
         let count = values.len().min(MOST);
         let mut all = Self::all(count, 0.0);
         all.copy_from_slice(&values[..count]);

@@ -66,7 +66,7 @@ impl SystemProblem {
         let value = |[c, s, one]: &[affine::Rational; 3]| {
             rounded(c) * cos + rounded(s) * sin + rounded(one)
         };
-        Values::of(&self.start.state.iter().map(value).collect::<Vec<_>>())
+        Values::from_slice(&self.start.state.iter().map(value).collect::<Vec<_>>())
     }
 
     /// The time that stands for a forcing period: that of the forcing, or as many of the system's

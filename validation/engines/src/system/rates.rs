@@ -8,7 +8,7 @@ use percuss::affine::{Name, Rational, StartPoint, Tangent};
 /// The derivatives of a system's coefficients and of its start by a name, each in the place of the
 /// coefficient.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rates {
+pub struct CoefficientDerivatives {
     /// The name: a parameter, or `start.STATE`.
     pub name: String,
     /// The value of the parameter, or of the state at the start.
@@ -23,13 +23,13 @@ pub struct Rates {
     pub modes: Vec<Mode>,
 }
 
-impl Rates {
+impl CoefficientDerivatives {
     /// The derivatives of a problem's coefficients, each rounded once; its start is the file's own.
     #[must_use]
-    pub fn of(problem: &SystemProblem, tangent: &Tangent) -> Self {
+    pub fn new(problem: &SystemProblem, tangent: &Tangent) -> Self {
         let states = problem.exact.states.len();
         let phi = turn(problem, tangent);
-        let state = Values::of(&start(problem, tangent.start.as_ref(), phi));
+        let state = Values::from_slice(&start(problem, tangent.start.as_ref(), phi));
         let modes = tangent.modes.iter().map(|it| mode(it, states)).collect();
         let omega = tangent.forcing.as_ref().map_or(0.0, |it| rounded(&it.omega));
         let name = tangent.name.to_string();

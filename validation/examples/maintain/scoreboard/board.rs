@@ -82,7 +82,7 @@ impl EventCounts {
 
 impl Board {
     /// The scoreboard of these reports.
-    pub(crate) fn of(reports: &[ReportJson]) -> Result<Self> {
+    pub(crate) fn new(reports: &[ReportJson]) -> Result<Self> {
         let rows = || reports.iter().flat_map(|report| &report.results);
         let mut kinds: BTreeSet<String> = rows().flat_map(|row| row.trouble.clone()).collect();
         if rows().any(|row| row.trouble.is_empty()) {
@@ -95,7 +95,7 @@ impl Board {
         let mut lines: Vec<BoardLine> = Vec::new();
         let is_installed = |rows: &[&RowJson]| rows.iter().any(|it| it.verdict != "unavailable");
         for (engine, rows) in setups(reports)?.into_iter().filter(|(_, rows)| is_installed(rows)) {
-            put(&mut lines, engine, SetupResult::of(&rows, &kinds));
+            put(&mut lines, engine, SetupResult::new(&rows, &kinds));
         }
         let by_rank = |a: &BoardLine, b: &BoardLine| {
             let ((of_a, right_of_a), (of_b, right_of_b)) = (a.rank(), b.rank());
@@ -170,7 +170,7 @@ impl BoardLine {
 }
 
 impl SetupResult {
-    fn of(rows: &[&RowJson], kinds: &[String]) -> Self {
+    fn new(rows: &[&RowJson], kinds: &[String]) -> Self {
         let tally = |rows: &mut dyn Iterator<Item = &&RowJson>| {
             let mut tally = EventCounts::default();
             rows.for_each(|row| tally.add(row));
@@ -183,7 +183,7 @@ impl SetupResult {
         let whole = |row: &&&RowJson| row.events_total > 0 && row.is_right();
         let each = |figure: fn(&RowJson) -> Option<f64>| {
             let of = |row: &&RowJson| Some(figure(row)? / row.events_total as f64);
-            let median = Spread::of(rows.iter().filter(whole).filter_map(of).collect()).median;
+            let median = Spread::new(rows.iter().filter(whole).filter_map(of).collect()).median;
             Some(median).filter(|it| it.is_finite())
         };
         let right = rows.iter().filter(|row| row.is_right()).count();

@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(Arguments { markdown, html, reports }: &Arguments) -> Result<()> {
     let reports = reports.iter().map(|it| read::report(it)).collect::<Result<Vec<_>>>()?;
-    let board = Board::of(&reports)?;
+    let board = Board::new(&reports)?;
     std::fs::write(html, page::html(&board)?).with_context(|| html.display().to_string())?;
     blocks::replace(markdown, &[(BLOCK, page::markdown(&board))])
 }

@@ -2,7 +2,7 @@
 
 use crate::case::FileError;
 use crate::engine::{Failure, Task};
-use crate::system::{Rates, SystemProblem};
+use crate::system::{CoefficientDerivatives, SystemProblem};
 use percuss::affine::{Name, System, SystemFile, Tangent};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -53,19 +53,19 @@ impl GradientCase {
             heading.iter().filter_map(|it| it[2..].split_once(" = ")).collect();
         let setting = |key: &str| {
             let found = heading.get(key).copied();
-            found.ok_or_else(|| FileError::of(file, format!("the heading has no {key}")))
+            found.ok_or_else(|| FileError::new(file, format!("the heading has no {key}")))
         };
         let wanted = setting("system")?;
-        let of_system = |error: percuss::SystemError| FileError::of(file, error);
+        let of_system = |error: percuss::SystemError| FileError::new(file, error);
         let source = system(wanted)
-            .ok_or_else(|| FileError::of(file, format!("there is no system {wanted}")))?;
+            .ok_or_else(|| FileError::new(file, format!("there is no system {wanted}")))?;
         let mut read = SystemFile::read(wanted, source).map_err(of_system)?;
         let settings = format!("{}{}", toml(&heading, "parameters"), toml(&heading, "start"));
         read.replace_from(file, &settings, false).map_err(of_system)?;
         let exact = read.system().map_err(of_system)?;
         let until = setting("horizon.until")?.parse();
         let until =
-            until.map_err(|error| FileError::of(file, format!("horizon.until: {error}")))?;
+            until.map_err(|error| FileError::new(file, format!("horizon.until: {error}")))?;
         let (names, rows) = rows(file, &lines)?;
         let tangent = |name: &String| read.tangent(&Name::read(name)).map_err(of_system);
         let by = names.iter().map(tangent).collect::<Result<_, _>>()?;
@@ -78,8 +78,8 @@ impl GradientCase {
     /// A system that no run can be asked of, such as one without a start.
     pub fn task(&self) -> Result<Task, Failure> {
         let problem = Arc::new(SystemProblem::new(self.system.clone(), false)?);
-        let task = Task::of(&problem, self.until - problem.begin(), Vec::new())?;
-        let rates = self.by.iter().map(|it| Rates::of(&problem, it)).collect();
+        let task = Task::from_problem(&problem, self.until - problem.begin(), Vec::new())?;
+        let rates = self.by.iter().map(|it| CoefficientDerivatives::new(&problem, it)).collect();
         Ok(Task { gradients: Some(Arc::new(rates)), ..task })
     }
 
@@ -110,7 +110,7 @@ fn rows(file: &str, lines: &[&str]) -> Result<(Vec<String>, Vec<GradientRow>), F
     let mut names: Vec<String> = Vec::new();
     let mut rows: Vec<GradientRow> = Vec::new();
     for line in lines.iter().skip(1) {
-        let refused = || FileError::of(file, format!("the line {line:?} is none of a table"));
+        let refused = || FileError::new(file, format!("the line {line:?} is none of a table"));
         let cells: Vec<&str> = line.split(',').collect();
         let [n, event, mode, wrt, side] = *cells
             .get(..LEADING_COLUMNS - 1)
@@ -132,7 +132,7 @@ fn rows(file: &str, lines: &[&str]) -> Result<(Vec<String>, Vec<GradientRow>), F
         rows[n].cells.push(numbers.map_err(|_| refused())?);
     }
     if rows.is_empty() || rows.iter().any(|it| it.cells.len() != names.len()) {
-        return Err(FileError::of(file, "not every event has a row for each name"));
+        return Err(FileError::new(file, "not every event has a row for each name"));
     }
     Ok((names, rows))
 }

@@ -22,7 +22,7 @@ pub(super) struct Linear {
 
 impl Linear {
     /// The matrices of a system from its start.
-    pub(super) fn of(system: &System, start: &StartPoint) -> Self {
+    pub(super) fn new(system: &System, start: &StartPoint) -> Self {
         let angle = angle(system, start);
         Self {
             modes: modes(&system.modes),

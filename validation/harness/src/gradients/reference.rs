@@ -33,7 +33,7 @@ impl Reference {
     pub fn new(case: GradientCase) -> Result<Self, Failure> {
         let system = &case.system;
         let start = system.start.as_ref().ok_or_else(|| Failure::new("there is no start"))?;
-        let linear = Linear::of(system, start);
+        let linear = Linear::new(system, start);
         let path = path(system, &linear, case.until)?;
         if path.len() + 1 != case.rows.len() {
             let events = path.len();

@@ -18,7 +18,7 @@ struct Stepper {
 }
 
 impl Stepper {
-    fn of(along: &Along<'_>, mode: usize, tolerance: f64) -> Self {
+    fn new(along: &Along<'_>, mode: usize, tolerance: f64) -> Self {
         let [own, rate] = [along.linear, along.rates].map(|it| &it.modes[mode].matrix);
         let size = own.nrows();
         let mut both = DMatrix::zeros(2 * size, 2 * size);
@@ -65,7 +65,7 @@ fn answer(along: &Along<'_>, until: f64, tolerance: f64) -> Rows {
     };
     let (mut rows, mut time, mut time_rate) = (vec![cells(0.0, &all)], 0.0, 0.0);
     for stretch in along.path {
-        let stepper = Stepper::of(along, stretch.mode, tolerance);
+        let stepper = Stepper::new(along, stretch.mode, tolerance);
         if stretch.stop == Stop::End {
             rows.push(cells(0.0, &stepper.after(&all, until - time)));
             break;

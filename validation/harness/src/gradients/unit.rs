@@ -43,7 +43,7 @@ pub(super) fn units(along: &Along<'_>, time_scale: f64) -> Vec<Vec<f64>> {
             rows.push(std::iter::once(1.0).chain(sums).collect());
             break;
         }
-        let event = EventTerms::of(along, stretch);
+        let event = EventTerms::new(along, stretch);
         if !stretch.at_entry {
             time = event.time(&there, RIGHT_RULE);
         }

@@ -30,7 +30,7 @@ pub(super) fn walk(along: &Along<'_>, rule: Rule) -> Rows {
             rows.push(cells(along, 0.0, &there));
             break;
         }
-        let event = EventTerms::of(along, stretch);
+        let event = EventTerms::new(along, stretch);
         if !stretch.at_entry {
             time = event.time(&there, rule);
         }
@@ -68,7 +68,7 @@ pub(super) struct EventTerms<'a> {
 }
 
 impl<'a> EventTerms<'a> {
-    pub(super) fn of(along: &'a Along<'a>, stretch: &'a Stretch) -> Self {
+    pub(super) fn new(along: &'a Along<'a>, stretch: &'a Stretch) -> Self {
         let field = |mode: usize, z| &along.linear.modes[mode].matrix * z;
         Self {
             along,

@@ -65,7 +65,7 @@ impl Gate {
         }
     }
 
-    const fn of(quantity: Quantity) -> Self {
+    const fn new(quantity: Quantity) -> Self {
         match quantity {
             Quantity::EventsMissed
             | Quantity::EventsSpurious
@@ -132,7 +132,7 @@ impl Finding {
     }
 
     /// Gathers what the gates said, case by case.
-    fn of(
+    fn new(
         wrong: &WrongEngine,
         standard: Standard,
         outcomes: impl IntoIterator<Item = (String, Option<Vec<Checked>>)>,
@@ -160,7 +160,7 @@ impl Finding {
             self.failed_on.push(case.to_owned());
         }
         for (gate, trip) in &mut self.gates {
-            let mut own = checked.iter().filter(|it| Gate::of(it.quantity) == *gate).peekable();
+            let mut own = checked.iter().filter(|it| Gate::new(it.quantity) == *gate).peekable();
             trip.held += usize::from(own.peek().is_some());
             let Some(failed) = own.find(|it| it.verdict == Verdict::Fail) else { continue };
             trip.failed += 1;
@@ -252,7 +252,7 @@ pub fn examine(
         let one = |case: &&PreparedCase| {
             (case.case.name.clone(), bounds_held_against(wrong, case, standard, defaults))
         };
-        Finding::of(wrong, standard, cases.par_iter().map(one).collect::<Vec<_>>())
+        Finding::new(wrong, standard, cases.par_iter().map(one).collect::<Vec<_>>())
     };
     let (own, others): (Vec<_>, Vec<_>) =
         cases.iter().partition(|case| case.case.oscillator.is_some());

@@ -102,7 +102,7 @@ pub fn count_loosened(
         let made = answer_within_budget(case, engine, Accuracy::Tolerance(factor * tolerance))?;
         let unit = declaration.stepping.unit(label);
         let found = case.judge_records(&made, class, unit)?;
-        Some(found.is_wrong(&Allowance::of(class, unit)))
+        Some(found.is_wrong(&Allowance::new(class, unit)))
     };
     let all: Vec<bool> = runs(cases).into_par_iter().filter_map(condemned).collect();
     (all.iter().filter(|it| **it).count(), all.len())
@@ -133,10 +133,10 @@ pub fn trial(
     let class = class_of(classes, &declaration, accuracy)?;
     let right = answer_within_budget(case, engine, accuracy)?;
     let unit = declaration.stepping.unit(accuracy);
-    let allowance = Allowance::of(class, unit);
+    let allowance = Allowance::new(class, unit);
     let judge = |answer: &Outcome| case.judge_records(answer, class, unit);
     let caught = |variant: &Variant| {
-        let wrong = variant.of(&case.task, (&right, case.local.judged(&right)), unit)?;
+        let wrong = variant.wrong_answer(&case.task, (&right, case.local.judged(&right)), unit)?;
         Some(judge(&wrong)?.is_wrong(&allowance))
     };
     let found = judge(&right)?;

@@ -107,7 +107,7 @@ impl Variant {
     /// The wrong answer; none where this mistake changes nothing by more than a tolerance in the
     /// samples or in the first `judged` events.
     #[must_use]
-    pub fn of(
+    pub fn wrong_answer(
         self,
         task: &Task,
         (right, judged): (&Outcome, usize),
@@ -262,7 +262,7 @@ impl Spoiled<'_> {
         let until = self.system.modes[mode].until.get(event.event);
         let Some(reset) = until.and_then(|it| it.reset.as_ref()) else { return before };
         let z = self.point(event.elapsed, &before);
-        Values::of(&reset.iter().map(|row| product(row, &z)).collect::<Vec<_>>())
+        Values::from_slice(&reset.iter().map(|row| product(row, &z)).collect::<Vec<_>>())
     }
 
     /// Each tenth event that can is followed by another of its successors.

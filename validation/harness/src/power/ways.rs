@@ -4,7 +4,7 @@
 use crate::engine::Equations;
 use crate::integrators::{COOLDOWN_TIME, Way};
 use crate::suite::PreparedCase;
-use crate::system::{Affine, Direction, System, Until};
+use crate::system::{AffineEquations, Direction, System, Until};
 
 /// The longest step of the integrators with a fault, in forcing periods: a step that an event cuts
 /// short reaches no further beyond it.
@@ -45,7 +45,7 @@ pub fn is_run(case: &PreparedCase, way: Way) -> bool {
 }
 
 fn starts_on_guard(case: &PreparedCase) -> bool {
-    let equations = Affine::of(&case.task.system);
+    let equations = AffineEquations::new(&case.task.system);
     let entered = equations.enter(None, case.task.mode, 0.0, &case.task.state);
     entered.zeros != 0 || entered.fires.is_some()
 }

@@ -10,7 +10,7 @@ use crate::system::System;
 use crate::truth::{Truth, TruthRow};
 use percuss::Ending;
 
-/// The numbers of a system's events, over all of its modes.
+/// The events of a system, over all of its modes, with a number for each distinct name.
 #[derive(Clone, Debug)]
 pub struct EventNames {
     /// All names.
@@ -24,7 +24,7 @@ pub struct EventNames {
 impl EventNames {
     /// The names of the events of a case, which is a run of this system.
     #[must_use]
-    pub fn of(case: &Case, system: &System) -> Self {
+    pub fn new(case: &Case, system: &System) -> Self {
         let by_modes = case.oscillator.is_some();
         let mut names: Vec<String> = Vec::new();
         let mut number = |name: &String| {

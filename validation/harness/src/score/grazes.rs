@@ -77,7 +77,7 @@ impl Scan<'_> {
     fn segment(&self, n: usize, begin: &TruthRow, end: &TruthRow) -> Vec<Graze> {
         let began = begin.elapsed.value();
         let length = end.elapsed.minus(begin.elapsed).value();
-        let clock = Time::of(&self.problem.start.time);
+        let clock = Time::new(&self.problem.start.time);
         let time = clock.after(if self.problem.backward { -began } else { began });
         let state = begin.state.iter().map(|it| it.value()).collect();
         let begin = Event { what: What::Start, time, state, mode: begin.mode, errors: None };

@@ -16,7 +16,7 @@ fn follow(name: &str) -> Followed {
     let truth = Library::embedded().and_then(|library| library.truth(&case));
     let (Ok(truth), Ok(problem)) = (truth, case.problem()) else { unreachable!("{name} is valid") };
     let system = problem.checked.system();
-    let told = (EventNames::of(&case, system), ErrorRule::of(&case, system));
+    let told = (EventNames::new(&case, system), ErrorRule::new(&case, system));
     Followed { problem, truth, told }
 }
 

@@ -17,7 +17,7 @@ const BINS: usize = 64;
 impl Histogram {
     /// The histogram of non-negative errors.
     #[must_use]
-    pub fn of(errors: &[f64]) -> Self {
+    pub fn new(errors: &[f64]) -> Self {
         let mut counts = vec![0; BINS];
         for error in errors {
             counts[bin(*error)] += 1;
@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn every_error_is_in_one_bin() {
-        let histogram = Histogram::of(&[0.0, 1e-9, 1.0, 1.9, 2.0, f64::INFINITY, f64::NAN]);
+        let histogram = Histogram::new(&[0.0, 1e-9, 1.0, 1.9, 2.0, f64::INFINITY, f64::NAN]);
         let filled: Vec<_> =
             (0..).zip(&histogram.counts).filter(|(_, count)| **count > 0).collect();
         assert_eq!(filled, [(0, &2), (10, &2), (11, &1), (63, &2)]);

@@ -15,7 +15,7 @@ pub struct Matching {
 impl Matching {
     /// The pairing in order with the most pairs, and among those the least sum of time differences.
     #[must_use]
-    pub fn of(truth: &[Occurrence], engine: &[Occurrence], window: f64) -> Self {
+    pub fn new(truth: &[Occurrence], engine: &[Occurrence], window: f64) -> Self {
         let width = engine.len() + 1;
         let better = |a: (usize, f64), b: (usize, f64)| a.0 > b.0 || (a.0 == b.0 && a.1 < b.1);
         // best[i * width + j]: pairs and their cost among the first i and j events.
@@ -78,28 +78,28 @@ mod tests {
     #[test]
     fn a_missed_and_a_spurious_event_are_told_apart() {
         let found = [(1.01, Contact), (3.0, Contact), (3.1, NoContact), (3.2, Progression)];
-        let matching = Matching::of(&events(&TRUTH), &events(&found), 0.05);
+        let matching = Matching::new(&events(&TRUTH), &events(&found), 0.05);
         assert_eq!(matching.pairs, [(0, 0), (2, 1), (3, 3)]);
     }
 
     #[test]
     fn the_nearer_of_two_candidates_is_taken() {
         let found = [(0.96, Contact), (1.001, Contact)];
-        let matching = Matching::of(&events(&TRUTH), &events(&found), 0.05);
+        let matching = Matching::new(&events(&TRUTH), &events(&found), 0.05);
         assert_eq!(matching.pairs, [(0, 1)]);
     }
 
     #[test]
     fn events_of_other_names_are_not_the_same() {
         let named = |event, mode| Occurrence { elapsed: 1.0, event, mode };
-        assert!(Matching::of(&[named(1, Some(2))], &[named(0, Some(2))], 0.05).pairs.is_empty());
+        assert!(Matching::new(&[named(1, Some(2))], &[named(0, Some(2))], 0.05).pairs.is_empty());
         // Between events of one instant the mode is a matter of their order.
-        assert_eq!(Matching::of(&[named(1, None)], &[named(1, Some(2))], 0.05).pairs, [(0, 0)]);
+        assert_eq!(Matching::new(&[named(1, None)], &[named(1, Some(2))], 0.05).pairs, [(0, 0)]);
     }
 
     #[test]
     fn a_nan_matches_nothing() {
-        let matching = Matching::of(&events(&TRUTH), &events(&[(f64::NAN, Contact)]), 0.05);
+        let matching = Matching::new(&events(&TRUTH), &events(&[(f64::NAN, Contact)]), 0.05);
         assert!(matching.pairs.is_empty());
     }
 }

@@ -53,8 +53,8 @@ pub fn measure(by: MeasuredBy<'_>, outcome: &Outcome, scored_by: ScoredBy<'_>) -
     // An event just past the horizon may be the partner of one just before it.
     let (rows, found) = (until(&all, horizon + window), until(&own, horizon + window));
     let (expected, counted) = (until(&all, horizon), until(&own, horizon));
-    let matching = Matching::of(&all[..rows], &own[..found], window);
-    let mismatch = Mismatch::of(&matching, (rows, expected), (found, counted));
+    let matching = Matching::new(&all[..rows], &own[..found], window);
+    let mismatch = Mismatch::new(&matching, (rows, expected), (found, counted));
     let pairs: Vec<_> = matching.pairs.iter().copied().filter(|(i, _)| *i < expected).collect();
     let unit = scored_by.unit * of_length(longest_segment(truth, horizon), task.system.system());
     let run = MeasuredRun { by, outcome, events: [&all, &own], pairs: &pairs, unit };
@@ -75,11 +75,11 @@ pub fn measure(by: MeasuredBy<'_>, outcome: &Outcome, scored_by: ScoredBy<'_>) -
         expected,
         matched: pairs.len(),
         phase_sequence_ok: mismatch.same_phases(&all[..rows], &own, &Excused::default()),
-        event_time: Spread::of(
+        event_time: Spread::new(
             run.times().map(|(_, time, own)| rule.time_error(time, own)).collect(),
         ),
         // The start is given: its error is none.
-        state: Spread::of(errors.get(1..scored).unwrap_or_default().to_vec()),
+        state: Spread::new(errors.get(1..scored).unwrap_or_default().to_vec()),
         drift: if whole && is_sampled {
             rule.drift_error(&truth.end, &outcome.end)
         } else {

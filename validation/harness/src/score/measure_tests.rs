@@ -68,7 +68,7 @@ impl Planted {
             samples: (0..17).map(sample).collect(),
             ordered: true,
         };
-        let state = |row: &TruthRow| Values::of(&row.rounded());
+        let state = |row: &TruthRow| Values::from_slice(&row.rounded());
         let event = |row: &TruthRow| Event {
             event: 0,
             mode: row.mode,
@@ -83,7 +83,7 @@ impl Planted {
             ..Outcome::default()
         };
         let system = task.system.system();
-        let (names, rule) = (EventNames::of(&case, system), ErrorRule::of(&case, system));
+        let (names, rule) = (EventNames::new(&case, system), ErrorRule::new(&case, system));
         Self { task, truth, names, rule, outcome }
     }
 

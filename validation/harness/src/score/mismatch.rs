@@ -36,7 +36,7 @@ impl Mismatch {
     /// What a matching of `rows` events of the truth and `own` of the engine leaves over of the
     /// first `expected` and the first `counted` of them.
     #[must_use]
-    pub fn of(
+    pub fn new(
         matching: &Matching,
         (rows, expected): (usize, usize),
         (own, counted): (usize, usize),
@@ -163,9 +163,9 @@ mod tests {
     ) -> (Mismatch, Vec<Occurrence>, Vec<Occurrence>) {
         let rows: Vec<_> = truth.iter().copied().map(event).collect();
         let found: Vec<_> = own.iter().copied().map(event).collect();
-        let matching = Matching::of(&rows, &found, WINDOW);
+        let matching = Matching::new(&rows, &found, WINDOW);
         let (all, own) = (rows.len(), found.len());
-        (Mismatch::of(&matching, (all, all), (own, own)), rows, found)
+        (Mismatch::new(&matching, (all, all), (own, own)), rows, found)
     }
 
     #[test]
@@ -203,21 +203,21 @@ mod tests {
         // The horizon lies between the two events of the pair, then of the touch.
         let pair = [(1.0, Contact), (1.01, NoContact)];
         let found: Vec<_> = pair.into_iter().map(event).collect();
-        let spurious = Mismatch::of(&Matching::of(&[], &found, WINDOW), (0, 0), (2, 1));
+        let spurious = Mismatch::new(&Matching::new(&[], &found, WINDOW), (0, 0), (2, 1));
         assert_eq!(spurious.spurious, [0]);
         let near_miss = [graze(1.0, -1e-6, 0..0)];
         let excused = spurious.excused_by(&near_miss, &found, WINDOW, 1e-6);
         assert_eq!(excused.spurious, [0]);
         assert!(spurious.same_phases(&[], &found, &excused));
         let rows: Vec<_> = pair.into_iter().map(event).collect();
-        let missed = Mismatch::of(&Matching::of(&rows, &[], WINDOW), (2, 1), (0, 0));
+        let missed = Mismatch::new(&Matching::new(&rows, &[], WINDOW), (2, 1), (0, 0));
         let excused = missed.excused_by(&[graze(1.005, 1e-6, 0..2)], &[], WINDOW, 1e-6);
         assert_eq!((excused.missed.as_slice(), excused.grazes.len()), (&[0][..], 1));
         // One that comes back otherwise is none, nor is half of a touch.
         let other: Vec<_> = [(1.0, Contact), (1.5, NoContact)].into_iter().map(event).collect();
-        let late = Mismatch::of(&Matching::of(&[], &other, WINDOW), (0, 0), (2, 1));
+        let late = Mismatch::new(&Matching::new(&[], &other, WINDOW), (0, 0), (2, 1));
         assert_eq!(late.excused_by(&near_miss, &other, WINDOW, 1.0), Excused::default());
-        let half = Mismatch::of(&Matching::of(&rows, &found[1..], WINDOW), (2, 1), (1, 0));
+        let half = Mismatch::new(&Matching::new(&rows, &found[1..], WINDOW), (2, 1), (1, 0));
         assert_eq!(half.missed, [0]);
         assert_eq!(
             half.excused_by(&[graze(1.005, 1e-6, 0..2)], &found[1..], WINDOW, 1.0),

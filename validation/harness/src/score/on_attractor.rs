@@ -27,7 +27,7 @@ impl RestartTest {
     pub fn on_attractor(case: &Case, count: usize) -> Result<Self, FileError> {
         let own = case.of_oscillator()?;
         let system = percussive(own.parameters(), 0.0);
-        let growth = GrowthMatrices::of(case);
+        let growth = GrowthMatrices::new(case);
         let starts = on_attractor(&own.problem, count);
         let run = |start| RestartRun::through_contact(start, &growth);
         let made: Vec<_> = starts.into_par_iter().map(run).collect();
@@ -38,7 +38,7 @@ impl RestartTest {
             own.into_iter().for_each(|it| Arc::make_mut(it).events_before = events);
             events += run.truth.events.len() as u64;
         }
-        let (names, rule) = (EventNames::of(case, &system), ErrorRule::of(case, &system));
+        let (names, rule) = (EventNames::new(case, &system), ErrorRule::new(case, &system));
         Ok(Self { undecided: count - runs.len(), runs, names, rule })
     }
 }

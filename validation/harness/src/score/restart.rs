@@ -75,7 +75,7 @@ impl RestartTest {
         count: usize,
     ) -> Result<Self, String> {
         let system = problem.checked.system();
-        let (names, rule) = (EventNames::of(case, system), ErrorRule::of(case, system));
+        let (names, rule) = (EventNames::new(case, system), ErrorRule::new(case, system));
         let solver = solver(case)?;
         let restarts = Restarts { case, problem, truth, names: &names, rule: &rule, solver };
         let spans = truth.samples.iter().skip(1).filter_map(|row| Some((row, restarts.span(row)?)));
@@ -114,7 +114,7 @@ impl RestartTest {
                 error: run(&it.task).map(|outcome| self.error(it, &outcome, unit)).ok(),
             })
             .collect();
-        Restart::of(&results, self.undecided)
+        Restart::new(&results, self.undecided)
     }
 
     /// The time that all runs take together.
@@ -166,7 +166,7 @@ impl Restarts<'_> {
             return None;
         }
         let problem = Arc::new(self.problem.from_start(start).ok()?);
-        let task = Task::of(&problem, truth.span, truth.sample_times()).ok()?;
+        let task = Task::from_problem(&problem, truth.span, truth.sample_times()).ok()?;
         let grazes = grazes(&problem, &truth, (self.names, self.rule));
         let decisions = decisions(&problem.checked, &truth, self.rule);
         let impact = !truth.events.is_empty();

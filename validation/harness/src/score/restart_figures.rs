@@ -61,7 +61,7 @@ pub(super) struct RestartResult {
 
 impl Restart {
     /// The figures of some runs, and of how many more the truth left undecided.
-    pub(super) fn of(results: &[RestartResult], undecided: usize) -> Self {
+    pub(super) fn new(results: &[RestartResult], undecided: usize) -> Self {
         let with_impact = || results.iter().filter(|it| it.impact);
         let errors = || with_impact().filter_map(|it| Some((it.events, it.error.as_ref()?)));
         let figures = |figure: fn(&RestartError) -> f64| -> Vec<f64> {
@@ -73,7 +73,7 @@ impl Restart {
             by_events.entry(events).or_default().push(error.units);
         }
         let spread =
-            |(events, units): (usize, Vec<f64>)| (events, (units.len(), Spread::of(units)));
+            |(events, units): (usize, Vec<f64>)| (events, (units.len(), Spread::new(units)));
         let units = figures(|error| error.units);
         let wrong = results.iter().filter_map(|it| it.error).filter(|error| !error.same_modes);
         Self {
@@ -82,11 +82,11 @@ impl Restart {
             undecided,
             failed: results.iter().filter(|it| it.error.is_none()).count(),
             wrong_sequences: wrong.count(),
-            histogram: Histogram::of(&units),
-            units: Spread::of(units),
-            drift_units: Spread::of(figures(|error| error.drift_units)),
-            time_units: Spread::of(known(figures(|error| error.time_units))),
-            absolute: Spread::of(figures(|error| error.absolute)),
+            histogram: Histogram::new(&units),
+            units: Spread::new(units),
+            drift_units: Spread::new(figures(|error| error.drift_units)),
+            time_units: Spread::new(known(figures(|error| error.time_units))),
+            absolute: Spread::new(figures(|error| error.absolute)),
             by_events: by_events.into_iter().map(spread).collect(),
         }
     }

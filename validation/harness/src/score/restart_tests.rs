@@ -30,12 +30,12 @@ fn perfect(run: &RestartRun) -> Outcome {
         event: 0,
         mode: row.mode,
         elapsed: row.elapsed.value(),
-        state: Values::of(&row.rounded()),
+        state: Values::from_slice(&row.rounded()),
         before: None,
     };
     Outcome {
         events: run.truth.events.iter().map(event).collect(),
-        end: Values::of(&run.truth.end.rounded()),
+        end: Values::from_slice(&run.truth.end.rounded()),
         ..Outcome::default()
     }
 }

@@ -32,7 +32,7 @@ pub struct ErrorRule {
 impl ErrorRule {
     /// The rule of a case, which is a run of this system.
     #[must_use]
-    pub fn of(case: &Case, system: &System) -> Self {
+    pub fn new(case: &Case, system: &System) -> Self {
         let beside = if case.oscillator.is_some() { Beside::Value } else { Beside::Largest };
         let (scales, time_scale) = (system.scales.clone(), case.unit_of_time());
         Self { beside, scales, time_scale, drift: system.drift.clone() }

@@ -19,7 +19,7 @@ impl Spread {
 
     /// The spread of some errors, by nearest rank; a NaN among them is the largest.
     #[must_use]
-    pub fn of(mut errors: Vec<f64>) -> Self {
+    pub fn new(mut errors: Vec<f64>) -> Self {
         errors.sort_by(f64::total_cmp);
         let rank = |share: f64| nearest_rank(&errors, share);
         Self { median: rank(0.5), q99: rank(0.99), max: rank(1.0) }
@@ -46,14 +46,14 @@ mod tests {
 
     #[test]
     fn nearest_rank() {
-        let spread = Spread::of((1..=200).map(f64::from).collect());
+        let spread = Spread::new((1..=200).map(f64::from).collect());
         assert_eq!(spread, Spread { median: 100.0, q99: 198.0, max: 200.0 });
-        assert_eq!(Spread::of(vec![3.0]), Spread { median: 3.0, q99: 3.0, max: 3.0 });
+        assert_eq!(Spread::new(vec![3.0]), Spread { median: 3.0, q99: 3.0, max: 3.0 });
     }
 
     #[test]
     fn a_nan_is_never_lost() {
-        assert!(Spread::of(vec![1.0, f64::NAN.abs(), 2.0]).max.is_nan());
-        assert!(Spread::of(Vec::new()).median.is_nan());
+        assert!(Spread::new(vec![1.0, f64::NAN.abs(), 2.0]).max.is_nan());
+        assert!(Spread::new(Vec::new()).median.is_nan());
     }
 }

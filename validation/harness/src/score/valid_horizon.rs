@@ -51,8 +51,8 @@ impl HorizonTest {
     /// A case that is not in the oscillator's own words.
     pub fn new(case: &Case, count: usize, periods: u32) -> Result<Self, FileError> {
         let own = case.of_oscillator()?;
-        let rule = ErrorRule::of(case, &percussive(own.parameters(), 0.0));
-        let growth = GrowthMatrices::of(case);
+        let rule = ErrorRule::new(case, &percussive(own.parameters(), 0.0));
+        let growth = GrowthMatrices::new(case);
         // A run forgets where it began within its horizon, some 90 periods in f64.
         let starts = far_apart(&own.problem, count, u64::from(periods));
         let run = |start| HorizonRun::new(start, periods, (&growth, &rule));
@@ -107,7 +107,8 @@ impl HorizonTest {
         let results: Vec<_> =
             asked.par_iter().map(|it| it.horizon(&self.rule, unit, &run)).collect();
         let runs: Vec<_> = results.iter().map(|(horizon, _)| *horizon).collect();
-        let spread = |value: fn(&ValidHorizon) -> f64| Spread::of(runs.iter().map(value).collect());
+        let spread =
+            |value: fn(&ValidHorizon) -> f64| Spread::new(runs.iter().map(value).collect());
         let negative = spread(|run| -f64::from(run.valid));
         Horizons {
             failed: results.iter().filter(|(_, failed)| *failed).count(),

@@ -27,7 +27,7 @@ fn run() -> (HorizonRun, ErrorRule) {
 /// An answer that is right up to a period and off by `error` in one co-ordinate from there on.
 fn answer(run: &HorizonRun, wrong_from: usize, k: usize, error: f64) -> Outcome {
     let rows = run.truth.samples.iter();
-    let mut samples: Vec<_> = rows.map(|row| Values::of(&row.rounded())).collect();
+    let mut samples: Vec<_> = rows.map(|row| Values::from_slice(&row.rounded())).collect();
     samples.iter_mut().skip(wrong_from).for_each(|state| state[k] += error);
     Outcome { samples, ..Outcome::default() }
 }

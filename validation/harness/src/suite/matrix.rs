@@ -37,7 +37,7 @@ pub struct CaseTraits {
 impl CaseTraits {
     /// The traits of a case, by its trouble, or by the regime of one of the oscillator's.
     #[must_use]
-    pub fn of(case: &Case) -> Self {
+    pub fn new(case: &Case) -> Self {
         let regime = case.oscillator.as_ref().map(|it| &it.regime);
         let makes = |kind: &str| case.trouble.iter().any(|it| it == kind);
         Self {
@@ -145,7 +145,7 @@ pub fn class_of<'a>(
     declaration: &Declaration,
     accuracy: Accuracy,
 ) -> Option<&'a ClassBounds> {
-    ClassBounds::of(classes, declaration.class_and_order(), declaration.stepping, accuracy)
+    ClassBounds::new(classes, declaration.class_and_order(), declaration.stepping, accuracy)
 }
 
 /// Runs one engine on one case, and judges its answer.
@@ -167,7 +167,7 @@ pub fn one(
         unit,
         events: case.events(),
         trouble: case.case.trouble.clone(),
-        traits: CaseTraits::of(&case.case),
+        traits: CaseTraits::new(&case.case),
         status,
         wall,
         judgement,

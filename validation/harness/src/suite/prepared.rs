@@ -77,11 +77,11 @@ fn task(case: &Case, truth: &Truth, problem: &Arc<SystemProblem>) -> Result<Task
     let task = match &case.oscillator {
         Some(own) => {
             let grid = SampleGrid { per_period: SAMPLES_PER_PERIOD, count: truth.samples.len() };
-            Task::of_oscillator(&OscillatorTask::of(own, grid))
+            Task::of_oscillator(&OscillatorTask::new(own, grid))
         }
-        None => Task::of(problem, truth.span, truth.sample_times()),
+        None => Task::from_problem(problem, truth.span, truth.sample_times()),
     };
-    let task = task.map_err(|failure| FileError::of(&case.file, failure))?;
+    let task = task.map_err(|failure| FileError::new(&case.file, failure))?;
     Ok(Task { exact: Some(Arc::clone(problem)), ..task })
 }
 
@@ -110,7 +110,7 @@ impl PreparedCase {
         let problem = Arc::new(case.problem()?);
         let task = task(&case, &truth, &problem)?;
         let system = task.system.system();
-        let (names, rule) = (EventNames::of(&case, system), ErrorRule::of(&case, system));
+        let (names, rule) = (EventNames::new(&case, system), ErrorRule::new(&case, system));
         let occurrences = names.of_truth(&truth);
         let grazes = grazes(&problem, &truth, (&names, &rule));
         let decisions = decisions(&task.system, &truth, &rule);
@@ -180,7 +180,7 @@ impl PreparedCase {
         unit: f64,
     ) -> Option<LocalJudgement> {
         // Both solvers were made ready for the case's start.
-        self.local.judge(&self.task, outcome, Allowance::of(class, unit)).ok()
+        self.local.judge(&self.task, outcome, Allowance::new(class, unit)).ok()
     }
 
     /// The measured run in the form in which it is judged.

@@ -64,7 +64,7 @@ impl Probes {
     ) -> Result<Self, FileError> {
         let Some(oscillator) = &case.oscillator else {
             let restart = RestartTest::along(case, problem, truth, restarts_along(suite));
-            let restart = Some(restart.map_err(|what| FileError::of(&case.file, what))?);
+            let restart = Some(restart.map_err(|what| FileError::new(&case.file, what))?);
             return Ok(Self { restart, ..Self::default() });
         };
         // In the full suite the exact solver restarts on every attractor.

@@ -48,7 +48,7 @@ pub struct GrowthMatrices {
 impl GrowthMatrices {
     /// The matrices of a case's system, from the case's start.
     #[must_use]
-    pub fn of(case: &Case) -> Self {
+    pub fn new(case: &Case) -> Self {
         let system = if case.backward { case.system.reversed() } else { case.system.clone() };
         let forced = usize::from(system.forcing.is_some());
         let scales = std::iter::repeat_n(1.0, forced).chain(system.scales.iter().copied());
@@ -288,7 +288,7 @@ mod tests {
                 continue;
             }
             let mut own = proved.clone();
-            GrowthMatrices::of(&case).fill(&mut own);
+            GrowthMatrices::new(&case).fill(&mut own);
             let rows = own.events.iter().zip(&proved.events);
             for (n, (own, proved)) in
                 rows.chain(own.samples.iter().zip(&proved.samples)).enumerate()

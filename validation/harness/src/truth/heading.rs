@@ -18,7 +18,7 @@ pub(super) fn check_heading(
         if stated.and_then(|it| it.parse::<f64>().ok()) != Some(value) {
             let stated = stated.map_or("missing", String::as_str);
             let what = format!("was made for {name} = {stated}, the case has {value:?}");
-            return Err(FileError::of(file, what));
+            return Err(FileError::new(file, what));
         }
     }
     let words = [
@@ -30,7 +30,7 @@ pub(super) fn check_heading(
         let stated = heading.get(name).map_or("missing", String::as_str);
         if stated != value {
             let what = format!("was made for {name} = {stated}, the case has {value}");
-            return Err(FileError::of(file, what));
+            return Err(FileError::new(file, what));
         }
     }
     Ok(())

@@ -121,16 +121,16 @@ impl Library {
     fn text(&self, name: &str) -> Result<Cow<'static, str>, FileError> {
         let full_name = self.full_name(name);
         let listed = self.manifest.files.get(name);
-        let listed = listed.ok_or_else(|| FileError::of(&full_name, "is not in the manifest"))?;
+        let listed = listed.ok_or_else(|| FileError::new(&full_name, "is not in the manifest"))?;
         let bytes = self.bytes(name, &full_name)?;
         let found: String =
             Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
         if found != listed.sha256 {
             let what =
                 format!("SHA-256 {found} is not accepted: the manifest says {}", listed.sha256);
-            return Err(FileError::of(&full_name, what));
+            return Err(FileError::new(&full_name, what));
         }
-        let not_text = || FileError::of(&full_name, "is not UTF-8");
+        let not_text = || FileError::new(&full_name, "is not UTF-8");
         match bytes {
             Cow::Borrowed(bytes) => {
                 std::str::from_utf8(bytes).map(Cow::Borrowed).map_err(|_| not_text())
@@ -149,17 +149,17 @@ impl Library {
         let (folder, file) = match name.split_once('/') {
             Some(("events", file)) => (&EVENTS, file),
             Some(("samples", file)) => (&SAMPLES, file),
-            _ => return Err(FileError::of(full_name, "is not inside the binary")),
+            _ => return Err(FileError::new(full_name, "is not inside the binary")),
         };
         let file = folder
             .get_file(file)
-            .ok_or_else(|| FileError::of(full_name, "is not inside the binary"))?;
+            .ok_or_else(|| FileError::new(full_name, "is not inside the binary"))?;
         Ok(Cow::Borrowed(file.contents()))
     }
 }
 
 fn parse(name: &str, text: &str) -> Result<Manifest, FileError> {
-    serde_json::from_str(text).map_err(|error| FileError::of(name, error))
+    serde_json::from_str(text).map_err(|error| FileError::new(name, error))
 }
 
 #[cfg(test)]

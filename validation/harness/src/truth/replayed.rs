@@ -20,7 +20,7 @@ impl Truth {
     pub(super) fn of_oscillator(case: &Case, own: &OscillatorCase) -> Result<Self, FileError> {
         let period = own.problem.model.period();
         let grid = SampleGrid { per_period: SAMPLES_PER_PERIOD, count: 0 };
-        let task = OscillatorTask::of(own, grid);
+        let task = OscillatorTask::new(own, grid);
         if task.span > MAX_PERIODS * period {
             let what = "a horizon of more than 1000 forcing periods needs tables (reference_data/)";
             return Err(FileError(format!("{}: {what}", case.file)));
@@ -34,7 +34,7 @@ impl Truth {
         let mut truth = truth.map_err(|undecided| {
             FileError(format!("{}: {undecided}; it needs tables", case.file))
         })?;
-        GrowthMatrices::of(case).fill(&mut truth);
+        GrowthMatrices::new(case).fill(&mut truth);
         Ok(truth.with_sizes(&case.system.scales))
     }
 
@@ -105,7 +105,7 @@ pub(super) fn states_of_oscillator(
     instants: &[f64],
 ) -> Option<Vec<Vec<f64>>> {
     let OscillatorTask { parameters, problem, horizon, .. } =
-        OscillatorTask::of(own, SampleGrid { per_period: SAMPLES_PER_PERIOD, count: 0 });
+        OscillatorTask::new(own, SampleGrid { per_period: SAMPLES_PER_PERIOD, count: 0 });
     let start = problem.entry.instant;
     let mut states = Vec::with_capacity(instants.len());
     for passage in Replay::new(&parameters, &problem.entry, horizon) {

@@ -33,7 +33,7 @@ struct SystemReplay<'a> {
 impl Truth {
     /// The truth of a case of which there are no tables.
     pub(super) fn of_system(case: &Case) -> Result<Self, FileError> {
-        let refused = |what: String| FileError::of(&case.file, what);
+        let refused = |what: String| FileError::new(&case.file, what);
         let solver = solver(case).map_err(refused)?;
         Self::solve(case, &solver).map_err(refused)
     }
@@ -44,11 +44,11 @@ impl Truth {
     /// What 106 bits leave undecided, and horizons and samples beside an event.
     pub fn solve(case: &Case, solver: &Solver<DoubleDouble>) -> Result<Self, String> {
         let start = case.system.start.as_ref().ok_or("the system has no start")?;
-        let replay = SystemReplay { case, solver, begin: Time::of(&start.time) };
+        let replay = SystemReplay { case, solver, begin: Time::new(&start.time) };
         let events = replay.events(start)?;
         replay.refuse_close_instants(&events)?;
         let mut truth = replay.truth(&events)?.with_sizes(&case.system.scales);
-        GrowthMatrices::of(case).fill(&mut truth);
+        GrowthMatrices::new(case).fill(&mut truth);
         Ok(truth)
     }
 }
@@ -72,7 +72,7 @@ impl Truth {
             return states_of_oscillator(own, instants);
         }
         let (solver, start) = (solver(case).ok()?, case.system.start.as_ref()?);
-        let replay = SystemReplay { case, solver: &solver, begin: Time::of(&start.time) };
+        let replay = SystemReplay { case, solver: &solver, begin: Time::new(&start.time) };
         let events = replay.events(start).ok()?;
         let (last, events) = events.split_last()?;
         let end = replay.elapsed(&last.time).value();

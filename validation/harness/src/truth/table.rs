@@ -79,10 +79,10 @@ impl Truth {
         events: (&str, &str),
         samples: (&str, &str),
     ) -> Result<Self, FileError> {
-        let form = TableForm::of(case);
+        let form = TableForm::new(case);
         let table = Table::read(case, form, events, true)?;
         let sampled = Table::read(case, form, samples, false)?;
-        let refused = |what: &str| FileError::of(events.0, what);
+        let refused = |what: &str| FileError::new(events.0, what);
         let (last, rest) = table.rows.split_last().ok_or_else(|| refused("holds no row"))?;
         let (start, between) = rest.split_first().ok_or_else(|| refused("holds no start"))?;
         let ended = told_ending(&last.0).ok_or_else(|| refused("its last row names no ending"))?;
@@ -117,7 +117,7 @@ impl Truth {
             samples: sampled.rows.into_iter().map(|(_, row)| row).collect(),
             ordered: phases || table.heading.contains_key("order_matters"),
         };
-        let growth = GrowthMatrices::of(case);
+        let growth = GrowthMatrices::new(case);
         match form {
             TableForm::Phases => growth.fill(&mut truth),
             TableForm::Events => growth.round_instants(&mut truth),
@@ -173,7 +173,7 @@ enum TableForm {
 }
 
 impl TableForm {
-    fn of(case: &Case) -> Self {
+    fn new(case: &Case) -> Self {
         if case.oscillator.is_some() { Self::Phases } else { Self::Events }
     }
 
@@ -227,22 +227,22 @@ impl Table {
         check_heading(case, file, &heading)?;
         let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
         let columns = form.columns(&case.system.states, of_events);
-        let found = reader.headers().map_err(|error| FileError::of(file, error))?;
+        let found = reader.headers().map_err(|error| FileError::new(file, error))?;
         if found.iter().ne(columns.iter().map(String::as_str)) {
             let what = format!("accepted are the columns {}", columns.join(","));
-            return Err(FileError::of(file, what));
+            return Err(FileError::new(file, what));
         }
         let mut rows: Vec<(String, TruthRow)> = Vec::new();
         for (index, record) in reader.records().enumerate() {
-            let record = record.map_err(|error| FileError::of(file, error))?;
+            let record = record.map_err(|error| FileError::new(file, error))?;
             let row = read_row(case, index, &columns, &record).ok_or_else(|| {
-                FileError::of(file, format!("row {index} is not accepted: {record:?}"))
+                FileError::new(file, format!("row {index} is not accepted: {record:?}"))
             })?;
             let is_earlier =
                 |before: &(String, TruthRow)| row.1.elapsed.minus(before.1.elapsed).value() < 0.0;
             if rows.last().is_some_and(is_earlier) {
                 let what = format!("row {index} is earlier than the one before it");
-                return Err(FileError::of(file, what));
+                return Err(FileError::new(file, what));
             }
             rows.push(row);
         }

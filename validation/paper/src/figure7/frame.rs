@@ -68,7 +68,7 @@ impl Frame {
             let steps = |count: u64| count * STEPS / all;
             (steps(before)..steps(before + more)).for_each(|_| (work.step)());
         };
-        let basins = Basins::of(&map(omega)?, &grid(cells), TRANSIENT_PERIODS, &seen);
+        let basins = Basins::new(&map(omega)?, &grid(cells), TRANSIENT_PERIODS, &seen);
         let share = |label| 100.0 * basins.fraction(label);
         let error = |label| 100.0 * basins.fraction_error(label);
         let kept = |(place, it): (usize, &Attractor)| {

@@ -81,7 +81,7 @@ fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
         Claim::settle(
             &work.paper,
             "fig7a-f",
-            ClaimVerdict::of(all_agree),
+            ClaimVerdict::new(all_agree),
             format!("number of attractors at {}", said.join(", ")),
         )?
         .note(format!(
@@ -108,7 +108,7 @@ fn settle(
     let first = Claim::settle(
         &work.paper,
         figure,
-        ClaimVerdict::of(printed.attractors == Some(count)),
+        ClaimVerdict::new(printed.attractors == Some(count)),
         computed,
     )?
     .evidence("shares of the starts", shares.as_str());
@@ -118,7 +118,7 @@ fn settle(
     let mut second = Claim::settle(
         &work.paper,
         census,
-        ClaimVerdict::of(agrees(frame, printed)),
+        ClaimVerdict::new(agrees(frame, printed)),
         frame.attractors.iter().map(|it| it.said.clone()).collect::<Vec<_>>().join("; "),
     )?
     .evidence("every start of the frame followed; orbits by Newton with multipliers, chaos by a positive exponent", shares)

@@ -42,7 +42,7 @@ pub(super) fn settle(
         (lowest / TABLE_1_UNIT).round() * TABLE_1_UNIT + 0.0,
         100.0 * share
     );
-    Ok(Claim::settle(&work.paper, "fig3", ClaimVerdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "fig3", ClaimVerdict::new(holds), computed)?
         .note("drawn over rows 1 to 9 of Table 1, as the paper does")
         .evidence("exact solver, every phase sampled", "figures-3-4.csv")
         .evidence(

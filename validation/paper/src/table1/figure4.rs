@@ -51,7 +51,7 @@ pub(super) fn settle(
         "v rises by {} in the progressions of Table 1, {total:.4} together, and is level between",
         gains.join(" and ")
     );
-    Ok(Claim::settle(&work.paper, "fig4", ClaimVerdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "fig4", ClaimVerdict::new(holds), computed)?
         .note(format!(
             "Eq. (20) needs - (p0 - g - 1) exp(...): as printed, with +, v would jump by up to {jump:.4} where progression begins"
         ))

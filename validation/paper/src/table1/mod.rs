@@ -114,7 +114,7 @@ fn rows(work: &ItemWork<'_>, told: &Table1Run) -> Result<Claim, Failure> {
         told.segments.len(),
         differences.len()
     );
-    Ok(Claim::settle(&work.paper, "table1", ClaimVerdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "table1", ClaimVerdict::new(holds), computed)?
         .note("found by following the motion from rest at tau = 0 through 18 forcing periods; within one unit of the last printed digit")
         .evidence("exact solver from rest", "table-1.csv"))
 }
@@ -147,7 +147,7 @@ fn period(work: &ItemWork<'_>, told: &Table1Run, orbit: &Orbit) -> Result<Claim,
     let multipliers: Vec<_> =
         orbit.multipliers.iter().map(|[re, im]| format!("{re:.6e}{im:+.1e}i")).collect();
     let point = orbit.points[0];
-    Ok(Claim::settle(&work.paper, "table1-period", ClaimVerdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "table1-period", ClaimVerdict::new(holds), computed)?
         .note("looked for as an orbit of twelve forcing periods: its least period is what is told")
         .evidence(
             format!(
@@ -172,7 +172,7 @@ fn closed(work: &ItemWork<'_>, told: &Table1Run, orbit: &Orbit) -> Result<Claim,
         apart[0],
         told.segments[0].entry().state.y - told.segments[last].entry().state.y
     );
-    Ok(Claim::settle(&work.paper, "table1-closed", ClaimVerdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "table1-closed", ClaimVerdict::new(holds), computed)?
         .note("the printed rows say so themselves; the orbit that the motion settles on later does close after T")
         .evidence("the printed rows", format!("{theirs:.5} apart, {:.5} more than T", apart[1]))
         .evidence(

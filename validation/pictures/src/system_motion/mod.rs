@@ -61,7 +61,7 @@ pub struct SystemMotion {
 impl SystemMotion {
     /// A run of a solver, given by its start and all its events, with the states of these indices.
     #[must_use]
-    pub fn of<T: Number>(solver: &Solver<T>, run: &[Event<T>], shown: &[usize]) -> Self {
+    pub fn new<T: Number>(solver: &Solver<T>, run: &[Event<T>], shown: &[usize]) -> Self {
         let system = solver.system();
         let events = event_names(system, run);
         let motion = Self {
@@ -79,7 +79,7 @@ impl SystemMotion {
 
     /// The run with all figures in units in which the labels of their axes are short.
     fn in_units(mut self) -> Self {
-        self.units = (0..self.units.len()).map(|n| AxisUnit::of(self.column(n))).collect();
+        self.units = (0..self.units.len()).map(|n| AxisUnit::new(self.column(n))).collect();
         let points = self.pieces.iter_mut().flat_map(|piece| &mut piece.points);
         let marks = self.marks.iter_mut().flat_map(|mark| [&mut mark.before, &mut mark.after]);
         for point in points.chain(marks) {

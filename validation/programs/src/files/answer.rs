@@ -123,7 +123,7 @@ impl Told {
 fn state(cells: &Cells<'_>, from: usize, system: &System) -> Result<StateReply, String> {
     let number = |(i, name): (usize, &String)| cells.number(from + i, name);
     let values: Result<Vec<f64>, String> = system.states.iter().enumerate().map(number).collect();
-    Ok(StateReply(Values::of(&values?)))
+    Ok(StateReply(Values::from_slice(&values?)))
 }
 
 fn mode_of(system: &System, name: &str) -> Result<usize, String> {

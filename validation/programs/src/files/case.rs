@@ -76,12 +76,12 @@ impl<'a> CaseFile<'a> {
             drift: system.drift.iter().map(|it| system.states[*it].as_str()).collect(),
             scales: &system.scales,
             time_scale: system.time_scale,
-            times: TimesAsk::of(&task.system),
-            modes: system.modes.iter().map(ModeAsk::of).collect(),
+            times: TimesAsk::new(&task.system),
+            modes: system.modes.iter().map(ModeAsk::new).collect(),
             gradients: task.gradients.as_ref().map(|rates| GradientsFile {
                 events: "all",
                 end: true,
-                by: rates.iter().map(RatesAsk::of).collect(),
+                by: rates.iter().map(RatesAsk::new).collect(),
             }),
             task,
         }

@@ -89,7 +89,7 @@ fn state(cells: &Cells<'_>, system: &System) -> Result<Option<StateReply>, Strin
     }
     let number = |(name, place): (&String, usize)| cells.number(place, &format!("d{name}"));
     let values: Result<Vec<f64>, String> = system.states.iter().zip(places).map(number).collect();
-    Ok(Some(StateReply(Values::of(&values?))))
+    Ok(Some(StateReply(Values::from_slice(&values?))))
 }
 
 fn columns(system: &System) -> Vec<String> {

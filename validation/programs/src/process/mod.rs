@@ -39,7 +39,7 @@ impl Process {
     /// An error of the operating system.
     pub(crate) fn start(program: &Program) -> io::Result<Self> {
         let (group, pipes) = Group::start(program)?;
-        Ok(Self { group, streams: Streams::of(pipes)?, asked: 0 })
+        Ok(Self { group, streams: Streams::new(pipes)?, asked: 0 })
     }
 
     /// Asks what the program can do.

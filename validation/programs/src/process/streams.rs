@@ -42,7 +42,7 @@ impl Streams {
     ///
     /// # Errors
     /// The operating system starts no more threads.
-    pub(super) fn of(pipes: Pipes) -> io::Result<Self> {
+    pub(super) fn new(pipes: Pipes) -> io::Result<Self> {
         let (input, requests) = sync_channel(1);
         // One line waits to be asked for, and one to be taken over: no more are in the memory.
         let (lines, output) = sync_channel(1);

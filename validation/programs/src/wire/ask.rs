@@ -2,7 +2,9 @@
 
 use super::PROTOCOL;
 use percuss_engines::engine::{Accuracy, Limits, Task};
-use percuss_engines::system::{CheckedSystem, Direction, Mode, Rates, Row, System};
+use percuss_engines::system::{
+    CheckedSystem, CoefficientDerivatives, Direction, Mode, Row, System,
+};
 use serde::Serialize;
 
 /// The part of its time after which a program is to give up by itself, before it is ended.
@@ -156,7 +158,7 @@ impl<'a> RunAsk<'a> {
         let tolerance = |size: f64| Tolerance { relative: size, absolute: size };
         Self {
             setup,
-            system: SystemAsk::of(checked.system()),
+            system: SystemAsk::new(checked.system()),
             backward: checked.is_backward(),
             mode: task.mode,
             state: &task.state,
@@ -164,13 +166,13 @@ impl<'a> RunAsk<'a> {
             samples: samples(task),
             tolerance: accuracy.tolerance().map(tolerance),
             step: accuracy.step().map(|step| step * checked.shortest_time()),
-            times: TimesAsk::of(checked),
+            times: TimesAsk::new(checked),
             limits: LimitsAsk {
                 calls: limits.calls,
                 events: limits.events,
                 wall_s: OWN_TIME_SHARE * limits.wall.as_secs_f64(),
             },
-            gradients: task.gradients.iter().flat_map(|it| it.iter()).map(RatesAsk::of).collect(),
+            gradients: task.gradients.iter().flat_map(|it| it.iter()).map(RatesAsk::new).collect(),
         }
     }
 
@@ -181,20 +183,20 @@ impl<'a> RunAsk<'a> {
 }
 
 impl<'a> RatesAsk<'a> {
-    pub(crate) fn of(rates: &'a Rates) -> Self {
+    pub(crate) fn new(rates: &'a CoefficientDerivatives) -> Self {
         Self {
             wrt: &rates.name,
             value: rates.value,
             omega: rates.omega,
             phi: rates.phi,
             state: &rates.state,
-            modes: rates.modes.iter().map(ModeRatesAsk::of).collect(),
+            modes: rates.modes.iter().map(ModeRatesAsk::new).collect(),
         }
     }
 }
 
 impl<'a> ModeRatesAsk<'a> {
-    fn of(mode: &'a Mode) -> Self {
+    fn new(mode: &'a Mode) -> Self {
         let until = mode
             .until
             .iter()
@@ -206,7 +208,7 @@ impl<'a> ModeRatesAsk<'a> {
 
 impl TimesAsk {
     /// The time scales of a system.
-    pub(crate) fn of(system: &CheckedSystem) -> Self {
+    pub(crate) fn new(system: &CheckedSystem) -> Self {
         Self {
             period: system.period(),
             turn: Some(system.turn()).filter(|turn| turn.is_finite()),
@@ -222,7 +224,7 @@ pub(crate) fn samples(task: &Task) -> Vec<f64> {
 }
 
 impl<'a> SystemAsk<'a> {
-    fn of(system: &'a System) -> Self {
+    fn new(system: &'a System) -> Self {
         Self {
             name: &system.name,
             states: &system.states,
@@ -230,14 +232,14 @@ impl<'a> SystemAsk<'a> {
             time_scale: system.time_scale,
             omega: system.omega,
             phi: system.phi,
-            modes: system.modes.iter().map(ModeAsk::of).collect(),
+            modes: system.modes.iter().map(ModeAsk::new).collect(),
         }
     }
 }
 
 impl<'a> ModeAsk<'a> {
     /// A mode with its events.
-    pub(crate) fn of(mode: &'a Mode) -> Self {
+    pub(crate) fn new(mode: &'a Mode) -> Self {
         let until = mode.until.iter().map(|it| EventAsk {
             name: &it.name,
             guard: &it.guard,

@@ -63,6 +63,6 @@ pub(crate) struct StateReply(pub(crate) Values);
 impl<'de> Deserialize<'de> for StateReply {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let list = BoundedList::<f64, MAX_STATES>::deserialize(deserializer)?;
-        Ok(Self(Values::of(&list.0)))
+        Ok(Self(Values::from_slice(&list.0)))
     }
 }

@@ -4,7 +4,7 @@ use super::{Ask, Asked, ReplyContent, RunAsk, decode};
 use jsonschema::Validator;
 use percuss::Parameters;
 use percuss_engines::engine::{Accuracy, Limits, Task, percussive};
-use percuss_engines::system::{CheckedSystem, Direction, Rates, System, Watch};
+use percuss_engines::system::{CheckedSystem, CoefficientDerivatives, Direction, System, Watch};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
@@ -74,7 +74,7 @@ fn task_with_gradients() -> Task {
     let task = task(system());
     let modes = task.system.system().modes.clone();
     let (name, state) = ("g".to_owned(), task.state);
-    let rates = Rates { name, value: 1.0, omega: 0.0, phi: 0.0, state, modes };
+    let rates = CoefficientDerivatives { name, value: 1.0, omega: 0.0, phi: 0.0, state, modes };
     Task { gradients: Some(Arc::new(vec![rates])), ..task }
 }
 

@@ -74,13 +74,13 @@ pub(super) const MAX_POINTS: usize = 1000;
 pub(super) const BOX_CELLS: u32 = 5;
 
 impl Json {
-    pub(in crate::cli) fn of(survey: &Survey) -> Self {
+    pub(in crate::cli) fn new(survey: &Survey) -> Self {
         let Survey { problem, limits, basins, unresolved } = survey;
         let Basins { grid, attractors, .. } = basins;
         let parameters = problem.model.parameters();
         let listed = attractors.iter().enumerate();
         let mut entries: Vec<_> =
-            listed.map(|(id, it)| AttractorJson::of(basins, Label::Attractor(id), it)).collect();
+            listed.map(|(id, it)| AttractorJson::new(basins, Label::Attractor(id), it)).collect();
         if basins.fraction(Label::Escaping) > 0.0 {
             entries.push(AttractorJson::escaping(basins, parameters.b));
         }
@@ -97,15 +97,15 @@ impl Json {
             transient: limits.transient,
             attractors: entries,
             unresolved: basins.fraction(Label::Unresolved),
-            unresolved_examples: unresolved.iter().map(UnresolvedJson::of).collect(),
-            uncertainty: UncertaintyJson::of(&uncertainty(basins)),
-            basin_entropy: EntropyJson::of(&entropy(basins, BOX_CELLS)),
+            unresolved_examples: unresolved.iter().map(UnresolvedJson::new).collect(),
+            uncertainty: UncertaintyJson::new(&uncertainty(basins)),
+            basin_entropy: EntropyJson::new(&entropy(basins, BOX_CELLS)),
         }
     }
 }
 
 impl AttractorJson {
-    fn of(basins: &Basins, label: Label, attractor: &Attractor) -> Self {
+    fn new(basins: &Basins, label: Label, attractor: &Attractor) -> Self {
         let points = &attractor.points;
         let from =
             if attractor.orbit.is_some() { 0 } else { points.len().saturating_sub(MAX_POINTS) };
@@ -148,14 +148,14 @@ impl AttractorJson {
 }
 
 impl UnresolvedJson {
-    fn of(start: &UnresolvedStart) -> Self {
+    fn new(start: &UnresolvedStart) -> Self {
         let UnresolvedStart { point, lyapunov_per_period, recurrence } = *start;
         Self { point, lyapunov_per_period, recurrence }
     }
 }
 
 impl UncertaintyJson {
-    pub(super) fn of(uncertainty: &Uncertainty) -> Self {
+    pub(super) fn new(uncertainty: &Uncertainty) -> Self {
         let scales = &uncertainty.scales;
         Self {
             epsilon: scales.iter().map(|scale| scale.epsilon).collect(),
@@ -168,7 +168,7 @@ impl UncertaintyJson {
 }
 
 impl EntropyJson {
-    pub(super) fn of(entropy: &Entropy) -> Self {
+    pub(super) fn new(entropy: &Entropy) -> Self {
         let Entropy { side, all, boundary, boundary_error, boundary_boxes } = *entropy;
         Self { side, all, boundary, boundary_error, boundary_boxes }
     }

@@ -155,7 +155,7 @@ pub(super) fn attractors(arguments: &AttractorArguments, threads: Option<u16>) -
     let outputs = arguments.output.outputs(default_format)?;
     let AttractorArguments { system, grid, section, model, .. } = arguments;
     if let Some(chosen) = system.chosen(model)? {
-        let survey = system::Survey::of(&chosen, grid, section, threads)?;
+        let survey = system::Survey::new(&chosen, grid, section, threads)?;
         return outputs.each(|format, out| survey.show(format, out));
     }
     arguments.refuse_flags_of_system()?;
@@ -169,8 +169,8 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
     let shown = shown.unwrap_or(default_format(&Destination::Stdout));
     let BasinArguments { system, grid, section, model, print, .. } = arguments;
     if let Some(chosen) = system.chosen(model)? {
-        let survey = system::Survey::of(&chosen, grid, section, threads)?;
-        outputs.each(|format, out| match PictureFormat::of(format) {
+        let survey = system::Survey::new(&chosen, grid, section, threads)?;
+        outputs.each(|format, out| match PictureFormat::new(format) {
             None => Ok(out.write_all(&survey.npz()?)?),
             Some(format) => print.write(&survey.map(), format, out),
         })?;
@@ -178,8 +178,8 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
     }
     arguments.refuse_flags_of_system()?;
     let survey = arguments.grid.survey(&arguments.model, threads)?;
-    outputs.each(|format, out| match PictureFormat::of(format) {
-        None => Ok(out.write_all(&npz::bytes(&survey, &json::Json::of(&survey))?)?),
+    outputs.each(|format, out| match PictureFormat::new(format) {
+        None => Ok(out.write_all(&npz::bytes(&survey, &json::Json::new(&survey))?)?),
         Some(format) => print.write(&draw::map(&survey), format, out),
     })?;
     Destination::Stdout.write(|out| show(&survey, shown, out))
@@ -198,7 +198,7 @@ fn outputs_of_labels(arguments: &BasinArguments) -> Result<Outputs<Labels>> {
         );
     }
     let labels = only_format(&arguments.format, BasinFormat::of_labels)?;
-    let outputs = Outputs::of(paths, labels, |_| Labels::Npz)?;
+    let outputs = Outputs::new(paths, labels, |_| Labels::Npz)?;
     arguments.print.check(&outputs.pictures())?;
     let [columns, rows] = arguments.grid.grid;
     if outputs.any(|it| it == Labels::Svg) && u64::from(columns) * u64::from(rows) > MAX_SVG_CELLS {
@@ -227,7 +227,7 @@ fn only_format<F>(
 
 fn show(survey: &Survey, shown: AttractorFormat, out: &mut dyn Write) -> Result<()> {
     match shown {
-        AttractorFormat::Json => write_json(out, &json::Json::of(survey)),
+        AttractorFormat::Json => write_json(out, &json::Json::new(survey)),
         AttractorFormat::Table => Ok(out.write_all(table::text(survey).as_bytes())?),
     }
 }
@@ -275,7 +275,7 @@ impl GridFlags {
         let bar = long_work::bar(grid.len() as u64, "starts");
         let seen = |count| bar.inc(count);
         let limits = self.limits();
-        let basins = long_work::pool(threads)?.install(|| Basins::of(&map, &grid, limits, &seen));
+        let basins = long_work::pool(threads)?.install(|| Basins::new(&map, &grid, limits, &seen));
         bar.finish_and_clear();
         Ok(Survey::new(problem, &map, limits, basins))
     }

@@ -97,7 +97,7 @@ fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
     for TimeQuotient { bench, value, spread } in first {
         let again = second.iter().find(|it| it.bench == bench).map(|it| it.value);
         let values: Vec<f64> = std::iter::once(value).chain(again).collect();
-        let verdict = WorkloadVerdict::of(&values);
+        let verdict = WorkloadVerdict::new(&values);
         let again = again.map(|it| format!("{it:.4}")).unwrap_or_default();
         lines.push(format!("{bench},{value:.4},{spread:.4},{again},{}", verdict.word()));
         verdicts.push(verdict);

@@ -178,7 +178,7 @@ fn timed(patterns: &[Regex]) -> Result<Vec<TimedCase>> {
     let place = |case: &Case| listed().position(|it| *it == case.name);
     all.sort_by_key(|it| (it.oscillator.is_none(), place(it).unwrap_or(usize::MAX)));
     let library = Library::embedded()?;
-    Ok(all.iter().map(|it| TimedCase::of(it, &library)).collect::<Result<_, _>>()?)
+    Ok(all.iter().map(|it| TimedCase::new(it, &library)).collect::<Result<_, _>>()?)
 }
 
 /// The cases that are timed where none are named, and that versions are compared by.

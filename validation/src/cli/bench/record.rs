@@ -86,7 +86,7 @@ fn records(arguments: &Arguments, timed_cases: &[TimedCase]) -> Result<Vec<Histo
             None
         };
         let figures = Figures { instructions, ..figures(case, &halves, i)? };
-        Ok(HistoryRecord::of(provenance::this(), &name, figures))
+        Ok(HistoryRecord::new(provenance::this(), &name, figures))
     };
     let records = timed_cases.iter().enumerate().map(record).collect();
     bar.finish_and_clear();

@@ -81,7 +81,7 @@ impl Sink for Drawn<'_> {
 
     fn finish(&mut self, rows: &Rows<'_>, _: &RunEnd) -> Result<()> {
         let solver = Solver::<DoubleDouble>::prepare(rows.system, self.backward)?;
-        let motion = SystemMotion::of(&solver, &self.run, self.shown);
+        let motion = SystemMotion::new(&solver, &self.run, self.shown);
         for (format, out) in &mut self.outputs {
             let bytes = match format {
                 PictureFormat::Svg => picture::svg(&motion).into_bytes(),

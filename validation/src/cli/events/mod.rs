@@ -107,7 +107,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         bar: bar.as_ref(),
     };
     let end = outputs.together(|opened| {
-        let mut all = sink::All::of(opened, arguments.backward, &shown);
+        let mut all = sink::All::new(opened, arguments.backward, &shown);
         rows.write(&mut all)
     })?;
     bar.iter().for_each(Bar::finish_and_clear);
@@ -128,7 +128,7 @@ fn limits(arguments: &Arguments, system: &System, time: f64) -> Result<Limits> {
 
 /// Refuses flags that the run takes no notice of.
 fn check_effect(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<()> {
-    let is_picture = |it: Format| PictureFormat::of(it).is_some();
+    let is_picture = |it: Format| PictureFormat::new(it).is_some();
     let has_pictures = outputs.any(is_picture);
     let has_data = outputs.any(|it| !is_picture(it));
     if let Some(samples) = arguments.samples.filter(|_| !has_data) {

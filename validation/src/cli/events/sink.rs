@@ -15,14 +15,14 @@ pub(super) struct All<'a>(Vec<Box<dyn Sink + 'a>>);
 
 impl<'a> All<'a> {
     /// An output for each of the data, and one for the picture, which is made once.
-    pub(super) fn of(
+    pub(super) fn new(
         opened: &'a mut [(Format, Opened)],
         backward: bool,
         shown: &'a [usize],
     ) -> Self {
         let (mut all, mut drawn): (Vec<Box<dyn Sink + 'a>>, _) = (Vec::new(), Vec::new());
         for (format, out) in opened {
-            match (PictureFormat::of(*format), format) {
+            match (PictureFormat::new(*format), format) {
                 (Some(format), _) => drawn.push((format, out as _)),
                 (None, Format::Json) => all.push(Box::new(Json::new(out))),
                 (None, _) => all.push(Box::new(Csv(out))),

@@ -87,7 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
         parameters: problem.model.parameters().into(),
         exponents_per_period: found.exponents_per_period,
         standard_error: found.standard_error,
-        batches: Batches::of(periods).count(),
+        batches: Batches::new(periods).count(),
         stationary: stationary(found.stationarity),
         contraction_per_period: found.contraction_per_period,
         drift_per_period: found.drift_per_period,

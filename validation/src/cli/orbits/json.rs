@@ -143,17 +143,21 @@ pub(crate) struct Special {
 }
 
 impl BranchJson {
-    pub(crate) fn of(branch: &Branch, parameter: Parameter, complete: bool) -> Self {
+    pub(crate) fn new(branch: &Branch, parameter: Parameter, complete: bool) -> Self {
         Self {
             complete,
-            branch: branch.points.iter().map(JsonPlace::of).collect(),
-            bifurcations: branch.bifurcations.iter().map(|it| Special::of(it, parameter)).collect(),
+            branch: branch.points.iter().map(JsonPlace::new).collect(),
+            bifurcations: branch
+                .bifurcations
+                .iter()
+                .map(|it| Special::new(it, parameter))
+                .collect(),
         }
     }
 }
 
 impl JsonPlace {
-    fn of(BranchPoint { value, orbit }: &BranchPoint) -> Self {
+    fn new(BranchPoint { value, orbit }: &BranchPoint) -> Self {
         Self {
             parameter: *value,
             point: orbit.points[0],
@@ -165,7 +169,7 @@ impl JsonPlace {
 }
 
 impl Special {
-    fn of(found: &Bifurcation, parameter: Parameter) -> Self {
+    fn new(found: &Bifurcation, parameter: Parameter) -> Self {
         Self {
             r#type: found.kind.as_str(),
             parameter: parameter.as_str(),

@@ -76,7 +76,7 @@ const MAX_SVG_POINTS: u64 = 20_000;
 
 /// Refuses a picture of more points than show anything, or than stay small.
 fn check_size(outputs: &Outputs<Format>, flag: &str, count: u64) -> Result<()> {
-    let is_picture = outputs.any(|it| PictureFormat::of(it).is_some());
+    let is_picture = outputs.any(|it| PictureFormat::new(it).is_some());
     for (is_drawn, most, kind) in [
         (is_picture, MAX_PICTURE_POINTS, "a picture"),
         (outputs.any(|it| it == Format::Svg), MAX_SVG_POINTS, "svg"),
@@ -206,7 +206,7 @@ fn sink<'s>(
     section: &'s ShownSection<'s>,
     problem: &'s Problem,
 ) -> Result<Box<dyn Sink + 's>> {
-    Ok(match PictureFormat::of(format) {
+    Ok(match PictureFormat::new(format) {
         Some(format) => Box::new(Collected {
             out,
             of: Box::new(|it| [it.state[0], it.state[1]]),

@@ -68,7 +68,7 @@ struct Made<'a> {
 
 impl Made<'_> {
     fn sink<'s>(&'s self, format: Format, out: &'s mut Opened) -> Result<Box<dyn Sink + 's>> {
-        if let Some(format) = PictureFormat::of(format) {
+        if let Some(format) = PictureFormat::new(format) {
             return Ok(Box::new(Collected {
                 out,
                 of: Box::new(|it| place(self.observables, it.n as f64, it.time, it.state)),

@@ -13,7 +13,7 @@ const MAX_SIMULTANEOUS_EVENTS: usize = 64;
 
 /// An `until` of a mode by its index, with the mode that it begins.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Turned {
+struct UntilEvent {
     mode: usize,
     until: usize,
     next: usize,
@@ -21,20 +21,20 @@ struct Turned {
 
 /// The last `until` events of a run, the latest first.
 #[derive(Default)]
-pub(in crate::cli) struct LastTurns(VecDeque<Turned>);
+pub(in crate::cli) struct LastTurns(VecDeque<UntilEvent>);
 
 impl LastTurns {
     /// Keeps an event, where it is an `until`, with the mode that it begins.
     pub(in crate::cli) fn add(&mut self, kind: Kind, next: usize) {
         if let Kind::Until(mode, until) = kind {
             self.0.truncate(MAX_SIMULTANEOUS_EVENTS - 1);
-            self.0.push_front(Turned { mode, until, next });
+            self.0.push_front(UntilEvent { mode, until, next });
         }
     }
 }
 
 /// An `until` of a run, with its mode and the one that it begins.
-struct Turn<'a> {
+struct RepeatedEvent<'a> {
     until: &'a Until,
     mode: usize,
     next: usize,
@@ -42,10 +42,10 @@ struct Turn<'a> {
 
 /// The events that take turns, by their names and modes.
 pub(super) fn note(system: &System, last: &LastTurns) -> String {
-    let turns = turns(system, &last.0);
+    let turns = repeated_events(system, &last.0);
     let name = |mode: usize| &system.modes[mode].name;
     let named = turns.iter().take(MAX_NAMED_EVENTS).map(|turn| {
-        let Turn { until, mode, next } = turn;
+        let RepeatedEvent { until, mode, next } = turn;
         if mode == next {
             format!("\"{}\" (in {})", until.name, name(*mode))
         } else {
@@ -64,7 +64,7 @@ pub(super) fn note(system: &System, last: &LastTurns) -> String {
 
 /// Why the events take turns, and what to write.
 pub(super) fn remedy(system: &System, last: &LastTurns) -> Option<String> {
-    let turns = turns(system, &last.0);
+    let turns = repeated_events(system, &last.0);
     let text = match &turns[..] {
         [] => return None,
         [own] if own.mode == own.next && own.leaves_its_guard(system) => format!(
@@ -91,8 +91,11 @@ pub(super) fn remedy(system: &System, last: &LastTurns) -> Option<String> {
 
 /// The shortest list of events that a run repeats, in their order; all events where it repeats
 /// none.
-fn turns<'a>(system: &'a System, recent: &VecDeque<Turned>) -> Vec<Turn<'a>> {
-    let all: Vec<Turned> = recent.iter().rev().copied().collect();
+fn repeated_events<'a>(
+    system: &'a System,
+    recent: &VecDeque<UntilEvent>,
+) -> Vec<RepeatedEvent<'a>> {
+    let all: Vec<UntilEvent> = recent.iter().rev().copied().collect();
     let half = all.len() / 2;
     let repeats = |length: &usize| (half..all.len()).all(|n| all[n] == all[n - length]);
     let length = (1..=half).find(repeats).unwrap_or(all.len());
@@ -100,7 +103,7 @@ fn turns<'a>(system: &'a System, recent: &VecDeque<Turned>) -> Vec<Turn<'a>> {
     let last = &all[all.len() - length..];
     let first = (0..length).min_by_key(|n| last[*n]).unwrap_or(0);
     let order = last[first..].iter().chain(&last[..first]);
-    let turn = |it: &Turned| Turn {
+    let turn = |it: &UntilEvent| RepeatedEvent {
         until: &system.modes[it.mode].until[it.until],
         mode: it.mode,
         next: it.next,
@@ -108,7 +111,7 @@ fn turns<'a>(system: &'a System, recent: &VecDeque<Turned>) -> Vec<Turn<'a>> {
     order.map(turn).collect()
 }
 
-impl Turn<'_> {
+impl RepeatedEvent<'_> {
     /// Whether the reset changes neither the guard nor its rate.
     fn leaves_its_guard(&self, system: &System) -> bool {
         let guard = &self.until.guard;

@@ -29,14 +29,14 @@ impl<F: ValueEnum + PartialEq + Copy + Send + Sync + 'static> OutputsFlags<F> {
     /// The outputs, where `usual` is the format of one that nothing is said of; refuses paths that
     /// cannot be written, and one that is given twice.
     pub(in crate::cli) fn outputs(&self, usual: impl Fn(&Destination) -> F) -> Result<Outputs<F>> {
-        Outputs::of(&self.output, self.format, usual)
+        Outputs::new(&self.output, self.format, usual)
     }
 }
 
 impl<F: ValueEnum + PartialEq + Copy> Outputs<F> {
     /// The outputs of these paths, stdout where there are none; `stated` is the format of those
     /// whose extension says none.
-    pub(in crate::cli) fn of(
+    pub(in crate::cli) fn new(
         paths: &[PathBuf],
         stated: Option<F>,
         usual: impl Fn(&Destination) -> F,
@@ -66,7 +66,7 @@ impl<F: ValueEnum + PartialEq + Copy> Outputs<F> {
 
     /// The formats of pictures among them.
     pub(in crate::cli) fn pictures(&self) -> Vec<PictureFormat> {
-        self.formats().filter_map(PictureFormat::of).collect()
+        self.formats().filter_map(PictureFormat::new).collect()
     }
 
     /// Whether one of the formats is of a kind.
@@ -95,9 +95,9 @@ impl<F: ValueEnum + PartialEq + Copy> Outputs<F> {
         mut data: impl FnMut(F, &mut dyn Write) -> Result<()>,
         figure: impl FnOnce() -> Result<Figure>,
     ) -> Result<()> {
-        let is_drawn = self.any(|it| PictureFormat::of(it).is_some());
+        let is_drawn = self.any(|it| PictureFormat::new(it).is_some());
         let figure = is_drawn.then(figure).transpose()?.map(|it| picture.in_range(it));
-        self.each(|format, out| match (PictureFormat::of(format), &figure) {
+        self.each(|format, out| match (PictureFormat::new(format), &figure) {
             (Some(format), Some(figure)) => picture.write_drawing(figure, format, out),
             _ => data(format, out),
         })
@@ -140,7 +140,7 @@ mod tests {
 
     fn formats(paths: &[&str], stated: Option<Kind>) -> Result<Vec<Kind>> {
         let paths: Vec<PathBuf> = paths.iter().map(PathBuf::from).collect();
-        Ok(Outputs::of(&paths, stated, |_| Kind::Csv)?.formats().collect())
+        Ok(Outputs::new(&paths, stated, |_| Kind::Csv)?.formats().collect())
     }
 
     #[test]

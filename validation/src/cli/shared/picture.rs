@@ -18,7 +18,7 @@ pub(in crate::cli) enum PictureFormat {
 
 impl PictureFormat {
     /// The format of a picture that a verb's format is by its name; none of data.
-    pub(in crate::cli) fn of(format: impl ValueEnum) -> Option<Self> {
+    pub(in crate::cli) fn new(format: impl ValueEnum) -> Option<Self> {
         match format.to_possible_value()?.get_name() {
             "png" => Some(Self::Png),
             "svg" => Some(Self::Svg),

@@ -32,7 +32,7 @@ impl Sink for Drawn<'_> {
 
     fn finish(&mut self, plan: &PlannedRun, _: &RunEnding) -> Result<()> {
         let last = plan.last_instant(&self.segments);
-        let motion = DrawnMotion::of(&plan.problem, &self.segments, &last);
+        let motion = DrawnMotion::new(&plan.problem, &self.segments, &last);
         self.flags.write_drawing(&motion, self.format, self.out)
     }
 }

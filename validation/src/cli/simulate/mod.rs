@@ -110,7 +110,7 @@ fn sink<'a>(
     format: Format,
     out: &'a mut Opened,
 ) -> Box<dyn rows::Sink + 'a> {
-    match (PictureFormat::of(format), format) {
+    match (PictureFormat::new(format), format) {
         (Some(format), _) => {
             let flags = &arguments.picture;
             Box::new(drawn::Drawn { out, flags, format, segments: Vec::new() })
@@ -137,7 +137,7 @@ fn check_effect(arguments: &Arguments, outputs: &Outputs<Format>) -> Result<()> 
         bail!("--max-periods {most} has no effect here: it is accepted with --events");
     }
     if let Some(rows) =
-        arguments.samples.filter(|_| outputs.formats().all(|it| PictureFormat::of(it).is_some()))
+        arguments.samples.filter(|_| outputs.formats().all(|it| PictureFormat::new(it).is_some()))
     {
         bail!("--samples {rows} has no effect on a picture: it is accepted with csv and json");
     }

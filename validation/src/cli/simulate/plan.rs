@@ -148,7 +148,7 @@ pub(super) struct Segments<'a> {
 }
 
 impl Segments<'_> {
-    /// Touches so far that rounding does not decide.
+    /// The number of touches so far that rounding leaves undecided.
     fn touches(&self) -> u64 {
         self.run.counters().undecidable
     }
@@ -174,7 +174,7 @@ impl Iterator for Segments<'_> {
 pub(super) struct RunEnding {
     /// The ending, if the run ended before its horizon.
     how: Option<String>,
-    /// Touches that rounding does not decide.
+    /// The number of touches that rounding leaves undecided.
     pub(super) touches: u64,
     /// Whether its last phase is undecidable.
     pub(super) undecided: bool,

@@ -72,7 +72,7 @@ impl BasinWork {
 
     fn arrays(&self, problem: Problem, map: &StrobeMap, basins: Basins) -> Result<Vec<Array>> {
         let survey = Survey::new(problem, map, self.grid.limits(), basins);
-        let json = Json::of(&survey);
+        let json = Json::new(&survey);
         let Basins { grid, attractors: found, labels: all } = &survey.basins;
         match self.wanted {
             Wanted::Labels => labels([grid.columns, grid.rows], all, found.len(), &json),
@@ -145,7 +145,7 @@ impl SweepVerb for BasinWork {
             return records::bytes(&self.labeller(point)?.label(tile, &|_| {}));
         }
         let Ground { problem, map, grid } = self.ground(point)?;
-        let basins = Basins::of(&map, &grid, self.grid.limits(), &|_| {});
+        let basins = Basins::new(&map, &grid, self.grid.limits(), &|_| {});
         records::bytes(&self.arrays(problem, &map, basins)?)
     }
 

@@ -30,7 +30,7 @@ impl SweepVerb for ExponentWork {
     fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
         let Arguments { transient, model, .. } = &self.arguments;
         let problem = model.at(point).problem()?;
-        let found = Spectrum::of(&problem.model, problem.entry, *transient, self.periods);
+        let found = Spectrum::new(&problem.model, problem.entry, *transient, self.periods);
         records::bytes(&arrays(&found))
     }
 }

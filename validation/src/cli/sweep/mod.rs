@@ -142,13 +142,13 @@ fn status(arguments: &StatusArguments) -> Result<u8> {
     let folder = Folder::new(&arguments.sweep.out)?;
     let (plan, work) = arguments.sweep.plan()?;
     let status = if folder.check(&plan)? {
-        SweepStatus::of(&Sweep::new(&plan, work.as_ref(), &folder))
+        SweepStatus::new(&Sweep::new(&plan, work.as_ref(), &folder))
     } else {
         SweepStatus::not_begun(&plan)
     };
     let destination = arguments.output.destination();
     match format {
-        Format::Json => destination.json(&StatusJson::of(&plan, &status))?,
+        Format::Json => destination.json(&StatusJson::new(&plan, &status))?,
         Format::Table => {
             let text = shown::table(&plan, &status);
             destination.write(|out| Ok(out.write_all(text.as_bytes())?))?;

@@ -42,7 +42,7 @@ struct DamagedJson {
 }
 
 impl StatusJson {
-    pub(super) fn of(plan: &Plan, status: &SweepStatus) -> Self {
+    pub(super) fn new(plan: &Plan, status: &SweepStatus) -> Self {
         let damaged = (0..).zip(&status.shards).filter_map(|(shard, state)| match state {
             ShardState::Damaged(why) => Some(DamagedJson { shard, reason: why.clone() }),
             _ => None,

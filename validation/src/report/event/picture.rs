@@ -6,7 +6,7 @@ use crate::case::Case;
 use crate::engine::{Equations, GuardSample, Task};
 use crate::suite::PreparedCase;
 use crate::suite::first_wrong::{EventMismatch, FirstWrongEvent, MismatchKind};
-use crate::system::{Affine, Direction, Row, System};
+use crate::system::{AffineEquations, Direction, Row, System};
 
 /// The pictures of first wrong events; none of an event whose guard is not known.
 #[must_use]
@@ -19,7 +19,7 @@ fn picture(shown: &FirstWrongEvent<'_>) -> Option<EventPicture> {
     let PreparedCase { task, case, .. } = prepared;
     let system = task.system.system();
     let (mode, event) = mismatch.event;
-    let guard = EventGuard::of(task, mismatch.event)?;
+    let guard = EventGuard::new(task, mismatch.event)?;
     let scene = scene(shown, &guard);
     let views: Vec<View> = shown.spans.iter().map(|span| scene.view(*span)).collect();
     let event = system.event_name(mode, event)?;
@@ -113,9 +113,9 @@ struct EventGuard {
 }
 
 impl EventGuard {
-    fn of(task: &Task, (mode, event): (usize, usize)) -> Option<Self> {
+    fn new(task: &Task, (mode, event): (usize, usize)) -> Option<Self> {
         let own = task.system.system().modes.get(mode)?;
-        let equations = Affine::of(&task.system);
+        let equations = AffineEquations::new(&task.system);
         let guards = (0..equations.count(mode)).filter(|it| equations.event(mode, *it) == event);
         let watch = event.checked_sub(own.until.len()).and_then(|k| own.watch.get(k));
         let row = match own.until.get(event) {

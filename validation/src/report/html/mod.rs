@@ -67,7 +67,7 @@ impl Exporter for Html {
         let summaries = summary::engines(report);
         let names: Vec<_> = report.engines.iter().map(|it| (it.name, it.library)).collect();
         let looks = looks(&names);
-        let scope = scope::ReportScope::of(report, evidence);
+        let scope = scope::ReportScope::new(report, evidence);
         let (failures, more_failures) = view::failures(report);
         let page = Page {
             report,

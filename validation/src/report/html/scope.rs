@@ -25,7 +25,7 @@ pub(super) struct ReportScope {
 }
 
 impl ReportScope {
-    pub fn of(report: &Report, evidence: &ReportEvidence) -> Self {
+    pub fn new(report: &Report, evidence: &ReportEvidence) -> Self {
         let notes = &evidence.cases;
         let systems = systems(notes);
         let oscillator = notes.is_empty() || notes.iter().any(|it| it.system == OSCILLATOR);

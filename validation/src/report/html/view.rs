@@ -216,7 +216,7 @@ pub(super) struct TroubleSign {
 
 /// The matrix of kinds of trouble, as it is shown.
 pub(super) fn trouble(report: &Report, evidence: &ReportEvidence) -> TroubleTable {
-    let trouble = Trouble::of(report, evidence);
+    let trouble = Trouble::new(report, evidence);
     let sign = |(cell, (engine, _)): (&TroubleCell, &(&'static str, String))| {
         let level = match cell.percent() {
             None => 5,
@@ -248,7 +248,7 @@ pub(super) fn trouble(report: &Report, evidence: &ReportEvidence) -> TroubleTabl
 }
 
 pub(super) fn grazing(report: &Report, evidence: &ReportEvidence) -> GrazingTable {
-    let grazing = Grazing::of(report, evidence);
+    let grazing = Grazing::new(report, evidence);
     let cell = |(setting, seen): (String, Seen)| {
         let (class, glyph, words) = match seen {
             Seen::Right => ("right", "\u{25cf}", "right"),

@@ -22,8 +22,8 @@ pub struct Cost {
     pub rhs_per_event: Option<f64>,
 }
 
-/// Right-hand sides, with a Jacobian counted as its columns and a linear solve as one; nothing of a
-/// row of which nothing was counted.
+/// The number of right-hand side evaluations, where a Jacobian counts as its columns and a linear
+/// solve counts as one; `None` for a row without a count of right-hand sides.
 pub(in crate::report) fn work(row: &ReportRow) -> Option<f64> {
     let jacobians = row.jacobian_evaluations.unwrap_or(0) as f64 * row.traits.states as f64;
     Some(row.rhs_evaluations? as f64 + jacobians + row.linear_solves.unwrap_or(0) as f64)
@@ -34,7 +34,7 @@ pub(in crate::report) struct Common<'a>(pub Vec<(&'a str, usize)>);
 
 impl<'a> Common<'a> {
     /// The common cases of these engines.
-    pub fn of(engines: &[EngineRows<'a>]) -> Self {
+    pub fn new(engines: &[EngineRows<'a>]) -> Self {
         let mut table = engines.iter().filter(|it| it.is_in_the_table());
         let Some(first) = table.next() else { return Self(Vec::new()) };
         let mut cases = ran_on(first);

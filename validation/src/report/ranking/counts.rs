@@ -93,6 +93,6 @@ pub(super) fn defect_units(rows: &[&ReportRow]) -> DefectUnits {
         let defect = row.records.defect;
         [defect.time.size.max, defect.state.max].into_iter().flatten().reduce(f64::max)
     };
-    let spread = Spread::of(rows.iter().filter_map(largest).collect());
+    let spread = Spread::new(rows.iter().filter_map(largest).collect());
     DefectUnits { median: finite(spread.median), q99: finite(spread.q99) }
 }

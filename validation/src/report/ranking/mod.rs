@@ -111,7 +111,7 @@ pub fn ranking(rows: &[ReportRow]) -> Vec<Ranked> {
     let engines = by_engine(rows);
     let cases = case_names(rows);
     let bootstrap = Bootstrap::new(cases.len());
-    let common = Common::of(&engines);
+    let common = Common::new(&engines);
     let costs = common.profiles(&engines);
     let entry = |(it, cost): (&EngineRows<'_>, Cost)| Entry {
         ranked: Ranked { cost, ..figures(it) },
@@ -164,7 +164,7 @@ fn fails_on(rows: &[&ReportRow]) -> Vec<String> {
 
 /// The median of some figures; none where there are none, or where it is infinite.
 fn median(figures: Vec<f64>) -> Option<f64> {
-    finite(Spread::of(figures).median)
+    finite(Spread::new(figures).median)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// The lines; none of a kind of which no case was run.
 pub(super) fn advice(report: &Report) -> Vec<String> {
-    let best = Best::of(report);
+    let best = Best::new(report);
     let lines = [
         ("non-stiff", best.most_right(&best.rows(report, |row| !row.traits.is_stiff))),
         ("stiff", best.most_right(&best.rows(report, |row| row.traits.is_stiff))),
@@ -27,7 +27,7 @@ struct Best<'a> {
 }
 
 impl<'a> Best<'a> {
-    fn of(report: &'a Report) -> Self {
+    fn new(report: &'a Report) -> Self {
         let engines = report.ranking.iter().filter(|it| it.shown_rank() == Some(1)).collect();
         Self { engines, names: short_names(report) }
     }

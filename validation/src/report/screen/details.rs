@@ -86,7 +86,7 @@ fn cells(it: &Ranked) -> [String; 12] {
 
 /// Kinds of trouble by engines, which stand under their ranks.
 fn trouble_table(report: &Report, evidence: &ReportEvidence) -> String {
-    let trouble = Trouble::of(report, evidence);
+    let trouble = Trouble::new(report, evidence);
     if trouble.lines.is_empty() {
         return String::new();
     }

@@ -53,9 +53,9 @@ pub(super) struct EngineTable {
 
 impl EngineTable {
     /// The engines in the order of the ranking.
-    pub fn of(report: &Report) -> Self {
+    pub fn new(report: &Report) -> Self {
         let engines = by_engine(&report.results);
-        let common = Common::of(&engines);
+        let common = Common::new(&engines);
         let names = short_names(report);
         let line = |it: &Ranked| {
             let rows = engines.iter().find(|own| own.engine == it.engine)?;

@@ -54,7 +54,7 @@ fn first_screen(report: &Report, evidence: &ReportEvidence) -> String {
     let derivatives = derivatives::gradient_lines(&report.gradients);
     let below: Vec<String> = power(evidence).into_iter().chain([counts(report)]).collect();
     let bad = unexpected_rows(report);
-    let table = EngineTable::of(report);
+    let table = EngineTable::new(report);
     let fixed = above.len() + table.header_lines() + advice.len() + derivatives.len() + below.len();
     let room = MAX_LINES.saturating_sub(fixed);
     // Failures keep two lines however many engines there are.

@@ -29,7 +29,7 @@ impl Failing {
     }
 
     /// The kind of failure that a bound on a quantity tells.
-    const fn of(quantity: Quantity) -> Self {
+    const fn new(quantity: Quantity) -> Self {
         match quantity {
             Quantity::RunsFailed | Quantity::RestartsFailed => Self::NoResult,
             Quantity::EventsMissed => Self::Misses,
@@ -47,7 +47,7 @@ impl Failing {
 fn kinds(row: &ReportRow) -> Vec<Failing> {
     let failing = |verdict| matches!(verdict, Verdict::Fail | Verdict::Known);
     let bounds = row.bounds.iter().filter(|it| failing(it.verdict));
-    let mut kinds: Vec<Failing> = bounds.map(|it| Failing::of(it.quantity)).collect();
+    let mut kinds: Vec<Failing> = bounds.map(|it| Failing::new(it.quantity)).collect();
     kinds.extend((row.status == "failed").then_some(Failing::NoResult));
     kinds.sort();
     kinds.dedup();

@@ -54,7 +54,7 @@ impl Engine for BuiltIn {
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
-            let integration = Integration::<Oscillator>::of(task, own);
+            let integration = Integration::<Oscillator>::new(task, own);
             return run(&integration, accuracy, limits);
         }
         let integration = Integration::of_system(task);

@@ -113,7 +113,7 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         E::describe(task).map_err(Failure::new)?;
         if let Some(own) = &task.oscillator {
-            let integration = Integration::<E>::of(task, own);
+            let integration = Integration::<E>::new(task, own);
             return run::<M, _>(&integration, accuracy, limits);
         }
         let integration = Integration::of_system(task);

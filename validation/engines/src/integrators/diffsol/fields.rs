@@ -8,7 +8,7 @@ use super::{DenseMatrix, FIRST_STEP};
 use crate::equations::Equations;
 use crate::failure::Failure;
 use crate::integration::{Meter, Oscillator};
-use crate::system::Affine;
+use crate::system::AffineEquations;
 use diffsol::{OdeBuilder, OdeSolverProblem};
 use std::cell::Cell;
 
@@ -43,7 +43,7 @@ impl<E: Equations> DiffsolField<'_, E> {
 #[derive(Clone, Copy)]
 pub(super) enum Field<'a> {
     Oscillator(DiffsolField<'a, Oscillator>),
-    System(DiffsolField<'a, Affine<'a>>),
+    System(DiffsolField<'a, AffineEquations<'a>>),
 }
 
 /// The equations for which diffsol is compiled.
@@ -63,7 +63,7 @@ impl DiffsolEquations for Oscillator {
     }
 }
 
-impl DiffsolEquations for Affine<'_> {
+impl DiffsolEquations for AffineEquations<'_> {
     fn field<'a>(&self, mode: &'a Cell<usize>, meter: &'a Meter) -> Field<'a>
     where
         Self: 'a,

@@ -73,7 +73,7 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
-            let integration = Integration::<Oscillator>::of(task, own);
+            let integration = Integration::<Oscillator>::new(task, own);
             return run::<M, _>(&integration, accuracy, limits);
         }
         run::<M, _>(&Integration::of_system(task), accuracy, limits)

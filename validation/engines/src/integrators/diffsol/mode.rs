@@ -200,5 +200,5 @@ fn solves<M: DiffsolMethod>(statistics: &OdeSolverStatistics) -> usize {
 }
 
 fn plain<S: Numbers>(u: &Vect) -> S {
-    S::of(u.batch_as_slice(0))
+    S::from_slice(u.batch_as_slice(0))
 }

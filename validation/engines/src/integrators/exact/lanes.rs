@@ -22,7 +22,7 @@ struct LaneRecord {
 impl Watcher for LaneRecord {
     fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
         let [p, y, q] = strobe.point();
-        self.outcome.end = Values::of(&[p, y, q, strobe.v()]);
+        self.outcome.end = Values::from_slice(&[p, y, q, strobe.v()]);
         ControlFlow::Break(())
     }
 
@@ -33,7 +33,7 @@ impl Watcher for LaneRecord {
             event: event_between(before, self.phase),
             mode: place(self.phase),
             elapsed: phase.instant.since(&self.start, self.omega).value(),
-            state: Values::of(&[p, y, q, phase.v()]),
+            state: Values::from_slice(&[p, y, q, phase.v()]),
             before: None,
         });
     }

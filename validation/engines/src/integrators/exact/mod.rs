@@ -73,7 +73,7 @@ fn run(task: &OscillatorTask, limits: &Limits) -> Result<Outcome, Failure> {
         };
         elapsed = elapsed.plus(duration);
         let (event, mode) = (event_between(before, phase), place(phase));
-        let (elapsed, state) = (elapsed.value(), Values::of(&state));
+        let (elapsed, state) = (elapsed.value(), Values::from_slice(&state));
         outcome.events.push(Event { event, mode, elapsed, state, before: None });
         before = phase;
         if outcome.events.len() > limits.events {
@@ -139,5 +139,5 @@ fn sample(task: &OscillatorTask, segment: &Segment, samples: &mut Vec<Values>) {
 }
 
 fn state_of(sample: &Sample) -> Values {
-    Values::of(&[sample.state.p, sample.state.y, sample.state.q, sample.v])
+    Values::from_slice(&[sample.state.p, sample.state.y, sample.state.q, sample.v])
 }

@@ -3,7 +3,7 @@
 use crate::engine::{Event, EventDerivatives, Limits, Outcome, RunDerivatives, Task, Work};
 use crate::equations::Numbers;
 use crate::failure::Failure;
-use crate::system::{Rates, SystemProblem, Values};
+use crate::system::{CoefficientDerivatives, SystemProblem, Values};
 use percuss::affine::{self, Time, What};
 use percuss::{Ending, Proved};
 use std::hint::black_box;
@@ -16,7 +16,7 @@ pub(super) fn run(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
     let horizon = problem.clock(task.span);
     let run = problem.solver.run(&problem.start, horizon);
     let mut run = run.map_err(Failure::new)?;
-    let begin = Time::of(&problem.start.time);
+    let begin = Time::new(&problem.start.time);
     let mut record = Record { problem, task, begin, outcome: Outcome::default() };
     let mut segment = run.start();
     for event in run.by_ref() {
@@ -45,18 +45,18 @@ pub(super) fn run(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
 /// stiff systems leave none of them in f64.
 fn gradients(
     problem: &SystemProblem,
-    asked: &[Rates],
+    asked: &[CoefficientDerivatives],
     horizon: f64,
 ) -> Result<Vec<Option<RunDerivatives>>, Failure> {
     let solver = problem.exact.solver::<Proved>().map_err(Failure::new)?;
     let names = asked.iter().map(|it| it.name.as_str());
     let run = solver.run().gradients(names).and_then(|it| it.until(horizon));
     let events: Vec<_> = run.map_err(Failure::new)?.collect();
-    let by = |rates: &Rates| {
+    let by = |rates: &CoefficientDerivatives| {
         let found = |event: &percuss::Event<'_, Proved>| {
             let gradient = event.gradient(&rates.name)?.ok()?;
             let state: Vec<f64> = gradient.state().iter().map(Proved::midpoint).collect();
-            let (time, state) = (gradient.time().midpoint(), Values::of(&state));
+            let (time, state) = (gradient.time().midpoint(), Values::from_slice(&state));
             Some(EventDerivatives { time: Some(time), state: Some(state) })
         };
         let mut events: Vec<_> = events.iter().map(found).collect::<Option<_>>()?;
@@ -72,7 +72,7 @@ fn gradients(
 pub fn end_of_exact_run(problem: &SystemProblem, span: f64) -> Option<Values> {
     let run = problem.solver.run(&problem.start, problem.clock(span)).ok()?;
     let last = run.map(black_box).last()?;
-    Some(Values::of(&last.state))
+    Some(Values::from_slice(&last.state))
 }
 
 struct Record<'a> {
@@ -94,7 +94,7 @@ impl Record<'_> {
         let asked = &self.task.samples[self.outcome.samples.len()..];
         for elapsed in asked.iter().take_while(|elapsed| **elapsed < end) {
             let state = self.state_at(segment, *elapsed);
-            self.outcome.samples.push(Values::of(&state));
+            self.outcome.samples.push(Values::from_slice(&state));
         }
     }
 
@@ -115,7 +115,7 @@ impl Record<'_> {
             event: number,
             mode: event.mode,
             elapsed: self.elapsed(&event.time),
-            state: Values::of(&event.state),
+            state: Values::from_slice(&event.state),
             before: None,
         });
     }
@@ -134,8 +134,8 @@ impl Record<'_> {
         self.outcome.ended_at = self.elapsed(&event.time);
         self.outcome.end = match ending {
             // The run's horizon is the clock's time there, which is rounded.
-            affine::Ending::Horizon => Values::of(&self.state_at(segment, self.task.span)),
-            _ => Values::of(&event.state),
+            affine::Ending::Horizon => Values::from_slice(&self.state_at(segment, self.task.span)),
+            _ => Values::from_slice(&event.state),
         };
         // A run that ends early stays where it is, and one at its horizon has a sample there.
         self.outcome.samples.resize(self.task.samples.len(), self.outcome.end);

@@ -91,7 +91,7 @@ impl Engine for Dop853 {
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
-            let integration = Integration::<Oscillator>::of(task, own);
+            let integration = Integration::<Oscillator>::new(task, own);
             return if self.clock {
                 run::<_, U5>(&integration, [true, false], accuracy, limits)
             } else {

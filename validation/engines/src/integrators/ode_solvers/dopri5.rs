@@ -63,7 +63,7 @@ impl<E: Coordinates> Engine for Dopri5<E> {
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         E::describe(task).map_err(Failure::new)?;
         if let Some(own) = &task.oscillator {
-            let integration = Integration::<E>::of(task, own);
+            let integration = Integration::<E>::new(task, own);
             return run::<_, U4>(&integration, accuracy, limits);
         }
         let integration = Integration::of_system(task);

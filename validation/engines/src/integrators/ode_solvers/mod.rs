@@ -111,5 +111,5 @@ fn plain<E: Equations, D: Dim>(equations: &E, u: &OVector<f64, D>) -> E::State
 where
     DefaultAllocator: Allocator<D>,
 {
-    E::State::of(&u.as_slice()[..equations.dimension()])
+    E::State::from_slice(&u.as_slice()[..equations.dimension()])
 }

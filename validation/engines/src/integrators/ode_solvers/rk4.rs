@@ -52,7 +52,7 @@ impl Engine for Rk4 {
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
-            let integration = Integration::<Oscillator>::of(task, own);
+            let integration = Integration::<Oscillator>::new(task, own);
             return run::<_, U4>(&integration, accuracy, limits);
         }
         let integration = Integration::of_system(task);

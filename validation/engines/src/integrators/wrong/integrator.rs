@@ -68,7 +68,7 @@ impl Engine for Faulty {
             return Err(Failure::new("gave up, on purpose"));
         }
         let meter = Meter::new(limits);
-        let equations = Oscillator::of(&self.parameters(task), task.forcing_angle);
+        let equations = Oscillator::new(&self.parameters(task), task.forcing_angle);
         let integration = Integration::by(asked, task, equations);
         let mut run = Dopri5Run::<_, U4>::new(&integration, tolerance, &meter);
         let mut detection = FaultyDetection {

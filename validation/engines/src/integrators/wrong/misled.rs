@@ -4,7 +4,7 @@
 use crate::engine::Outcome;
 use crate::equations::{Entered, Equations};
 use crate::integration::Integration;
-use crate::system::{Affine, Values};
+use crate::system::{AffineEquations, Values};
 use std::cell::{Cell, RefCell};
 
 /// The fault.
@@ -82,14 +82,14 @@ impl Memory {
 /// Sound equations, and what misleads them.
 #[derive(Clone, Copy)]
 pub(super) struct Misled<'a> {
-    pub(super) sound: Affine<'a>,
+    pub(super) sound: AffineEquations<'a>,
     pub(super) slip: SystemFault,
     pub(super) memory: &'a Memory,
 }
 
 impl Equations for Misled<'_> {
     type State = Values;
-    type Guards = <Affine<'static> as Equations>::Guards;
+    type Guards = <AffineEquations<'static> as Equations>::Guards;
 
     fn dimension(&self) -> usize {
         self.sound.dimension()

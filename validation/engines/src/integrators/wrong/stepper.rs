@@ -56,7 +56,7 @@ impl Engine for ClosedFormStepper {
         let mut run = StepperRun {
             task,
             fault: self.fault,
-            oscillator: Oscillator::of(&task.parameters, task.forcing_angle),
+            oscillator: Oscillator::new(&task.parameters, task.forcing_angle),
             step: task.problem.model.period()
                 / if self.fault == StepperFault::SignChange {
                     COARSE_STEPS_PER_PERIOD
@@ -98,15 +98,15 @@ impl StepperRun<'_> {
             };
             let (next, on_surface) = self.after_event(phase, guard, at, &there);
             (t, phase, state) = (at, next, on_surface);
-            let (mode, before) = (place(phase), Some(Values::of(&there)));
-            let state = Values::of(&state);
+            let (mode, before) = (place(phase), Some(Values::from_slice(&there)));
+            let state = Values::from_slice(&state);
             outcome.events.push(Event { event: guard, mode, elapsed: t, state, before });
             if outcome.events.len() > limits.events {
                 return Err(Failure::new(format!("gave up after {} events", limits.events)));
             }
         }
-        outcome.end = Values::of(&end);
-        outcome.samples = sampler.finish(end).iter().map(|it| Values::of(it)).collect();
+        outcome.end = Values::from_slice(&end);
+        outcome.samples = sampler.finish(end).iter().map(|it| Values::from_slice(it)).collect();
         let steps = outcome.events.len() as u64 + 1;
         outcome.work = Work { rhs_evaluations: self.evaluations, steps, ..Work::default() };
         Ok(outcome)

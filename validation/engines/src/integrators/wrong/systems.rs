@@ -15,7 +15,7 @@ use crate::integration::{
 };
 use crate::integrators::ode_solvers::DOPRI5;
 use crate::integrators::ode_solvers::dopri5::{self, Dopri5Run};
-use crate::system::{Affine, CheckedSystem, Direction, System, Values};
+use crate::system::{AffineEquations, CheckedSystem, Direction, System, Values};
 use nalgebra::Dyn;
 use std::sync::Arc;
 
@@ -134,7 +134,7 @@ impl FaultySystemDetection<'_> {
         if let (None, Some(passed)) = (found, sound) {
             self.memory.overlook(passed.guard);
         }
-        let equations = Affine::of(&self.task.system);
+        let equations = AffineEquations::new(&self.task.system);
         let guards = equations.guards(from.mode, stretch.last(), stretch.end.as_ref());
         self.memory.notice_what_is_inside(guards.as_ref());
         found
@@ -152,7 +152,7 @@ impl FaultySystemDetection<'_> {
         if self.slip != SystemFault::FiresAtStart || from.t > 0.0 || from.began > 0.0 {
             return;
         }
-        let equations = Affine::of(&self.task.system);
+        let equations = AffineEquations::new(&self.task.system);
         let zero = (0..equations.count(from.mode))
             .filter(|guard| from.entered.is_zero(*guard) && !equations.ends(from.mode, *guard));
         // An event that counts in both directions has two guards; one will do.

@@ -52,11 +52,11 @@ pub fn calibrate(
     let reference = reference(case, &plan)?;
     let null = |number| {
         let run = exact_section(case, *case.parameters(), &plan, RunKind::Calibration, number)?;
-        Ok(Null::of(&run, &reference))
+        Ok(Null::new(&run, &reference))
     };
     let nulls: Result<Vec<Null>, Failure> = (0..runs).into_par_iter().map(null).collect();
     let nulls = nulls?;
-    let scales = STATISTICS.map(|name| DistanceScale::of(name, &plan, &nulls));
+    let scales = STATISTICS.map(|name| DistanceScale::new(name, &plan, &nulls));
     let all = nulls
         .iter()
         .flat_map(|null| scales.iter().map(|it| (it.deviations_above_mean(null), it.name)));
@@ -74,7 +74,7 @@ struct Null {
 }
 
 impl Null {
-    fn of(section: &RunSection, reference: &RunSection) -> Self {
+    fn new(section: &RunSection, reference: &RunSection) -> Self {
         let signed = BTreeMap::from([
             ("lyapunov", section.lyapunov - reference.lyapunov),
             ("drift", section.drift - reference.drift),
@@ -98,7 +98,7 @@ struct DistanceScale {
 }
 
 impl DistanceScale {
-    fn of(name: &'static str, plan: &ComparisonPlan, nulls: &[Null]) -> Self {
+    fn new(name: &'static str, plan: &ComparisonPlan, nulls: &[Null]) -> Self {
         let is_signed = nulls.iter().any(|null| null.signed.contains_key(name));
         let is_share = name.starts_with("ks") || name.ends_with("share") || name == "phase_words";
         let floor =
@@ -163,7 +163,7 @@ mod tests {
             map_errors: vec![0.0; 3],
             sorted: std::array::from_fn(|_| vec![0.0, 1.0]),
         };
-        let null = Null::of(&section(0.25, 0.5), &section(0.75, 0.125));
+        let null = Null::new(&section(0.25, 0.5), &section(0.75, 0.125));
         assert_eq!((null.value("drift"), null.value("lyapunov")), (-0.5, 0.375));
     }
 
@@ -173,7 +173,7 @@ mod tests {
     fn a_run_so_many_deviations_off_has_the_limit_of_so_many() {
         let logarithms = [1.0_f64, 2.0, 3.0].map(f64::exp);
         let scale =
-            DistanceScale::of("wasserstein_p", &PLAN, &nulls("wasserstein_p", &logarithms, false));
+            DistanceScale::new("wasserstein_p", &PLAN, &nulls("wasserstein_p", &logarithms, false));
         for z in [-1.5, 0.5, 4.0_f64] {
             let value = (2.0 + z).exp();
             let null = &nulls("wasserstein_p", &[value], false)[0];
@@ -182,7 +182,7 @@ mod tests {
         }
         for sign in [1.0, -1.0] {
             let differences = [0.1, 0.2, 0.3].map(|value| sign * value);
-            let scale = DistanceScale::of("drift", &PLAN, &nulls("drift", &differences, true));
+            let scale = DistanceScale::new("drift", &PLAN, &nulls("drift", &differences, true));
             for z in [0.5, 3.0] {
                 let value = 0.2 + 0.1 * z;
                 let null = &nulls("drift", &[sign * value], true)[0];
@@ -200,7 +200,7 @@ mod tests {
     fn the_floor_forgives_what_is_below_it() {
         let values = [1e-3_f64, 2e-3, 3e-3];
         let coarse = ComparisonPlan { periods: 100, ..PLAN };
-        let scale = DistanceScale::of("ks_p", &coarse, &nulls("ks_p", &values, false));
+        let scale = DistanceScale::new("ks_p", &coarse, &nulls("ks_p", &values, false));
         assert_eq!(scale.floor, MIN_SHARE_PERIODS / 100.0);
         assert_eq!(scale.deviations_above_mean(&nulls("ks_p", &[scale.floor], false)[0]), 0.0);
         assert_eq!(scale.limit(0.0), scale.floor);

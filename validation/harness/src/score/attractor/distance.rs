@@ -64,7 +64,7 @@ pub fn distances(section: &RunSection, reference: &RunSection) -> Distances {
     result.insert("drift", (section.drift - reference.drift).abs());
     let errors = &section.map_errors;
     let large = errors.iter().filter(|error| **error > SCORED_ERROR).count();
-    result.insert(MAP_ERROR_MEDIAN, Spread::of(errors.clone()).median);
+    result.insert(MAP_ERROR_MEDIAN, Spread::new(errors.clone()).median);
     result.insert(MAP_ERROR_SHARE, large as f64 / errors.len() as f64);
     result
 }

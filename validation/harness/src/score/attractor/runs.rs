@@ -94,5 +94,5 @@ pub(super) fn section(
     let task = run_of(*case.parameters(), case.problem.start, plan.transient + plan.periods)
         .ok_or_else(|| Failure::new("the start is refused"))?;
     let outcome = answer(engine, &Task::of_oscillator(&task)?, accuracy, limits)?;
-    RunSection::of(&task, &outcome, plan.transient)
+    RunSection::new(&task, &outcome, plan.transient)
 }

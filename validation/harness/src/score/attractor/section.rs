@@ -43,11 +43,11 @@ impl RunSection {
     ///
     /// # Errors
     /// A run that lacks samples or holds a number that is not finite.
-    pub fn of(task: &OscillatorTask, outcome: &Outcome, transient: u32) -> Result<Self, Failure> {
+    pub fn new(task: &OscillatorTask, outcome: &Outcome, transient: u32) -> Result<Self, Failure> {
         Self::judged(task, outcome, transient, &task.problem)
     }
 
-    /// The section as [`RunSection::of`] makes it, with the exact map of another problem: the one
+    /// The section as [`RunSection::new`] makes it, with the exact map of another problem: the one
     /// that the run should have solved.
     pub(super) fn judged(
         task: &OscillatorTask,

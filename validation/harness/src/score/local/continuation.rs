@@ -51,7 +51,7 @@ pub(super) enum Found {
     Another(Exact),
     /// The record's event, earlier than is allowed.
     Late(Exact),
-    /// Nothing by then: the event that comes next, if one does.
+    /// No event within the time that is allowed; the exact event after it, if there is one.
     Nothing(Option<Exact>),
     /// The continuation ends before the record.
     Ended(Ending),

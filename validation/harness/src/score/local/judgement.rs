@@ -22,7 +22,7 @@ pub struct Allowance {
 impl Allowance {
     /// What a class of methods is allowed at a unit of error.
     #[must_use]
-    pub const fn of(class: &ClassBounds, tolerance: f64) -> Self {
+    pub const fn new(class: &ClassBounds, tolerance: f64) -> Self {
         let ClassBounds { time, state, sample, delay, .. } = *class;
         Self { tolerance, time, state, sample, delay }
     }
@@ -245,6 +245,6 @@ impl Defects {
     /// The quantiles of defects, of which the sign does not count.
     #[must_use]
     pub fn spread(defects: &[f64]) -> Spread {
-        Spread::of(defects.iter().map(|it| it.abs()).collect())
+        Spread::new(defects.iter().map(|it| it.abs()).collect())
     }
 }

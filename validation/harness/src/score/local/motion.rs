@@ -37,7 +37,7 @@ pub(super) struct Value {
 }
 
 impl Motion {
-    pub(super) fn of(checked: &Arc<CheckedSystem>) -> Self {
+    pub(super) fn new(checked: &Arc<CheckedSystem>) -> Self {
         let system = checked.system();
         let rows = |mode: &Mode| -> Vec<RowDVector<f64>> {
             let until = mode.until.iter().map(|it| &it.guard);

@@ -21,7 +21,7 @@ impl JudgedRun {
     pub(super) fn new(problem: &Arc<SystemProblem>, task: &Task) -> Self {
         Self {
             problem: Arc::clone(problem),
-            motion: Motion::of(&task.system),
+            motion: Motion::new(&task.system),
             wide: OnceLock::new(),
             judged_until: task.span,
             shortest: 0.0,

@@ -17,7 +17,7 @@ pub(super) fn judge(
     outcome: &Outcome,
     found: &mut LocalJudgement,
 ) {
-    let begin = Time::of(&problem.start.time);
+    let begin = Time::new(&problem.start.time);
     let mut record = 0;
     for (n, (elapsed, own)) in task.samples.iter().zip(&outcome.samples).enumerate() {
         if *elapsed > outcome.ended_at {

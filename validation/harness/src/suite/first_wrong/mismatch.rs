@@ -112,19 +112,19 @@ impl EventMismatch {
         let first = [missed, spurious].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
         match first {
             Some((_, MismatchKind::Spurious, j)) => {
-                Some(Self::of(MismatchKind::Spurious, &engine, j, pairs))
+                Some(Self::new(MismatchKind::Spurious, &engine, j, pairs))
             }
-            Some((_, kind, i)) => Some(Self::of(kind, &truth, i, pairs)),
+            Some((_, kind, i)) => Some(Self::new(kind, &truth, i, pairs)),
             None if row.judgement.verdict == Verdict::Fail => {
                 let (i, j) = farthest_pair(prepared, (&truth, &engine), &pairs)?;
                 let reach = (truth[i].0 - engine[j].0).abs();
-                Some(Self { reach, ..Self::of(MismatchKind::Displaced, &truth, i, pairs) })
+                Some(Self { reach, ..Self::new(MismatchKind::Displaced, &truth, i, pairs) })
             }
             None => None,
         }
     }
 
-    fn of(kind: MismatchKind, events: &Events, i: usize, pairs: Vec<(usize, usize)>) -> Self {
+    fn new(kind: MismatchKind, events: &Events, i: usize, pairs: Vec<(usize, usize)>) -> Self {
         let (at, event) = events[i];
         let others = events.iter().map(|it| (it.0 - at).abs()).filter(|apart| *apart > 0.0);
         let reach = others.fold(f64::INFINITY, f64::min);
@@ -169,7 +169,7 @@ fn pairs(prepared: &PreparedCase, measures: &Measures, outcome: &Outcome) -> Vec
         near.collect::<Vec<_>>()
     };
     let (all, own) = (near(names.of_truth(truth)), near(names.of_outcome(task, truth, outcome)));
-    Matching::of(&all, &own, window).pairs
+    Matching::new(&all, &own, window).pairs
 }
 
 /// The pair whose times differ most for what errors have grown to there.

@@ -63,12 +63,12 @@ struct UnresolvedJson<'a> {
 }
 
 impl<'a> Json<'a> {
-    pub(in crate::cli) fn of(survey: &'a Survey) -> Self {
+    pub(in crate::cli) fn new(survey: &'a Survey) -> Self {
         let Survey { system, limits, basins, section } = survey;
         let plane = &basins.plane;
         let listed = basins.attractors.iter().enumerate();
         let mut attractors: Vec<_> =
-            listed.map(|(id, it)| AttractorJson::of(survey, id, it)).collect();
+            listed.map(|(id, it)| AttractorJson::new(survey, id, it)).collect();
         if basins.fraction(Label::Escaping) > 0.0 {
             attractors.push(AttractorJson::escaping(survey));
         }
@@ -89,14 +89,14 @@ impl<'a> Json<'a> {
             inadmissible: basins.fraction(Label::Inadmissible),
             ended: basins.fraction(Label::Ended),
             unresolved_examples: {
-                let of = |it| UnresolvedJson::of(system, it);
+                let of = |it| UnresolvedJson::new(system, it);
                 basins.unresolved.iter().map(of).collect()
             },
-            uncertainty: UncertaintyJson::of(&uncertainty_of_labels(
+            uncertainty: UncertaintyJson::new(&uncertainty_of_labels(
                 &basins.labels,
                 plane.columns as usize,
             )),
-            basin_entropy: EntropyJson::of(&entropy_of_labels(
+            basin_entropy: EntropyJson::new(&entropy_of_labels(
                 &basins.labels,
                 plane.columns as usize,
                 BOX_CELLS,
@@ -106,7 +106,7 @@ impl<'a> Json<'a> {
 }
 
 impl<'a> AttractorJson<'a> {
-    fn of(survey: &'a Survey, id: usize, attractor: &'a ReturnAttractor) -> Self {
+    fn new(survey: &'a Survey, id: usize, attractor: &'a ReturnAttractor) -> Self {
         let points = &attractor.points;
         let from =
             if attractor.orbit.is_some() { 0 } else { points.len().saturating_sub(MAX_POINTS) };
@@ -118,7 +118,7 @@ impl<'a> AttractorJson<'a> {
             period: attractor.period(),
             fraction: survey.basins.fraction(label),
             fraction_error: survey.basins.fraction_error(label),
-            points: points[from..].iter().map(|it| PointJson::of(&survey.system, it)).collect(),
+            points: points[from..].iter().map(|it| PointJson::new(&survey.system, it)).collect(),
             multipliers: orbit.flat_map(|it| it.multipliers.iter().copied()).collect(),
             lyapunov_per_return: attractor.lyapunov_per_return,
             lyapunov_error: attractor.lyapunov_error,
@@ -145,15 +145,15 @@ impl<'a> AttractorJson<'a> {
 }
 
 impl<'a> PointJson<'a> {
-    fn of(system: &'a System, point: &'a Return<f64>) -> Self {
+    fn new(system: &'a System, point: &'a Return<f64>) -> Self {
         Self { mode: &system.modes[point.mode].name, state: &point.state }
     }
 }
 
 impl<'a> UnresolvedJson<'a> {
-    fn of(system: &'a System, start: &'a UnresolvedReturn) -> Self {
+    fn new(system: &'a System, start: &'a UnresolvedReturn) -> Self {
         let UnresolvedReturn { point, lyapunov_per_return, recurrence } = start;
-        let point = PointJson::of(system, point);
+        let point = PointJson::new(system, point);
         Self { point, lyapunov_per_return: *lyapunov_per_return, recurrence: *recurrence }
     }
 }

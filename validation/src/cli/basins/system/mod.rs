@@ -27,7 +27,7 @@ pub(in crate::cli) struct Survey {
 }
 
 impl Survey {
-    pub(super) fn of(
+    pub(super) fn new(
         chosen: &ChosenSystem,
         grid: &GridFlags,
         section: &SectionFlags,
@@ -58,7 +58,7 @@ impl Survey {
 
     pub(super) fn show(&self, shown: AttractorFormat, out: &mut dyn Write) -> Result<()> {
         match shown {
-            AttractorFormat::Json => output::json(out, &json::Json::of(self)),
+            AttractorFormat::Json => output::json(out, &json::Json::new(self)),
             AttractorFormat::Table => Ok(out.write_all(table::text(self).as_bytes())?),
         }
     }
@@ -74,7 +74,7 @@ impl Survey {
         let ReturnBasins { plane, attractors, labels, .. } = &self.basins;
         let (columns, rows) = (plane.columns as usize, plane.rows as usize);
         let ids: Vec<i32> = (0..attractors.len()).map(|k| Label::Attractor(k).number()).collect();
-        let meta = serde_json::to_vec(&json::Json::of(self))?;
+        let meta = serde_json::to_vec(&json::Json::new(self))?;
         let mut archive = Npz::new(Vec::new());
         archive.add("labels", &[rows, columns], labels.iter().map(|label| label.number()))?;
         for (axis, name) in self.axes().into_iter().enumerate() {

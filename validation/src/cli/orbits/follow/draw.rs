@@ -48,7 +48,7 @@ fn lines(branch: &[DrawnOrbit], bifurcations: &[DrawnBifurcation]) -> Vec<Layer>
     let alike = |a: &DrawnOrbit, b: &DrawnOrbit| {
         a.is_stable == b.is_stable && a.at.points.len() == b.at.points.len()
     };
-    let span = Span::of(branch);
+    let span = Span::new(branch);
     let (mut layers, mut begin, mut before) = (Vec::new(), 0, None);
     for stretch in branch.chunk_by(alike) {
         let end = begin + stretch.len();
@@ -77,7 +77,7 @@ struct Span([f64; 2]);
 const MAX_DETOUR_RATIO: f64 = 4.0;
 
 impl Span {
-    fn of(branch: &[DrawnOrbit]) -> Self {
+    fn new(branch: &[DrawnOrbit]) -> Self {
         let values = branch.iter().map(|it| it.at.value);
         let points = branch.iter().flat_map(|it| it.at.points.iter().copied());
         Self([range(values), range(points)])

@@ -229,7 +229,7 @@ pub(crate) fn follow_branch(
         period: branch.as_ref().ok().and_then(|it| it.points.first()).map(|it| it.orbit.period()),
         branch: branch
             .as_ref()
-            .map(|it| BranchJson::of(it, parameter, complete))
+            .map(|it| BranchJson::new(it, parameter, complete))
             .unwrap_or_default(),
         doubled,
     };
@@ -301,7 +301,7 @@ fn doubled_branch(
     let period = branch.points.first()?.orbit.period();
     let own = |it: &&_| is_flip_of(it, period);
     let flip = branch.bifurcations.iter().find(own)?;
-    let doubling = Doubling::of(family, flip, from, to, &mut |share| seen.share(share));
+    let doubling = Doubling::new(family, flip, from, to, &mut |share| seen.share(share));
     let Doubling { criticality, branch } = doubling?;
     let complete = matches!(branch.ending, BranchEnding::Reached | BranchEnding::Left);
     Some(Doubled {
@@ -311,7 +311,7 @@ fn doubled_branch(
             Criticality::Subcritical => "subcritical",
         },
         period: 2 * period,
-        branch: BranchJson::of(&branch, family.parameter(), complete),
+        branch: BranchJson::new(&branch, family.parameter(), complete),
     })
 }
 

@@ -38,7 +38,7 @@ pub(super) fn run(
     let bar = long_work::run_bar(outputs.is_terminal());
     let plan = PlannedRun::new(&solver, arguments, bar.as_ref())?;
     let end = outputs.together(|opened| {
-        let sinks = opened.iter_mut().map(|(format, out)| match PictureFormat::of(*format) {
+        let sinks = opened.iter_mut().map(|(format, out)| match PictureFormat::new(*format) {
             None => sink_of_rows(*format, &system, out),
             Some(format) => {
                 let (flags, stops) = (&arguments.picture, Vec::new());

@@ -103,7 +103,7 @@ impl SweepVerb for SystemBasinWork {
         let ReturnBasins { plane, attractors: found, labels: all, .. } = &survey.basins;
         let size = [plane.columns, plane.rows];
         match self.wanted {
-            Wanted::Labels => records::bytes(&labels(size, all, found.len(), &Json::of(&survey))?),
+            Wanted::Labels => records::bytes(&labels(size, all, found.len(), &Json::new(&survey))?),
             Wanted::Attractors => records::bytes(&attractors(&survey)),
         }
     }
