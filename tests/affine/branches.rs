@@ -259,3 +259,48 @@ fn the_percussive_oscillators_branches_are_those_of_its_system() {
     beside_the_oscillators(4, [1.56, 1.6], &[("xi", 0.1)]);
     beside_the_oscillators(2, [1.4, 1.2], &[("xi", 0.1)]);
 }
+
+/// A linear oscillator whose passages of a level are watched: the level is the section and the
+/// parameter, so that the points of one orbit lie short of the next section, or beyond it.
+const LEVEL: &str = r#"
+schema = 1
+name = "level"
+states = ["x", "v"]
+forcing = { omega = 1.25, phi = 0 }
+[parameters]
+z = 0.25
+th = 0.5
+[[mode]]
+name = "m"
+equations = ["x' = v", "v' = cos - x - 2*z*v"]
+watch = [{ name = "level", guard = "x > th", direction = "DIRECTION" }]
+[start]
+mode = "m"
+x = 0
+v = 0
+"#;
+
+#[test]
+fn a_watched_section_moves_with_the_parameter() {
+    let omega: f64 = 1.25;
+    let amplitude = (1.0 - omega.powi(2)).hypot(2.0 * 0.25 * omega).recip();
+    for (direction, sign) in [("rising", 1.0), ("falling", -1.0)] {
+        let text = LEVEL.replace("DIRECTION", direction);
+        let varied = Varied::new(&text, Section::event("level"), "th", &[]);
+        for ends in [[1.1, 0.3], [0.3, 1.1], [0.5, 0.51], [0.7, -0.7]] {
+            let guess = varied.settled_return(ends[0], 40);
+            let branch = varied.follow(&guess, 1, ends);
+            assert_eq!(branch.ending, BranchEnding::Reached, "{direction} {ends:?}");
+            assert!(branch.bifurcations.is_empty(), "{:?}", bifurcation_rows(&branch));
+            for (value, orbit) in &branch.points {
+                let [x, v] = orbit.points[0].state[..] else { panic!("two states") };
+                let speed = sign * omega * (amplitude.powi(2) - value.powi(2)).sqrt();
+                assert!((x - value).abs() < 1e-12, "{x} at {}", value);
+                assert!((v - speed).abs() < 1e-10, "{v} is not {speed} at {}", value);
+                let period = std::f64::consts::TAU / omega;
+                assert!((orbit.time - period).abs() < 1e-12, "{}", orbit.time);
+                assert_eq!(orbit.events.len(), 1);
+            }
+        }
+    }
+}

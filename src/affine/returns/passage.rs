@@ -85,13 +85,17 @@ impl<T: Number> SectionMap<'_, T> {
     /// # Errors
     /// A motion that does not return.
     pub fn passage(&self, place: &Place<T>) -> Result<Passage<T>, NoReturn> {
-        let mut walk = Walk::begin(self, place, false);
+        let mut walk = Walk::beside(self, place);
         let mut variation = Variation::of_each_state(self.solver());
         let mut events = Vec::new();
         let event = walk.next_with_derivative(&mut |from, to| {
             variation.pass(self.solver(), from, to);
             events.extend(Guard::new(&to.what));
         })?;
+        let onto = walk.onto_section.and_then(|onto| events.iter().position(|it| *it == onto));
+        if let Some(onto) = onto {
+            events.remove(onto);
+        }
         let image = walk.place()?;
         let (at_return, delays) = (variation.columns.clone(), variation.delays.clone());
         variation.settle(self.solver(), &event);

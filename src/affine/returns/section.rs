@@ -1,7 +1,7 @@
 //! Sections through the motions of a system, and the events of a system that they name.
 
 use crate::affine::model::error::SystemError;
-use crate::affine::model::system::System;
+use crate::affine::model::system::{Direction, System};
 use crate::affine::solver::event::What;
 use std::fmt;
 
@@ -126,6 +126,22 @@ impl Guard {
             What::Until(mode, index) => Some(Self { mode, index, is_watched: false }),
             What::Watch(mode, index) => Some(Self { mode, index, is_watched: true }),
             What::Start | What::Limit(..) | What::End(_) => None,
+        }
+    }
+
+    /// The index among all guards of its mode: those of `until`, then those of `watch`.
+    pub(super) fn place_among_all(&self, system: &System) -> usize {
+        let before = if self.is_watched { system.modes[self.mode].until.len() } else { 0 };
+        before + self.index
+    }
+
+    /// Whether the event is one where its guard changes at this rate.
+    pub(super) fn fires_at_rate(&self, system: &System, rate: f64) -> bool {
+        let watch = self.is_watched.then(|| &system.modes[self.mode].watch[self.index]);
+        match watch.map_or(Direction::Rising, |it| it.direction) {
+            Direction::Rising => rate > 0.0,
+            Direction::Falling => rate < 0.0,
+            Direction::Both => rate != 0.0,
         }
     }
 

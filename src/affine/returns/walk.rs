@@ -46,6 +46,10 @@ pub(super) struct Walk<'a, T: Number> {
     last: Event<T>,
     /// The number of the next strobe from the angle's first after time zero.
     strobe: f64,
+    /// The place where the motion begins, if it only approximates a point of the section.
+    beside: Option<Place<T>>,
+    /// The event by which it came onto the section from there, if it lay short of that.
+    pub onto_section: Option<Guard>,
 }
 
 impl<'a, T: Number> Walk<'a, T> {
@@ -56,7 +60,14 @@ impl<'a, T: Number> Walk<'a, T> {
         let until = map.horizon(&place.time, strobe);
         let run = map.solver().run_at(place, until);
         let last = run.start();
-        Self { map, run, last, strobe }
+        Self { map, run, last, strobe, beside: None, onto_section: None }
+    }
+
+    /// The motion from a place that approximates a point of the section. Where it lies short of an
+    /// event's guard, the motion first comes onto the section, which is no return.
+    pub fn beside(map: &'a SectionMap<'a, T>, place: &Place<T>) -> Self {
+        let beside = matches!(map.section().returns, Returning::Events(_)).then(|| place.clone());
+        Self { beside, ..Self::begin(map, place, false) }
     }
 
     /// Lets a motion of which many returns are asked for search its events beyond strobes.
@@ -78,7 +89,7 @@ impl<'a, T: Number> Walk<'a, T> {
             let event = self.run.next().ok_or(NoReturn::Ended(Ending::Horizon))?;
             see(&self.last, &event);
             self.last.clone_from(&event);
-            if !self.returns()? {
+            if !self.returns()? || self.comes_onto_section(&event) {
                 continue;
             }
             self.strobe += 1.0;
@@ -105,6 +116,37 @@ impl<'a, T: Number> Walk<'a, T> {
         } else {
             Ok(event)
         }
+    }
+
+    /// Whether an event, the first of the section's, is the crossing of the guard beside which the
+    /// motion began: the guard has gone as far as it was short there, to rounding.
+    ///
+    /// From a point of the section the guard goes on and has to come back, which takes longer.
+    fn comes_onto_section(&mut self, event: &Event<T>) -> bool {
+        /// The largest distance that the guard goes, beside that by which it was short: the rate may
+        /// change on the way.
+        const MAX_DISTANCE_RATIO: f64 = 2.0;
+        /// The rounding of the guard, in eps of its size: a place on the section may lie short of it
+        /// by what the modal co-ordinates round off.
+        const ROUNDINGS: f64 = 1024.0;
+        let (Some(place), Some(guard)) = (self.beside.take(), Guard::new(&event.what)) else {
+            return false;
+        };
+        let (solver, system) = (self.map.solver(), self.map.system());
+        if [place.mode, event.mode] != [guard.mode; 2] {
+            return false;
+        }
+        let row = (guard.mode, guard.place_among_all(system));
+        let at = |time, state: &[T]| solver.guard_and_rate(row, time, state).map(T::to_f64);
+        let [value, rate, size] = at(&place.time, &place.state);
+        let [_, rate_there, _] = at(&event.time, &event.state);
+        let gone = rate.abs() * event.time.since(&place.time).value().to_f64();
+        let short = (-value * rate.signum()).max(0.0);
+        let comes_onto = guard.fires_at_rate(system, rate)
+            && rate * rate_there > 0.0
+            && gone <= MAX_DISTANCE_RATIO * short + ROUNDINGS * f64::EPSILON * size;
+        self.onto_section = comes_onto.then_some(guard);
+        comes_onto
     }
 
     /// Whether the last event is a return.

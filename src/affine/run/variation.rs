@@ -136,6 +136,22 @@ impl<T: Number> Solver<T> {
         self.rates_of(mode, &self.complete(state, time))
     }
 
+    /// The value of a mode's guard at a state, its rate, and the largest value that entries as large
+    /// as the state's could give it; guards of `watch` follow those of `until`.
+    pub(in crate::affine) fn guard_and_rate(
+        &self,
+        (mode, guard): (usize, usize),
+        time: &Time<T>,
+        state: &[T],
+    ) -> [T; 3] {
+        let (own, z) = (&self.modes[mode], self.complete(state, time));
+        let along = |entries: &Vector<T>| dot(&own.rows[guard], entries, own.flow.dimension);
+        let largest =
+            z.iter().fold(T::zero(), |most, it| if it.abs() > most { it.abs() } else { most });
+        let size = own.rows[guard].iter().fold(T::zero(), |sum, it| sum + it.abs() * largest);
+        [along(&z), along(&self.rates_of(mode, &z)), size]
+    }
+
     /// The rates M z.
     fn rates_of(&self, mode: usize, z: &Vector<T>) -> Vector<T> {
         let own = &self.modes[mode];
