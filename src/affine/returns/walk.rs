@@ -123,11 +123,11 @@ impl<'a, T: Number> Walk<'a, T> {
     ///
     /// From a point of the section the guard goes on and has to come back, which takes longer.
     fn comes_onto_section(&mut self, event: &Event<T>) -> bool {
-        /// The largest distance that the guard goes, beside that by which it was short: the rate may
+        /// The largest distance that the guard goes, in that by which it was short: its rate may
         /// change on the way.
         const MAX_DISTANCE_RATIO: f64 = 2.0;
-        /// The rounding of the guard, in eps of its size: a place on the section may lie short of it
-        /// by what the modal co-ordinates round off.
+        /// The rounding of the guard, in eps of its size: a place on the section may lie short of
+        /// it by what the modal co-ordinates round off.
         const ROUNDINGS: f64 = 1024.0;
         let (Some(place), Some(guard)) = (self.beside.take(), Guard::new(&event.what)) else {
             return false;

@@ -136,8 +136,8 @@ impl<T: Number> Solver<T> {
         self.rates_of(mode, &self.complete(state, time))
     }
 
-    /// The value of a mode's guard at a state, its rate, and the largest value that entries as large
-    /// as the state's could give it; guards of `watch` follow those of `until`.
+    /// The value of a mode's guard at a state, its rate, and the largest value that entries as
+    /// large as the state's could give it; guards of `watch` follow those of `until`.
     pub(in crate::affine) fn guard_and_rate(
         &self,
         (mode, guard): (usize, usize),
