@@ -21,10 +21,12 @@ const CHOICE_MODULE: &str = "//! Which fault is chosen.\n\
     pub fn is(number: u32) -> bool { *CHOSEN == number }\n";
 
 /// The packages whose library gets the module, with the folder of their sources.
-pub const LIBRARIES: [&str; 5] = [
+pub const LIBRARIES: [&str; 7] = [
     "src",
     "validation/engines/src",
     "validation/harness/src",
+    "validation/bench/src",
+    "validation/paper/src",
     "validation/pictures/src",
     "validation/src",
 ];
@@ -32,8 +34,14 @@ pub const LIBRARIES: [&str; 5] = [
 /// The package of the solver.
 pub const SOLVER: &[&str] = &["percuss"];
 /// The packages of the harness; the last one compiles all of them.
-pub const VALIDATION: &[&str] =
-    &["percuss-engines", "percuss-pictures", "percuss-harness", "percuss-validation"];
+pub const VALIDATION: &[&str] = &[
+    "percuss-engines",
+    "percuss-pictures",
+    "percuss-harness",
+    "percuss-bench",
+    "percuss-paper",
+    "percuss-validation",
+];
 /// Everything that the solver can do is tested.
 const FEATURES: [&str; 2] = ["--features", "lanes,parallel"];
 
