@@ -4,7 +4,6 @@
 use super::map::SectionMap;
 use super::section::Guard;
 use super::walk::{NoReturn, Walk};
-use crate::affine::arithmetic::vector::dot;
 use crate::affine::run::place::Place;
 use crate::affine::run::variation::is_at_once;
 use crate::affine::solver::event::Event;
@@ -44,11 +43,9 @@ impl SectionMap<'_, f64> {
         if is_at_once(from, to) {
             return f64::INFINITY;
         }
-        let solver = self.solver();
-        let own = &solver.modes[guard.mode];
-        let until = solver.system().modes[guard.mode].until.len();
-        let row = &own.rows[guard.index + if guard.is_watched { until } else { 0 }];
-        let rates = solver.rates(guard.mode, &to.time, &solver.state_at(from, &to.time));
-        dot(row, &rates, own.flow.dimension)
+        let row = (guard.mode, guard.place_among_all(self.system()));
+        let state = self.solver().state_at(from, &to.time);
+        let [_, rate, _] = self.solver().guard_and_rate(row, &to.time, &state);
+        rate
     }
 }

@@ -136,7 +136,7 @@ impl<M: Motions> AttractorSearch<'_, M> {
         known: &[KnownAttractor<M::Coordinates>],
         returns: u64,
     ) -> Found<M, usize> {
-        // Of a motion whose start is a return, that is one of so many.
+        // The start of a motion is the first of these returns where the map counts it.
         let further = returns - u64::from(M::FIRST_RETURN_IS_START);
         match self.motions.recognise(known, from, further) {
             Ok(_) => Ok(None),
