@@ -3,6 +3,7 @@
 use super::{enclosed_events, events, names, system};
 use percuss::affine::DoubleDouble;
 use percuss::affine::{Solver, Time};
+use percuss::{Ending, Proved};
 
 /// A watched motion of one mode.
 fn watched_system(states: &[&str], equations: &[&str], guards: &[&str], start: &str) -> String {
@@ -97,4 +98,35 @@ fn fast_turns_keep_their_phase() {
         let off = (own - truth.words().0).abs();
         assert!(off < 1e-14, "{off:e}");
     }
+}
+
+/// x' = cos t - x follows the forcing as (cos t + sin t)/2; sine and cosine of 1e22 by mpmath 1.3.0.
+#[test]
+fn many_turns_of_the_forcing_have_proved_digits() {
+    const FOLLOWED: f64 = 0.5 * (0.523_214_785_395_138_945_5 - 0.852_200_849_767_188_801_8);
+    let text = watched_system(&["x"], &["x' = cos - x"], &["x > 2"], "x = 0");
+    let forced = system(&text.replace("[[mode]]", "forcing = { omega = 1 }\n[[mode]]"));
+    let solver = forced.solver::<Proved>().unwrap();
+    let end = solver.run().until(1e22).unwrap().last().unwrap();
+    assert_eq!(end.ending(), Some(Ending::Horizon));
+    let x = end.state()[0].midpoint();
+    assert!((x - FOLLOWED).abs() < 1e-16, "{x}");
+    assert!(solver.run().until(1e300).unwrap().last().unwrap().state()[0].midpoint().abs() < 0.75);
+}
+
+/// At rates of 1e60 the rounding of 212 bits makes the pieces of a search so short that it is given
+/// up; twice as many bits decide.
+#[test]
+fn a_search_that_is_given_up_is_tried_in_more_bits() {
+    let watched: Vec<String> = (5..17).map(|level| format!("x > {level}")).collect();
+    let guards: Vec<&str> = watched.iter().map(String::as_str).collect();
+    let equations = ["x' = K*y - K*x + K*cos/1000", "y' = q - x", "q' = -y - q/10 + sin"];
+    let start = "x = 0\ny = 0\nq = 1\n[parameters]\nK = 1e60";
+    let text = watched_system(&["x", "y", "q"], &equations, &guards, start);
+    let stiff = system(&text.replace("[[mode]]", "forcing = { omega = 3 }\n[[mode]]"));
+    let solver = stiff.solver::<Proved>().unwrap();
+    let mut events = solver.run().until(0.25).unwrap();
+    let end = events.by_ref().last().unwrap();
+    assert_eq!(end.ending(), Some(Ending::Horizon), "{:?}", events.cause());
+    assert!(events.bits() > 212);
 }

@@ -47,6 +47,11 @@ pub enum Cause {
         /// The time to which the search came.
         searched: f64,
     },
+    /// The search for the next event takes more work than is accepted.
+    Work {
+        /// The time to which the search came.
+        searched: f64,
+    },
     /// The state, or a bound of its error, is too large for the arithmetic.
     TooLarge {
         /// The time to which the search came.
@@ -71,6 +76,9 @@ impl Cause {
                 if !events.is_empty() {
                     return Some(Self::Order { events, searched });
                 }
+                if run.is_exhausted() {
+                    return Some(Self::Work { searched });
+                }
                 let event = run.doubtful_event().as_ref().map(name);
                 let resolution = run.resolution().map(size).filter(|_| event.is_some());
                 Some(Self::Guard { event, resolution, searched })
@@ -83,12 +91,14 @@ impl Cause {
 impl Cause {
     /// Whether the cause is the guards of events that it names.
     pub(super) fn names_a_guard(&self) -> bool {
-        !matches!(self, Self::Guard { event: None, .. } | Self::TooLarge { .. })
+        !matches!(self, Self::Guard { event: None, .. } | Self::Work { .. } | Self::TooLarge { .. })
     }
 
     /// The cause, with the guards that another one names where this search names none.
     pub(super) fn or_named(self, other: Option<&Self>) -> Self {
-        let Self::Guard { event: None, searched, .. } = self else { return self };
+        let (Self::Guard { event: None, searched, .. } | Self::Work { searched }) = self else {
+            return self;
+        };
         match other {
             Some(Self::Guard { event, .. }) => {
                 Self::Guard { event: event.clone(), resolution: None, searched }
@@ -106,6 +116,9 @@ impl fmt::Display for Cause {
         };
         match self {
             Self::BeyondGuard { event } => write!(f, "the guard of \"{event}\" is positive there"),
+            Self::Work { searched } => {
+                write!(f, "{}, where it takes more work than is accepted", came(searched))
+            }
             Self::TooLarge { searched } => {
                 let searched = about(*searched);
                 write!(f, "its state at about {searched} is too large for its bounds to be numbers")

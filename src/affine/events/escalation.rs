@@ -123,6 +123,9 @@ trait Level<'a> {
     /// Whether the step is an ending that is not decided.
     fn is_undecided(&self) -> bool;
 
+    /// Whether the step is such an ending because the search took too much work.
+    fn is_exhausted(&self) -> bool;
+
     /// The step, as an event.
     fn event(&self) -> Option<Event<'a, Proved>>;
 
@@ -180,7 +183,7 @@ impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
     fn needs_more_bits(&mut self, digits: usize) -> bool {
         let Some(Step { event, is_sample }) = &self.step else { return false };
         match event.what {
-            engine::What::End(engine::Ending::Undecided) => !self.steps.run.is_exhausted(),
+            engine::What::End(engine::Ending::Undecided) => true,
             // The events of a run with samples are not printed.
             _ if self.steps.has_samples() && !is_sample => false,
             _ => {
@@ -193,6 +196,10 @@ impl<'a, T: Number> Level<'a> for InArithmetic<'a, T> {
     fn is_undecided(&self) -> bool {
         let undecided = engine::What::End(engine::Ending::Undecided);
         self.step.as_ref().is_some_and(|it| it.event.what == undecided)
+    }
+
+    fn is_exhausted(&self) -> bool {
+        self.steps.run.is_exhausted()
     }
 
     fn event(&self) -> Option<Event<'a, Proved>> {
@@ -228,6 +235,9 @@ struct Escalating<'a> {
     /// The steps that fewer bits have given out, and that are not given out again.
     repeated: Count,
     left: LeftOpen<'a>,
+    /// Whether a search has taken too much work. In more bits one may take less, because pieces are
+    /// short where rounding is large; after a second one no more are tried.
+    is_exhausted: bool,
 }
 
 /// The knowledge of a run that fewer bits left undecided: more bits may know less of its motion,
@@ -272,7 +282,8 @@ impl<'a> Escalating<'a> {
         let (given, repeated) = (Count::default(), Count::default());
         let request = request.clone();
         let left = LeftOpen::default();
-        let mut own = Self { solver, request, level: 0, run, given, repeated, left };
+        let is_exhausted = false;
+        let mut own = Self { solver, request, level: 0, run, given, repeated, left, is_exhausted };
         let has_samples = own.request.samples.is_some();
         while own.may_go_on() && !has_samples && own.run.start_needs_more_bits(own.request.digits) {
             own.raise();
@@ -319,7 +330,10 @@ impl<'a> Running<'a, Proved> for Escalating<'a> {
     fn next(&mut self) -> Option<Event<'a, Proved>> {
         while let Some(is_sample) = self.run.advance() {
             // It is asked of steps that are repeated, too, which have the sizes of the states.
-            let needs_more = self.may_go_on() && self.run.needs_more_bits(self.request.digits);
+            let mut needs_more = self.may_go_on() && self.run.needs_more_bits(self.request.digits);
+            if self.run.is_exhausted() {
+                needs_more &= !std::mem::replace(&mut self.is_exhausted, true);
+            }
             let is_undecided = self.run.is_undecided();
             if is_undecided {
                 self.leave_open();

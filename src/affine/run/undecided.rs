@@ -23,8 +23,7 @@ impl<T: Number> Run<'_, T> {
         }
     }
 
-    /// Whether the run has ended as undecided because its search took too much work: more digits
-    /// would not help it.
+    /// Whether the run has ended as undecided because its search took too much work.
     #[must_use]
     pub fn is_exhausted(&self) -> bool {
         self.work.exhausted

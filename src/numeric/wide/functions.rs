@@ -8,9 +8,12 @@ use std::sync::OnceLock;
 /// The words of a constant: those of a number, and as many below it.
 const CONSTANT_WORDS: usize = 2 * MAX_WORDS;
 
-/// The largest exponent of an argument of sine, cosine and the exponential: whole turns and powers
-/// of two are counted in 64 bits.
+/// The largest exponent of an argument of the exponential: powers of two are counted in 64 bits.
 const MAX_EXPONENT: i64 = 61;
+
+/// The least number of bits that one multiple of a constant takes off an argument: it has the
+/// digits of f64 alone.
+const MULTIPLE_BITS: i64 = 50;
 
 /// The number of bits to which an f64 begins an iteration.
 const FIRST_BITS: usize = 48;
@@ -68,6 +71,13 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
     /// The number of halvings after which a series is short, as it is best for so many bits.
     const HALVINGS: i64 = (BITS.isqrt() / 2) as i64;
 
+    /// The largest exponent of an argument of sine and cosine: its multiples of the second part of
+    /// a constant are small, and those of the first are within f64.
+    const MAX_ANGLE_EXPONENT: i64 = match 64 * (WORDS as i64 - 2) {
+        bits if bits < 1000 => bits,
+        _ => 1000,
+    };
+
     /// A constant in two parts, of which multiples of the first are exact.
     fn split(words: &[u64; CONSTANT_WORDS], exponent: i64) -> [Self; 2] {
         let below = CONSTANT_WORDS - (WORDS - 1);
@@ -76,18 +86,22 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
         [high, Self::constant(&words[below - WORDS..below], low)]
     }
 
-    /// The number less its nearest multiple of a constant, and the multiple modulo four.
+    /// The number less its nearest multiple of a constant, the multiple modulo four, and the
+    /// multiple where 64 bits hold it.
     fn reduced(self, [high, low]: [Self; 2]) -> (Self, i64, i64) {
-        let (mut rest, mut count) = (self, 0_i64);
+        let (mut rest, mut below) = (self, Self::ZERO);
+        let (mut quarter, mut count) = (0, 0_i64);
         let constant = high.to_f64();
-        // The first multiple has the digits of f64 alone.
-        for _ in 0..2 {
+        for _ in 0..2 + self.exponent.max(0) / MULTIPLE_BITS {
             let multiple = (rest.to_f64() / constant).round();
             let factor = Self::exact(multiple);
-            rest = (rest - factor * high) - factor * low;
-            count += multiple as i64;
+            // The difference is exact, and what the second part takes off would be rounded with it.
+            rest = rest - factor * high;
+            below = below + factor * low;
+            quarter += (multiple % 4.0) as i64;
+            count = count.saturating_add(multiple as i64);
         }
-        (rest, count.rem_euclid(4), count)
+        (rest - below, quarter.rem_euclid(4), count)
     }
 
     /// 1/x of an ordinary number, by Newton's method.
@@ -147,7 +161,7 @@ impl<const WORDS: usize, const BITS: usize> Wide<WORDS, BITS> {
     }
 
     pub(super) fn sine_and_cosine(self) -> (Self, Self) {
-        if self.kind == Kind::Unknown || self.exponent > MAX_EXPONENT {
+        if self.kind == Kind::Unknown || self.exponent > Self::MAX_ANGLE_EXPONENT {
             return (Self::UNKNOWN, Self::UNKNOWN);
         }
         let (rest, quarter, _) = self.reduced(Self::split(quarter_pi(), 1));

@@ -85,17 +85,39 @@ proptest! {
     }
 }
 
+/// The number between 0 and 1 with these decimals.
+fn parsed(decimals: &str) -> Small {
+    let ten = Small::exact(10.0);
+    let digit = |it: u8| Small::exact(f64::from(it - b'0'));
+    let whole = decimals.bytes().fold(Small::zero(), |sum, it| sum * ten + digit(it));
+    decimals.bytes().fold(whole, |it, _| it / ten)
+}
+
+fn near(a: Small, b: Small) -> bool {
+    (a - b).bound().abs() < ScaledF64::from_f64(1e-59)
+}
+
+/// Sine and cosine of 1e22 and of 2^120, by mpmath 1.3.0.
+#[test]
+fn angles_of_many_turns_keep_sixty_digits() {
+    let (sin, cos) = Small::exact(1e22).sin_cos();
+    assert!(near(-sin, parsed("852200849767188801772705893753029368261762150410043656256509")));
+    assert!(near(cos, parsed("523214785395138945497594473384709492140919972439387953527211")));
+    let (sin, cos) = Small::one().scaled(120).sin_cos();
+    assert!(near(sin, parsed("377820109360752022655548470056922991960586697651230664225799")));
+    assert!(near(-cos, parsed("925879022854837867303861764107414946730833209928656460236049")));
+    // More turns than there are bits leave none.
+    assert!(Small::one().scaled(140).sin_cos().0.to_f64().is_nan());
+    for power in [200, 400, 750] {
+        let (large, widest) = (Large::one().scaled(power), Wide::<54, 3392>::one().scaled(power));
+        let [large, widest] = [large.sin_cos().0.to_f64(), widest.sin_cos().0.to_f64()];
+        assert_eq!(large, widest, "{power}");
+    }
+}
+
 /// sin(1), cos(1) and exp(1) to 60 digits, by mpmath 1.3.0.
 #[test]
 fn known_values_hold_to_sixty_digits() {
-    let parsed = |digits: &str| {
-        let ten = Small::exact(10.0);
-        let whole = digits
-            .bytes()
-            .fold(Small::zero(), |sum, digit| sum * ten + Small::exact(f64::from(digit - b'0')));
-        digits.bytes().fold(whole, |it, _| it / ten)
-    };
-    let near = |a: Small, b: Small| (a - b).bound().abs() < ScaledF64::from_f64(1e-59);
     let (sin, cos) = Small::one().sin_cos();
     assert!(near(sin, parsed("841470984807896506652502321630298999622563060798371065672752")));
     assert!(near(cos, parsed("540302305868139717400936607442976603732310420617922227670097")));
