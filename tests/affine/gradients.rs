@@ -290,6 +290,65 @@ fn a_touch_of_an_oscillation_or_of_the_forcing_has_two_sides() {
     assert_eq!(outcomes(&free, "k", top + 1e-6), [Err(NoGradient::Touch)]);
     let forced = text("forcing = { omega = 1 }", "3*cos + 4*sin");
     let angle = 4.0_f64.atan2(3.0);
-    assert_eq!(outcomes(&forced, "k", angle - 1e-6), [Ok(())]);
-    assert_eq!(outcomes(&forced, "k", angle + 1e-6), [Err(NoGradient::Touch)]);
+    assert_eq!(outcomes(&forced, "level", angle - 1e-6), [Ok(())]);
+    assert_eq!(outcomes(&forced, "level", angle + 1e-6), [Err(NoGradient::Touch)]);
+    // The forcing touches the level for every stiffness.
+    assert_eq!(outcomes(&forced, "k", angle + 1e-6), [Ok(())]);
+}
+
+/// The thrown ball touches its level at the top, whatever the tank beside it does. Its tap opens at
+/// a level of the tank, which gives the ball a push.
+#[test]
+fn a_touch_of_what_the_name_does_not_move_has_a_derivative() {
+    let text = |push: f64, level: f64| {
+        format!(
+            r#"
+            schema = 1
+            name = "beside"
+            states = ["x", "v", "y"]
+            [parameters]
+            k = 0.25
+            c = 0.96875
+            g = 8
+            h = {level}
+            push = {push}
+            [[mode]]
+            name = "closed"
+            equations = ["x' = v", "v' = -g", "y' = -k"]
+            watch = [{{ name = "top", guard = "x > h" }}]
+            [[mode.until]]
+            name = "open"
+            guard = "y < c"
+            reset = ["v = v + push", "y = y/2"]
+            next = [{{ mode = "open" }}]
+            [[mode]]
+            name = "open"
+            equations = ["x' = v", "v' = -g", "y' = -4*y"]
+            watch = [{{ name = "top", guard = "x > h" }}]
+            [start]
+            mode = "closed"
+            x = 0
+            v = 2
+            y = 1
+            "#
+        )
+    };
+    let (touched, has_one) = ([Ok(()), Err(NoGradient::Touch)], [Ok(()), Ok(())]);
+    // No push: the top is at 1/4, after the tap's time of 1/8.
+    for (name, expected) in [
+        ("k", has_one),
+        ("c", has_one),
+        ("start.y", has_one),
+        ("g", touched),
+        ("h", touched),
+        ("push", touched),
+        ("start.v", touched),
+    ] {
+        assert_eq!(outcomes(&text(0.0, 0.25), name, 0.5), expected, "{name}");
+    }
+    // A push by 1 at the height 3/16 and the speed 1 moves the top to 7/16, by the time of the tap.
+    for name in ["k", "c", "start.y", "push"] {
+        assert_eq!(outcomes(&text(1.0, 0.4375), name, 0.5), touched, "{name}");
+    }
+    assert_eq!(outcomes(&text(1.0, 0.4376), "c", 0.5), has_one);
 }

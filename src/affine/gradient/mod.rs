@@ -6,7 +6,8 @@
 //! reset R leaves R s + dR z. What is zero by the model has to be so to first order in the name
 //! ([`first_order`]). Where it is not, a derivative has two sides, each of which is followed by
 //! itself at the entry of a segment, and refused elsewhere ([`checks`]); so it is behind a guard
-//! that touches zero without crossing, of which the run tells. [`walk`] goes from event to event,
+//! that touches zero without crossing, of which the run tells, unless the name moves nothing there
+//! ([`unmoved`]). [`walk`] goes from event to event,
 //! [`start`] begins it with the [`coefficients`] of the modes, and [`derivative`] is what it gives
 //! out. Read `walk` first.
 
@@ -17,4 +18,5 @@ pub mod derivative;
 mod exponential;
 mod first_order;
 mod start;
+mod unmoved;
 pub mod walk;

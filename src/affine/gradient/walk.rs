@@ -6,6 +6,7 @@ use super::derivative::{Gradient, NoGradient, Side};
 use super::exponential::exponential;
 use super::first_order::{FirstOrder, InstantZeros, StartZeros, VariedRow};
 use super::start::{StartRows, at_angle, independent, nearby_values};
+use super::unmoved::Unmoved;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::model::system::StartPoint;
 use crate::affine::model::tangent::Tangent;
@@ -22,6 +23,7 @@ pub struct Walk<'a, T: Number> {
     pub(super) tangent: Arc<Tangent>,
     pub(super) modes: Vec<ModeJets<T>>,
     pub(super) zeros: FirstOrder,
+    unmoved: Unmoved,
     /// The mode, time and state of the last event, with derivatives.
     pub(super) mode: usize,
     time: Time<T>,
@@ -73,6 +75,7 @@ impl<'a, T: Number> Walk<'a, T> {
             tangent: Arc::clone(tangent),
             modes,
             zeros,
+            unmoved: Unmoved::new(system, tangent, point),
             mode: start.mode,
             time: start.time,
             time_error: T::Bound::ZERO,
@@ -130,7 +133,8 @@ impl<'a, T: Number> Walk<'a, T> {
     /// # Errors
     /// An event that has none, and each after it.
     pub fn step(&mut self, event: &Event<T>, run: &Run<'_, T>) -> Result<Gradient<T>, NoGradient> {
-        if run.touched_event().is_some() {
+        let is_moved = |(mode, guard)| !self.unmoved.has_row(&self.guard(mode, guard));
+        if run.touched_guards().any(is_moved) {
             self.refused = self.refused.or(Some(NoGradient::Touch));
         } else if run.work().undecidable > 0 {
             self.refused = self.refused.or(Some(NoGradient::Undecided));

@@ -99,7 +99,7 @@ impl<T: Number> Solver<T> {
             is_lenient: false,
             tie: None,
             doubt: None,
-            touch: None,
+            touches: Vec::new(),
             events_in_instant: 0,
             queue: VecDeque::new(),
             decided: 0,

@@ -29,18 +29,25 @@ impl<T: Number> Run<'_, T> {
     /// been returned.
     #[must_use]
     pub fn touched_event(&self) -> Option<What<T>> {
-        self.touch.map(|(mode, guard)| self.event_of(mode, guard))
+        self.touched_guards().next().map(|(mode, guard)| self.event_of(mode, guard))
     }
 
-    /// Remembers the first guard that never crosses but touches zero, up to a time after the entry
-    /// of the segment.
+    /// The modes and guards of all events such as [`Run::touched_event`] says, each once.
+    pub(in crate::affine) fn touched_guards(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.touches.iter().copied()
+    }
+
+    /// Remembers the guards that never cross but touch zero, up to a time after the entry of the
+    /// segment.
     #[inline]
     pub(super) fn remember_touch(&mut self, mode: usize, elapsed: T) {
-        let Some(exact) = self.exact.as_ref().filter(|_| self.touch.is_none()) else { return };
+        let Some(exact) = &self.exact else { return };
         let elapsed = elapsed.to_f64();
-        let touches = |n: &usize| exact.may_touch(*n, elapsed) || self.turns_to(exact, *n, elapsed);
-        let guards = self.tracks.len();
-        self.touch = (0..guards).find(touches).map(|guard| (mode, guard));
+        let touches = |n: usize| exact.may_touch(n, elapsed) || self.turns_to(exact, n, elapsed);
+        let is_new = |n: &usize| !self.touches.contains(&(mode, *n));
+        let guards = (0..self.tracks.len()).filter(is_new).filter(|n| touches(*n));
+        let new: Vec<_> = guards.map(|guard| (mode, guard)).collect();
+        self.touches.extend(new);
     }
 
     /// Whether a guard of the forcing angle and a constant that never changes its sign touches zero

@@ -79,8 +79,8 @@ pub struct Run<'a, T: Number> {
     tie: Option<(usize, u64)>,
     /// The mode and the guard that rounding left open by itself, first of all.
     doubt: Option<(usize, usize)>,
-    /// The mode and the guard that touched zero, and never crosses, first of all.
-    touch: Option<(usize, usize)>,
+    /// The modes and guards that touched zero and did not cross, each once, in order.
+    touches: Vec<(usize, usize)>,
     events_in_instant: u32,
     queue: VecDeque<Event<T>>,
     /// The number of queued events that came before anything that rounding left open.
