@@ -304,3 +304,30 @@ fn a_watched_section_moves_with_the_parameter() {
         }
     }
 }
+
+#[test]
+fn an_event_of_the_section_is_lost_where_its_guard_is_touched() {
+    let omega: f64 = 1.25;
+    let amplitude = (1.0 - omega.powi(2)).hypot(2.0 * 0.25 * omega).recip();
+    for (direction, period) in [("rising", 1), ("falling", 1), ("both", 2)] {
+        let text = LEVEL.replace("DIRECTION", direction);
+        let varied = Varied::new(&text, Section::event("level"), "th", &[]);
+        for ends in [[0.3, 2.0], [-0.5, 1.5], [0.5, -1.5]] {
+            let guess = varied.settled_return(ends[0], 40);
+            let branch = varied.follow(&guess, period, ends);
+            // Beyond the touch there is no return; of both directions the same orbits may go on,
+            // begun at the other crossing.
+            let is_ended = match branch.ending {
+                BranchEnding::Lost { .. } => true,
+                BranchEnding::Left => period == 2,
+                _ => false,
+            };
+            assert!(is_ended, "{direction} {ends:?} {}", branch.ending);
+            let found = only_bifurcation(&branch, BifurcationKind::EventLost);
+            assert_eq!(branch.bifurcations.len(), 1, "{:?}", bifurcation_rows(&branch));
+            assert_eq!(found.event.unwrap().name(&varied.at(0.5).unwrap()), "level@m");
+            assert!(found.turns);
+            assert_value(found, amplitude.copysign(ends[1]));
+        }
+    }
+}

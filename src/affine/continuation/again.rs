@@ -93,7 +93,7 @@ impl Curve<'_> {
             true => self.lost_corner(start, distance),
             false => Self::corner(self, start, distance),
         };
-        let found = self.of_corner(&corner, false)?;
+        let found = self.of_corner(start, &corner)?;
         let is_same = found.kind == sought.kind && found.event == sought.event;
         is_same.then_some(OnLine { point: corner.before, error: corner.error })
     }

@@ -5,7 +5,7 @@ use super::super::returns::shooting::{ReturnMap, Shots};
 use super::ReturnBifurcation;
 use super::curve::Curve;
 use super::point::{CurvePoint, are_on_one_piece};
-use super::words::{Meaning, cyclic};
+use super::words::Meaning;
 use crate::dynamics::continuation::steps::{Corner, Noted, OrbitCurve, OrbitPoint};
 use crate::dynamics::linear::ReIm;
 use crate::dynamics::orbit::newton::polish;
@@ -82,15 +82,15 @@ impl OrbitCurve for Curve<'_> {
         Some(Self::corner(self, base, distance)).filter(|it| last || it.beyond.is_some())
     }
 
-    fn of_corner(&self, corner: &Corner<CurvePoint>, turns: bool) -> Option<ReturnBifurcation> {
+    fn of_corner(
+        &self,
+        base: &CurvePoint,
+        corner: &Corner<CurvePoint>,
+    ) -> Option<ReturnBifurcation> {
+        let Meaning { kind, event } = self.meaning(base, corner)?;
         let Corner { before, beyond, error } = corner;
-        let is_another = |it: &CurvePoint| cyclic(&it.orbit.events) != cyclic(&before.orbit.events);
-        if !beyond.as_ref().is_none_or(is_another) {
-            return None;
-        }
-        let Meaning { kind, event } = self.meaning(before, beyond.as_ref())?;
         let (value, orbit, error) = (before.value, before.orbit.clone(), *error);
-        let (point, is_lost) = (before.clone(), beyond.is_none());
+        let (point, is_lost, turns) = (before.clone(), beyond.is_none(), corner.turns());
         let event = Some(event);
         Some(ReturnBifurcation { kind, value, error, event, turns, orbit, point, is_lost })
     }

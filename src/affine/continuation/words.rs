@@ -11,6 +11,7 @@ use super::curve::Curve;
 use super::family::OrbitShots;
 use super::point::CurvePoint;
 use crate::dynamics::continuation::BifurcationKind;
+use crate::dynamics::continuation::steps::Corner;
 
 /// What a corner is, and the event that it is about.
 pub(super) struct Meaning {
@@ -27,6 +28,10 @@ const PROBE_DISTANCES: [[f64; 2]; 3] = [[1e-6, 1.6e-5], [1e-8, 1.6e-7], [1e-4, 1
 /// A rate or a time that has grown by more vanishes at the corner: the root of sixteen is four.
 const MIN_GROWTH_FACTOR: f64 = 2.0;
 
+/// A rate that falls by more from the last step to the end of its piece, whose distance is smaller
+/// by orders of magnitude, vanishes there; no rate falls so much in a step otherwise.
+const MIN_FALL_TO_TOUCH: f64 = 16.0;
+
 /// The most letters of two words that are compared from wherever they begin.
 const MAX_LETTERS: usize = 200;
 
@@ -39,8 +44,38 @@ pub(super) fn cyclic(word: &[Guard]) -> Vec<[usize; 3]> {
 }
 
 impl Curve<'_> {
-    /// What the corner is at which `before` is the last orbit of its piece.
-    pub fn meaning(&self, before: &CurvePoint, beyond: Option<&CurvePoint>) -> Option<Meaning> {
+    /// What a corner is to which the curve comes from `base`.
+    pub fn meaning(&self, base: &CurvePoint, corner: &Corner<CurvePoint>) -> Option<Meaning> {
+        let Corner { before, beyond, .. } = corner;
+        let beyond = beyond.as_ref();
+        let is_another = |it: &CurvePoint| cyclic(&it.orbit.events) != cyclic(&before.orbit.events);
+        match beyond {
+            None => {
+                self.touch_before(base, before).or_else(|| self.change_of_events(before, beyond))
+            }
+            Some(it) if is_another(it) => self.change_of_events(before, beyond),
+            Some(_) if corner.turns() => self.touch_before(base, before),
+            Some(_) => None,
+        }
+    }
+
+    /// The touch at the end of a piece by which an event is lost, so that no orbit is beyond or the
+    /// same orbits are, from the other side: such an event may be the section's own.
+    fn touch_before(&self, base: &CurvePoint, before: &CurvePoint) -> Option<Meaning> {
+        let [near, far] = [before, base].map(|it| self.crossings(it.value, &it.shots));
+        let (near, far) = same_events(near?, far?)?;
+        let event = touched_event(&near, &far, &before.orbit.events, MIN_FALL_TO_TOUCH)?;
+        let is_watched = event.is_watched;
+        let kind = if is_watched { BifurcationKind::EventLost } else { BifurcationKind::Grazing };
+        Some(Meaning { kind, event })
+    }
+
+    /// The part in which the events of a corner's two sides differ.
+    fn change_of_events(
+        &self,
+        before: &CurvePoint,
+        beyond: Option<&CurvePoint>,
+    ) -> Option<Meaning> {
         let probe = || Some(self.events_of(self.probes(before, PROBE_DISTANCES[0][0]).first()?));
         let after = beyond.map(|it| it.orbit.events.clone()).or_else(probe)?;
         let [lost, gained] = differing_parts(&before.orbit.events, &after);
@@ -61,7 +96,7 @@ impl Curve<'_> {
             })
         });
         let (near, far) = sides.unwrap_or_default();
-        let touched = touched_event(&near, &far, changed);
+        let touched = touched_event(&near, &far, changed, MIN_GROWTH_FACTOR);
         let is_corner = !gained.is_empty() && !lost.is_empty() || are_at_once(&near, &far, changed);
         Some(match touched {
             Some(event) => Meaning { kind: BifurcationKind::Grazing, event },
@@ -109,13 +144,18 @@ fn same_events(near: Vec<Crossing>, far: Vec<Crossing>) -> Option<Sides> {
     (guards(&near) == guards(&far)).then_some((near, far))
 }
 
-/// The event among those that have changed whose rate vanishes, the first of those that follow one
-/// another: a touch is followed by the end of what it has begun.
-fn touched_event(near: &[Crossing], far: &[Crossing], changed: &[Guard]) -> Option<Guard> {
+/// The event among those that have changed whose rate is so many times smaller near to the corner,
+/// the first of those that follow one another: a touch is followed by the end of what it has begun.
+fn touched_event(
+    near: &[Crossing],
+    far: &[Crossing],
+    changed: &[Guard],
+    factor: f64,
+) -> Option<Guard> {
     let count = near.len();
     let is_touched = |k: usize| {
         let (one, other) = (&near[k], &far[k]);
-        changed.contains(&one.guard) && other.rate.abs() > MIN_GROWTH_FACTOR * one.rate.abs()
+        changed.contains(&one.guard) && other.rate.abs() > factor * one.rate.abs()
     };
     let first = (0..count).find(|k| is_touched(*k) && !is_touched((k + count - 1) % count));
     first.or_else(|| (0..count).find(|k| is_touched(*k))).map(|k| near[k].guard)

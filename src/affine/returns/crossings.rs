@@ -27,7 +27,7 @@ impl SectionMap<'_, f64> {
         &self,
         place: &Place<f64>,
     ) -> Result<Vec<Crossing>, NoReturn> {
-        let mut walk = Walk::begin(self, place, false);
+        let mut walk = Walk::beside(self, place);
         let mut crossings = Vec::new();
         walk.next(&mut |from, to| {
             if let Some(guard) = Guard::new(&to.what) {
@@ -35,6 +35,10 @@ impl SectionMap<'_, f64> {
                 crossings.push(Crossing { guard, time, rate: self.rate_of(guard, from, to) });
             }
         })?;
+        let is_onto = |it: &Crossing| walk.onto_section == Some(it.guard);
+        if let Some(onto) = crossings.iter().position(is_onto) {
+            crossings.remove(onto);
+        }
         Ok(crossings)
     }
 

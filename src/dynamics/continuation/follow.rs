@@ -89,7 +89,11 @@ impl OrbitCurve for FamilyCurve {
         Self::corner(self, base, distance)
     }
 
-    fn of_corner(&self, corner: &Corner<ContinuationPoint>, turns: bool) -> Option<Bifurcation> {
+    fn of_corner(
+        &self,
+        _: &ContinuationPoint,
+        corner: &Corner<ContinuationPoint>,
+    ) -> Option<Bifurcation> {
         let Corner { before, beyond, error } = corner;
         let beyond = beyond.as_ref()?;
         let is_graze = before.phase_sequence() != beyond.phase_sequence();
@@ -97,7 +101,7 @@ impl OrbitCurve for FamilyCurve {
             kind: BifurcationKind::Grazing,
             value: before.value,
             error: *error,
-            turns,
+            turns: corner.turns(),
             orbit: before.orbit.clone(),
             beyond: Some(beyond.orbit.clone()),
         })

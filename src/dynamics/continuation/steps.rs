@@ -63,6 +63,14 @@ pub(crate) struct Corner<P> {
     pub(crate) error: f64,
 }
 
+impl<P: OrbitPoint> Corner<P> {
+    /// Whether the curve turns back in the parameter, or ends.
+    pub(crate) fn turns(&self) -> bool {
+        let turns = |beyond: &P| self.before.rate() * beyond.rate() < 0.0;
+        self.beyond.as_ref().is_none_or(turns)
+    }
+}
+
 /// A point at which a curve has a bifurcation.
 pub(crate) struct Noted<P> {
     pub(crate) kind: BifurcationKind,
@@ -101,8 +109,12 @@ pub(crate) trait OrbitCurve {
     /// the `last`.
     fn corner(&self, base: &Self::Point, distance: f64, last: bool) -> Option<Corner<Self::Point>>;
 
-    /// The bifurcation that a corner is, if it is one.
-    fn of_corner(&self, corner: &Corner<Self::Point>, turns: bool) -> Option<Self::Bifurcation>;
+    /// The bifurcation that a corner is, if it is one; the curve comes to it from `base`.
+    fn of_corner(
+        &self,
+        base: &Self::Point,
+        corner: &Corner<Self::Point>,
+    ) -> Option<Self::Bifurcation>;
 
     fn bifurcation(&self, noted: Noted<Self::Point>) -> Self::Bifurcation;
 
@@ -249,9 +261,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
             let (end, _, ending) = self.cut(point, corner.before, 0.0);
             return Ok((end, ending));
         }
-        let turns = |beyond: &C::Point| corner.before.rate() * beyond.rate() < 0.0;
-        let turns = corner.beyond.as_ref().is_none_or(turns);
-        self.bifurcations.extend(self.curve.of_corner(&corner, turns));
+        self.bifurcations.extend(self.curve.of_corner(point, &corner));
         self.keep(&corner.before);
         let Some(beyond) = corner.beyond else {
             return Err(BranchEnding::Lost { value: corner.before.value() });
