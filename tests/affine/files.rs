@@ -99,3 +99,15 @@ fn parameters_and_start_can_be_replaced() {
     let error = file.replace_from("s.toml", "[case]\nname = 1\n", false).unwrap_err().to_string();
     assert!(error.starts_with("s.toml:1: case is not accepted here"), "{error}");
 }
+
+#[test]
+fn an_error_of_a_line_names_what_has_replaced_a_parameter() {
+    let text = BALL.replace("v' = -g", "v' = -1/g");
+    let mut file = SystemFile::read("ball.system.toml", &text).unwrap();
+    file.set("e", 0.5, "--set e=0.5").unwrap();
+    file.set("g", 0.0, "--set g=0").unwrap();
+    let error = file.system().unwrap_err().to_string();
+    assert!(error.contains(": a division by zero, with --set e=0.5 and --set g=0"), "{error}");
+    file.set("g", 1.0, "--set g=1").unwrap();
+    assert!(file.system().is_ok());
+}

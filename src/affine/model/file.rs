@@ -8,7 +8,7 @@ use super::source::{Source, SourceText};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{self, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::ops::Range;
 use toml::Spanned;
@@ -21,6 +21,8 @@ pub struct SystemFile {
     pub(super) tables: Tables,
     pub(super) parameters: BTreeMap<String, GivenParameter>,
     pub(super) start: Option<StartTable>,
+    /// The parameters whose values are no longer those of the file.
+    pub(super) replaced: BTreeSet<String>,
 }
 
 /// A parameter's value and the place that gave it.
@@ -232,7 +234,8 @@ impl SystemFile {
         let mut tables: Tables = text.parse()?;
         let parameters = placed(&text, std::mem::take(&mut tables.parameters));
         let start = tables.start.take().map(|it| start(&text, it)).transpose()?;
-        Ok(Self { source: Source::Text(text), tables, parameters, start })
+        let source = Source::Text(text);
+        Ok(Self { source, tables, parameters, start, replaced: BTreeSet::new() })
     }
 
     /// The name that the file gives the system.
@@ -247,7 +250,23 @@ impl SystemFile {
     /// A name that is no parameter of the system.
     pub fn set(&mut self, name: &str, value: f64, place: &str) -> Result<(), SystemError> {
         let place = place.to_owned();
-        self.replace(name, GivenParameter { value: Scalar::Decimal(value), place })
+        self.replace(name, GivenParameter { value: Scalar::Decimal(value), place })?;
+        self.replaced.insert(name.to_owned());
+        Ok(())
+    }
+
+    /// An error with the places of the values that have replaced those of the file: a line of the
+    /// file may be wrong by these alone.
+    pub(super) fn with_replaced(&self, error: SystemError) -> SystemError {
+        let places = self.replaced.iter().map(|name| self.parameters[name].place.as_str());
+        let places: Vec<_> = places.collect();
+        match error {
+            SystemError::Place { place, what } if !places.is_empty() && place != places[0] => {
+                let what = format!("{what}, with {}", places.join(" and "));
+                SystemError::Place { place, what }
+            }
+            other => other,
+        }
     }
 
     /// Replaces a state of the start, or its time `t`, by a number or by an expression as those of

@@ -23,7 +23,7 @@ impl SystemFile {
     /// # Errors
     /// Whatever does not make sense, with its place and what is accepted.
     pub fn system(&self) -> Result<System, SystemError> {
-        system(self, None)
+        system(self, None).map_err(|error| self.with_replaced(error))
     }
 
     /// Reads an affine expression of the file's names, as those of its equations; `place` says in

@@ -10,7 +10,7 @@ use crate::affine::model::file::{
 use crate::affine::model::scalar::{Assignment, Condition, Scalar};
 use crate::affine::model::source::Source;
 use crate::affine::model::system::Direction;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 
 /// The file that a builder stands for.
@@ -53,7 +53,8 @@ pub(super) fn file(builder: SystemBuilder) -> Result<SystemFile, SystemError> {
         mode: builder.modes.into_iter().map(|it| items.mode(it)).collect(),
         start: None,
     };
-    Ok(SystemFile { source: Source::Items(items.0), tables, parameters, start })
+    let source = Source::Items(items.0);
+    Ok(SystemFile { source, tables, parameters, start, replaced: BTreeSet::new() })
 }
 
 fn start(

@@ -99,7 +99,7 @@ impl SystemFlags {
             replace_start(&mut file, path).context("--start")?;
         }
         for (name, value) in &self.set {
-            file.set(name, *value, "--set")?;
+            file.set(name, *value, &format!("--set {name}={value}"))?;
         }
         for [name, value] in &self.at {
             file.set_start(name, value, &format!("--at {name}={value}"))?;
@@ -128,7 +128,9 @@ impl ChosenSystem {
     pub(in crate::cli) fn at(&self, point: &SweepPoint) -> Result<Self> {
         let Self { file, text, path } = self;
         let mut file = file.clone();
-        point.values.iter().try_for_each(|(name, value)| file.set(name, *value, "axis"))?;
+        for (name, value) in &point.values {
+            file.set(name, *value, &format!("{name} = {value}"))?;
+        }
         Ok(Self { file, text: text.clone(), path: path.clone() })
     }
 
@@ -139,7 +141,7 @@ impl ChosenSystem {
         value: f64,
     ) -> Result<System, SystemError> {
         let mut file = self.file.clone();
-        file.set(parameter, value, "--parameter")?;
+        file.set(parameter, value, &format!("{parameter} = {value}"))?;
         file.system()
     }
 

@@ -60,10 +60,11 @@ struct Plane<'a> {
 }
 
 impl Plane<'_> {
-    fn at(&self, [value, second]: [f64; 2]) -> Result<System, SystemError> {
+    fn at(&self, values: [f64; 2]) -> Result<System, SystemError> {
         let mut file = self.chosen.file.clone();
-        file.set(self.names[0], value, "--parameter")?;
-        file.set(self.names[1], second, "--second")?;
+        for (name, value) in self.names.iter().zip(values) {
+            file.set(name, value, &format!("{name} = {value}"))?;
+        }
         file.system()
     }
 }

@@ -145,7 +145,7 @@ impl<'a, 'p> Underway<'a, 'p> {
             1 => Some("1 choice lies within rounding: one side of it was taken".to_owned()),
             n => Some(format!("{n} choices lie within rounding: one side of each was taken")),
         };
-        let decided = "percuss events takes the bits that decide";
+        let decided = "percuss events takes more bits, which may decide";
         end.notes.extend(choices.map(|it| format!("{it}; {decided}")));
         end.notes.extend(self.no_return.map(|(why, returns)| no_return(why, returns)));
         if let Some((event, ending)) = last.and_then(|it| Some((it, it.ending()?))) {
