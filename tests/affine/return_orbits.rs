@@ -206,3 +206,142 @@ fn a_scan_finds_the_oscillators_orbits() {
         assert!((found.drift_per_return[0] - own.drift_per_period).abs() < 1e-9, "{found:?}");
     }
 }
+
+/// A dose at every unit of time, which takes 1 - b of what is left and adds 1.
+fn doses(b: f64) -> String {
+    format!(
+        r#"
+        schema = 1
+        name = "doses"
+        states = ["x", "c"]
+        [parameters]
+        b = {b}
+        [[mode]]
+        name = "decay"
+        equations = ["x' = -x", "c' = 1"]
+        until = [{{ name = "dose", guard = "c > 1", reset = ["c = 0", "x = 1 + (1 - b)*x"] }}]
+        [start]
+        mode = "decay"
+        x = 0
+        c = 0
+        "#
+    )
+}
+
+/// Points just after a clock's reset lie far from its guard: x -> 1 + (1 - b) x/e from dose to
+/// dose, with the multiplier (1 - b)/e.
+#[test]
+fn a_section_that_resets_its_own_guard_returns_once_a_period() {
+    let decay = (-1.0_f64).exp();
+    for b in [0.0, 0.5, 3.5] {
+        let multiplier = (1.0 - b) * decay;
+        let orbit = orbit(&doses(b), &Section::event("dose"), 3, 1);
+        assert!((orbit.time - 1.0).abs() < ROUNDING_TOLERANCE, "{b}: {}", orbit.time);
+        assert_eq!(orbit.events.len(), 1);
+        let found = orbit.multipliers[0][0];
+        assert!((found - multiplier).abs() < ROUNDING_TOLERANCE, "{b}: {found}");
+        let x = orbit.points[0].state[0];
+        assert!((x - 1.0 / (1.0 - multiplier)).abs() < ROUNDING_TOLERANCE, "{b}: {x}");
+        let exponents = exponents(&doses(b), &Section::event("dose"), 3, 50);
+        let rate = multiplier.abs().ln();
+        // Along the motion there is none.
+        let [along, own] = exponents.per_return[..] else { panic!("two states") };
+        assert!(along.abs() < ROUNDING_TOLERANCE, "{along}");
+        assert!((own - rate).abs() < ROUNDING_TOLERANCE, "{b}: {own}");
+    }
+    // An integrate-and-fire cell with one state, whose spikes come every ln(I/(I - 1)).
+    let cell = r#"
+        schema = 1
+        name = "cell"
+        states = ["u"]
+        [[mode]]
+        name = "rise"
+        equations = ["u' = 7/5 - u"]
+        until = [{ name = "spike", guard = "u > 1", reset = ["u = 0"] }]
+        [start]
+        mode = "rise"
+        u = 0
+    "#;
+    let spikes = orbit(cell, &Section::event("spike"), 3, 1);
+    assert!((spikes.time - 3.5_f64.ln()).abs() < ROUNDING_TOLERANCE, "{}", spikes.time);
+}
+
+/// A forced mass before a stop, with units of length and of time in which its states are of any
+/// size: their scales say which.
+fn rig(length: f64, rate: f64) -> String {
+    format!(
+        r#"
+        schema = 1
+        name = "rig"
+        states = ["x", "v"]
+        scales = ["L", "L*W"]
+        forcing = {{ omega = "11*W/5" }}
+        [parameters]
+        L = {length:e}
+        W = {rate:e}
+        [[mode]]
+        name = "free"
+        equations = ["x' = v", "v' = -W^2*x - 2*W*v/5 + L*W^2*cos"]
+        [[mode.until]]
+        name = "impact"
+        guard = "x > 0"
+        reset = ["x = 0", "v = -4*v/5"]
+        next = [{{ mode = "free" }}]
+        [start]
+        mode = "free"
+        x = "-L"
+        v = 0
+        "#
+    )
+}
+
+#[test]
+fn multipliers_and_exponents_do_not_depend_on_the_units() {
+    let strobe = Section::strobe(0.0);
+    let of_size_one = orbit(&rig(1.0, 1.0), &strobe, 300, 1);
+    let modulus = |it: &[f64; 2]| it[0].hypot(it[1]);
+    let [first, second] = &of_size_one.multipliers[..] else { panic!("two states") };
+    // Two impacts a period take r^2 each of the area, and so does the damping.
+    let impacts = of_size_one.events.len() as i32;
+    let area = 0.64_f64.powi(impacts) * (-0.4 * of_size_one.time).exp();
+    assert!((modulus(first) * modulus(second) - area).abs() < ROUNDING_TOLERANCE);
+    let growth = exponents(&rig(1.0, 1.0), &strobe, 300, 100).per_return;
+    for (length, rate) in [(1.0, 3e7), (1.0, 1e12), (1e-12, 1e9), (1.0, 1e-14), (1e9, 1e-7)] {
+        let other = orbit(&rig(length, rate), &strobe, 300, 1);
+        for (own, other) in of_size_one.multipliers.iter().zip(&other.multipliers) {
+            let apart = (own[0] - other[0]).hypot(own[1] - other[1]);
+            assert!(apart < 1e-10, "{length:e} {rate:e}: {own:?} {other:?}");
+        }
+        let other = exponents(&rig(length, rate), &strobe, 300, 100).per_return;
+        for (own, other) in growth.iter().zip(&other) {
+            assert!((own - other).abs() < 1e-2, "{length:e} {rate:e}: {growth:?} {other:?}");
+        }
+        let sum = |it: &[f64]| it.iter().sum::<f64>();
+        let apart = (sum(&growth) - sum(&other)).abs();
+        assert!(apart < 1e-9, "{length:e} {rate:e}: {apart:e}");
+    }
+}
+
+/// A watched event at the strobe's angle lies on either side of it by rounding.
+#[test]
+fn an_event_at_the_strobe_is_one_event_of_the_orbit() {
+    let text = r#"
+        schema = 1
+        name = "at-strobe"
+        states = ["x", "v"]
+        forcing = { omega = 1 }
+        [[mode]]
+        name = "m"
+        equations = ["x' = v", "v' = -4*x - v/5 + cos"]
+        watch = [{ name = "start", guard = "sin > 0" }, { name = "low", guard = "cos < 0" }]
+        [start]
+        mode = "m"
+        x = 0
+        v = 0
+    "#;
+    let system = System::parse("test.system.toml", text).unwrap();
+    let found = orbit(text, &Section::strobe(0.0), 50, 1);
+    let mut names = found.event_names(&system);
+    names.sort();
+    assert_eq!(names, ["low@m", "start@m"]);
+}

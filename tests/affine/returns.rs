@@ -157,3 +157,30 @@ fn a_bouncing_balls_map_is_known() {
     assert!(found.iter().zip(known).all(|(a, b)| (a - b).abs() < 1e-14), "{found:?}");
     assert!((first.delays[1] - 2.0).abs() < 1e-14);
 }
+
+/// Far from time zero a start is a strobe only within rounding, and no strobe is passed over.
+#[test]
+fn strobes_late_in_time_are_where_the_angle_is() {
+    let text = |time: f64| {
+        format!(
+            "schema = 1\nname = \"late\"\nstates = [\"x\"]\nforcing = {{ omega = 2 }}\n[[mode]]\n\
+             name = \"m\"\nequations = [\"x' = cos - x\"]\n[start]\nmode = \"m\"\nt = {time:?}\n\
+             x = 0\n"
+        )
+    };
+    let period = std::f64::consts::PI;
+    for turns in [3e5, 1e6, 1e9, 1e12] {
+        // The time itself is known to 1e-16 of it.
+        let shares = [0.0, 3e-4, 0.02, 0.4, 0.98].into_iter();
+        for share in shares.filter(|it| *it == 0.0 || *it > 1e-15 * turns) {
+            let start = (turns + share) * period;
+            let system = System::parse("late.system.toml", &text(start)).unwrap();
+            let solver = Solver::<f64>::new(&system).unwrap();
+            let map = SectionMap::new(&solver, &Section::strobe(0.0)).unwrap();
+            let mut returns = map.returns(system.start.as_ref().unwrap()).unwrap();
+            let first = returns.next().unwrap().unwrap().time / period;
+            let expected = if share == 0.0 { turns } else { turns + 1.0 };
+            assert!((first - expected).abs() < 1e-15 * turns, "{turns} {share}: {first}");
+        }
+    }
+}

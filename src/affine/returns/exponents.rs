@@ -77,7 +77,7 @@ impl SectionMap<'_, f64> {
     ) -> Result<Exponents, NoReturn> {
         let batches = Batches::new(returns);
         let mut walk = Walk::begin(self, place, false).for_many();
-        let mut frame = Frame::new(self.solver());
+        let mut frame = Frame::new(self);
         let mut marks: Vec<Mark> = Vec::new();
         let (mut passed, mut drift) = (0, self.drift_of(&place.state));
         for k in 0..=batches.count() {
@@ -147,19 +147,25 @@ fn exponents(
     }
 }
 
-/// Orthonormal small changes that are carried along, with the logarithms of their growth.
+/// Small changes that are carried along, orthonormal in their units, with the logarithms of their
+/// growth.
 struct Frame<'a> {
     solver: &'a Solver<f64>,
+    units: &'a [f64],
     variation: Variation<f64>,
     growth: Vec<f64>,
     time: f64,
 }
 
 impl<'a> Frame<'a> {
-    fn new(solver: &'a Solver<f64>) -> Self {
-        let variation = Variation::of_each_state(solver);
+    fn new(map: &'a SectionMap<'_, f64>) -> Self {
+        let solver = map.solver();
+        let mut variation = Variation::of_each_state(solver);
+        for (column, unit) in variation.columns.iter_mut().zip(map.units()) {
+            column.iter_mut().for_each(|it| *it *= unit);
+        }
         let growth = vec![0.0; solver.system().states.len()];
-        Self { solver, variation, growth, time: f64::NAN }
+        Self { solver, units: map.units(), variation, growth, time: f64::NAN }
     }
 
     fn columns(&self) -> usize {
@@ -208,7 +214,10 @@ impl<'a> Frame<'a> {
 
     /// Makes the frame orthonormal, and counts the growth of its vectors.
     fn renew(&mut self, gone: f64) {
-        let columns = std::mem::take(&mut self.variation.columns);
+        let mut columns = std::mem::take(&mut self.variation.columns);
+        for column in &mut columns {
+            column.iter_mut().zip(self.units).for_each(|(it, unit)| *it /= unit);
+        }
         let largest = columns.iter().map(length).fold(0.0, f64::max);
         let mut kept: Vec<Vector<f64>> = Vec::with_capacity(columns.len());
         for mut column in columns {
@@ -225,6 +234,9 @@ impl<'a> Frame<'a> {
             }
             self.growth[kept.len()] += libm::log(length);
             kept.push(column.map(|it| it / length));
+        }
+        for column in &mut kept {
+            column.iter_mut().zip(self.units).for_each(|(it, unit)| *it *= unit);
         }
         self.variation.columns = kept;
     }

@@ -23,6 +23,7 @@ pub struct SectionMap<'a, T: Number> {
     period: Option<[Time<T>; 2]>,
     /// The drifts: orbits close without these.
     drifts: Vec<usize>,
+    units: Vec<f64>,
 }
 
 impl<'a, T: Number> SectionMap<'a, T> {
@@ -41,7 +42,9 @@ impl<'a, T: Number> SectionMap<'a, T> {
         let period = system.forcing.as_ref().map(|it| strobes(it, angle));
         let longest = T::exact(DEFAULT_MAX_RETURN_TIME * system.time_scale);
         let drifts = system.drifts();
-        Ok(Self { solver, section: resolved, longest, period, drifts })
+        let scales = system.scales.iter().chain([&system.time_scale]);
+        let units = scales.map(|scale| power_of_two_near(*scale)).collect();
+        Ok(Self { solver, section: resolved, longest, period, drifts, units })
     }
 
     /// Waits for a return no longer than this time.
@@ -74,6 +77,12 @@ impl<'a, T: Number> SectionMap<'a, T> {
     #[must_use]
     pub fn is_drift(&self, state: usize) -> bool {
         self.drifts.contains(&state)
+    }
+
+    /// The units in which small changes of the states, and of the time after them, are measured:
+    /// the powers of two next to their scales, by which nothing is rounded.
+    pub(super) fn units(&self) -> &[f64] {
+        &self.units
     }
 
     /// Whether a motion has escaped that returns with these states: one that is no drift is no
@@ -146,17 +155,32 @@ impl<'a, T: Number> SectionMap<'a, T> {
 
     /// The number of the first strobe after a time, or at it where that counts.
     pub(super) fn strobe_after(&self, time: &Time<T>, counts_this: bool) -> f64 {
+        match self.turns_at(time) {
+            (_, Some(strobe)) if counts_this => strobe,
+            (_, Some(strobe)) => strobe + 1.0,
+            (turns, None) => libm::ceil(turns),
+        }
+    }
+
+    /// The forcing periods from the angle's first strobe to a time, and the number of the strobe
+    /// that the time is, if it is one.
+    fn turns_at(&self, time: &Time<T>) -> (f64, Option<f64>) {
         /// The largest distance of a time from a strobe, in forcing periods, at which it counts as
-        /// the strobe.
+        /// the strobe: a start's time may be written to ten digits.
         const STROBE_TOLERANCE: f64 = 1e-9;
-        let Some([period, first]) = &self.period else { return 0.0 };
+        /// The rounding of a time and of its quotient by the period, in eps of the quotient.
+        const ROUNDINGS: f64 = 4.0;
+        let Some([period, first]) = &self.period else { return (0.0, Some(0.0)) };
         let turns = (time.since(first).value() / period.high).to_f64();
         let nearest = libm::round(turns);
-        match (turns - nearest).abs() <= STROBE_TOLERANCE * turns.abs().max(1.0) {
-            true if counts_this => nearest,
-            true => nearest + 1.0,
-            false => libm::ceil(turns),
-        }
+        let tolerance = STROBE_TOLERANCE.max(ROUNDINGS * f64::EPSILON * turns.abs());
+        let is_strobe = (turns - nearest).abs() <= tolerance;
+        (turns, is_strobe.then_some(nearest))
+    }
+
+    /// Whether a time is that of a strobe, where strobes are the section's points.
+    pub(super) fn is_strobe(&self, time: &Time<T>) -> bool {
+        matches!(self.section.returns, Returning::Strobe(_)) && self.turns_at(time).1.is_some()
     }
 
     /// The time by which the search for events goes beyond a strobe: about as far as to the next.
@@ -200,6 +224,10 @@ impl SectionMap<'_, f64> {
         let time = self.time_at_share(carried.share);
         carried.place.moved_to(time, carried.place.state.clone())
     }
+}
+
+fn power_of_two_near(scale: f64) -> f64 {
+    libm::scalbn(1.0, libm::round(libm::log2(scale)) as i32)
 }
 
 /// A forcing period, and the time at which omega t is an angle first.

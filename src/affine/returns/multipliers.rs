@@ -24,7 +24,7 @@ const ALIGNMENT_TOLERANCE: f64 = 1e-7;
 const MAX_FACTORS: usize = 16;
 
 /// The multipliers of an orbit, largest modulus first, as many as states: `returns` are the
-/// derivatives at fixed times, by columns. Of an autonomous system `flow` is the direction of the
+/// derivatives at fixed times, by columns, in units in which states are of size one. Of an autonomous system `flow` is the direction of the
 /// motion at the first point, which a section removes.
 pub fn multipliers(returns: &[Columns], flow: Option<&[f64]>) -> Option<Vec<[f64; 2]>> {
     let states = returns.first()?.len();

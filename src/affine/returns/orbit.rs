@@ -122,7 +122,11 @@ impl SectionMap<'_, f64> {
     pub(in crate::affine) fn of_shots(&self, shots: &Shots<Place<f64>, Way>) -> Option<Orbit> {
         let ways = || shots.images.iter().map(|it| &it.way);
         let returns: Vec<_> = ways().map(|it| it.at_fixed_time.clone()).collect();
-        let flow = || self.without_drifts(&self.rates(&shots.points[0]));
+        let flow = || {
+            let rates = self.rates(&shots.points[0]);
+            let scaled = rates.iter().zip(self.units()).map(|(rate, unit)| rate / unit);
+            self.without_drifts(&scaled.collect::<Vec<_>>())
+        };
         let flow = self.system().forcing.is_none().then(flow);
         let point = |it: &Place<f64>| Return {
             mode: it.mode,
@@ -165,6 +169,19 @@ impl SectionMap<'_, f64> {
         }
         derivative
     }
+
+    /// The changes of a return's states at its fixed time, without drifts and in their
+    /// [units](SectionMap::units), by columns.
+    fn at_fixed_time(&self, passage: &Passage<f64>) -> Vec<Vec<f64>> {
+        let states = self.system().states.len();
+        let scaled = |column: &[f64], by: f64| {
+            let entries = column.iter().zip(self.units()).map(|(it, unit)| it * by / unit);
+            self.without_drifts(&entries.collect::<Vec<_>>())
+        };
+        let columns = passage.at_fixed_time.iter().zip(self.units()).enumerate();
+        let columns = columns.filter(|(n, _)| !self.is_drift(*n));
+        columns.map(|(_, (column, by))| scaled(&column[..states], *by)).collect()
+    }
 }
 
 /// The way of an orbit between two of its points.
@@ -191,13 +208,9 @@ impl ReturnMap for SectionMap<'_, f64> {
 
     fn image(&self, point: &Place<f64>) -> Result<Image<Place<f64>, Way>, NoReturn> {
         let passage = self.passage(point)?;
-        let states = point.state.len();
-        let columns = passage.at_fixed_time.iter().enumerate();
-        let columns = columns.filter(|(n, _)| !self.is_drift(*n));
-        let columns = columns.map(|(_, it)| self.without_drifts(&it[..states]));
         let way = Way {
             events: passage.events.clone(),
-            at_fixed_time: columns.collect(),
+            at_fixed_time: self.at_fixed_time(&passage),
             time: passage.image.time.since(&point.time).value(),
             drift: {
                 let [to, from] = [&passage.image, point].map(|it| self.drift_of(&it.state));
@@ -218,6 +231,12 @@ impl ReturnMap for SectionMap<'_, f64> {
             change[from.state.len()] = self.time_apart(from, to);
         }
         change
+    }
+
+    fn units(&self) -> Change {
+        let mut units = [1.0; MAX_COORDINATES];
+        units.iter_mut().zip(self.units()).for_each(|(it, unit)| *it = *unit);
+        units
     }
 
     fn moved(&self, point: &Place<f64>, change: &Change, piece: &Place<f64>) -> Place<f64> {

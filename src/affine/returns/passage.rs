@@ -3,6 +3,7 @@
 use super::map::SectionMap;
 use super::section::{Guard, Section};
 use super::walk::{NoReturn, Returns, Walk};
+use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::events::{self, Answer};
 use crate::affine::model::error::SystemError;
@@ -87,15 +88,17 @@ impl<T: Number> SectionMap<'_, T> {
     pub fn passage(&self, place: &Place<T>) -> Result<Passage<T>, NoReturn> {
         let mut walk = Walk::beside(self, place);
         let mut variation = Variation::of_each_state(self.solver());
-        let mut events = Vec::new();
+        let mut crossed = Vec::new();
         let event = walk.next_with_derivative(&mut |from, to| {
             variation.pass(self.solver(), from, to);
-            events.extend(Guard::new(&to.what));
+            crossed.extend(Guard::new(&to.what).map(|guard| (guard, to.time)));
         })?;
-        let onto = walk.onto_section.and_then(|onto| events.iter().position(|it| *it == onto));
-        if let Some(onto) = onto {
-            events.remove(onto);
+        let onto = walk.onto_section;
+        let onto = onto.and_then(|onto| crossed.iter().position(|(guard, _)| *guard == onto));
+        if let Some(repeated) = onto.or_else(|| self.repeated_at_strobe(&crossed)) {
+            crossed.remove(repeated);
         }
+        let events = crossed.into_iter().map(|(guard, _)| guard).collect();
         let image = walk.place()?;
         let (at_return, delays) = (variation.columns.clone(), variation.delays.clone());
         variation.settle(self.solver(), &event);
@@ -103,6 +106,14 @@ impl<T: Number> SectionMap<'_, T> {
         let at_fixed_time = variation.columns;
         let is_decided = walk.undecidable() == 0;
         Ok(Passage { image, events, at_fixed_time, at_return, delays, is_decided })
+    }
+
+    /// The first event of a way from strobe to strobe, if it is the last one as well: an event at
+    /// the strobe itself lies on either side of it by rounding, and belongs to one return.
+    fn repeated_at_strobe(&self, crossed: &[(Guard, Time<T>)]) -> Option<usize> {
+        let [(first, begun), .., (last, ended)] = crossed else { return None };
+        let is_repeated = first == last && [begun, ended].iter().all(|it| self.is_strobe(it));
+        is_repeated.then_some(0)
     }
 
     /// The delays and the changes of an event's place for a change of its time alone: `passage` is

@@ -1,7 +1,7 @@
 //! Sections through the motions of a system, and the events of a system that they name.
 
 use crate::affine::model::error::SystemError;
-use crate::affine::model::system::{Direction, System};
+use crate::affine::model::system::{Direction, System, row_times};
 use crate::affine::solver::event::What;
 use std::fmt;
 
@@ -133,6 +133,15 @@ impl Guard {
     pub(super) fn place_among_all(&self, system: &System) -> usize {
         let before = if self.is_watched { system.modes[self.mode].until.len() } else { 0 };
         before + self.index
+    }
+
+    /// Whether the guard is as it was after its event, so that the section's points lie on it: a
+    /// reset may leave them anywhere, such as that of a clock.
+    pub(super) fn is_kept_by_its_event(&self, system: &System) -> bool {
+        self.is_watched || {
+            let event = &system.modes[self.mode].until[self.index];
+            row_times(&event.guard, &event.reset) == event.guard
+        }
     }
 
     /// Whether the event is one where its guard changes at this rate.

@@ -41,6 +41,10 @@ pub trait ReturnMap {
     /// A point with a change, on the piece of another point.
     fn moved(&self, point: &Self::Point, change: &Change, piece: &Self::Point) -> Self::Point;
 
+    /// The units in which changes are of size one, powers of two: what is small beside others is
+    /// judged in these.
+    fn units(&self) -> Change;
+
     /// Whether two points lie on one piece.
     fn are_on_one_piece(&self, one: &Self::Point, other: &Self::Point) -> bool;
 
@@ -72,6 +76,7 @@ pub struct Shots<P, W> {
     pub residual: f64,
     /// Whether each image lies on the piece of the next point.
     is_joined: bool,
+    units: Change,
 }
 
 impl<P: Clone, W: Clone> Shots<P, W> {
@@ -103,8 +108,8 @@ impl<P: Clone, W: Clone> Shots<P, W> {
     where
         M: ReturnMap<Point = P, Way = W>,
     {
-        let mut shots =
-            Self { points, images, defects: Vec::new(), residual: 0.0, is_joined: true };
+        let (defects, units) = (Vec::new(), map.units());
+        let mut shots = Self { points, images, defects, residual: 0.0, is_joined: true, units };
         for (k, image) in shots.images.iter().enumerate() {
             let next = &shots.points[(k + 1) % shots.points.len()];
             let defect = map.change_between(next, &image.point);
@@ -123,12 +128,14 @@ impl<P: Clone, W: Clone> Shots<P, W> {
         let count = self.images.len();
         let carried = self.images.iter().enumerate().map(|(k, it)| {
             // The roundings of a point lie along the changes that the return to it leaves.
-            let changes = columns(&self.images[(k + count - 1) % count].derivative);
+            let before = &self.images[(k + count - 1) % count].derivative;
+            let changes = columns(&self.in_units(before));
+            let derivative = self.in_units(&it.derivative);
             let largest = changes.iter().map(|it| length(it)).fold(0.0, f64::max);
             let axes = orthonormal(changes, MIN_RELATIVE_CHANGE * largest);
             let grown = axes.iter().map(|axis| {
                 let axis: Change = std::array::from_fn(|n| axis[n]);
-                length(&apply(&it.derivative, &axis))
+                length(&apply(&derivative, &axis))
             });
             it.segments as f64 * grown.fold(1.0, f64::max)
         });
@@ -148,13 +155,21 @@ impl<P: Clone, W: Clone> Shots<P, W> {
         for (n, row) in around.iter_mut().enumerate() {
             row[n] -= 1.0;
         }
-        let mut changes = vec![solve(around, offset.map(|it| -it))];
+        let right = std::array::from_fn(|n| -offset[n] / self.units[n]);
+        let first = solve(self.in_units(&around), right);
+        let mut changes = vec![std::array::from_fn(|n| first[n] * self.units[n])];
         let ways = self.images.iter().zip(&self.defects).take(self.points.len() - 1);
         for (image, defect) in ways {
             let carried = apply(&image.derivative, &changes[changes.len() - 1]);
             changes.push(sum(&carried, defect));
         }
         changes
+    }
+
+    /// A derivative that acts on changes in their units, and gives them so.
+    fn in_units(&self, derivative: &Derivative) -> Derivative {
+        let entry = |i: usize, j: usize| derivative[i][j] * self.units[j] / self.units[i];
+        std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
     }
 
     /// The largest distance to another orbit's points, which may close sooner.

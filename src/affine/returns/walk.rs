@@ -133,7 +133,7 @@ impl<'a, T: Number> Walk<'a, T> {
             return false;
         };
         let (solver, system) = (self.map.solver(), self.map.system());
-        if [place.mode, event.mode] != [guard.mode; 2] {
+        if [place.mode, event.mode] != [guard.mode; 2] || !guard.is_kept_by_its_event(system) {
             return false;
         }
         let row = (guard.mode, guard.place_among_all(system));
