@@ -1,7 +1,7 @@
 //! Attractors and basins of return maps, beside the oscillator's own and systems whose attractors
 //! are known.
 
-use percuss::affine::{Plane, ReturnBasins, SectionMap, Solver, System, SystemFile};
+use percuss::affine::{NoOrbit, Plane, ReturnBasins, SectionMap, Solver, System, SystemFile};
 use percuss::dynamics::attractor::{AttractorKind, Basins, Grid, Label, Window};
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::system::Section;
@@ -206,4 +206,31 @@ fn starts_of_a_plane_lie_in_the_modes_that_the_conditions_choose() {
     assert_eq!(kinds(&both), [(AttractorKind::Periodic, Some(1)); 2]);
     let share = |id| both.fraction(Label::Attractor(id));
     assert_eq!(share(0) + share(1), 1.0);
+}
+
+/// x'' = -x - x' crosses zero for ever on its way to rest there.
+#[test]
+fn a_motion_that_returns_to_rest_for_ever_is_an_equilibrium() {
+    let text = r#"
+        schema = 1
+        name = "sink"
+        states = ["x", "v"]
+        [[mode]]
+        name = "sink"
+        equations = ["x' = v", "v' = -x - v"]
+        watch = [{ name = "zero", guard = "x > 0", direction = "both" }]
+        [start]
+        mode = "sink"
+        x = 1
+        v = 0
+    "#;
+    let system = with(text, &[], "sink");
+    let found = basins(&system, &Section::event("zero"), &plane([-1.0, 1.0, -1.0, 1.0], 5, 5), 5);
+    assert_eq!(kinds(&found), [(AttractorKind::Equilibrium, None)]);
+    let solver = Solver::<f64>::new(&system).unwrap();
+    let map = SectionMap::new(&solver, &Section::event("zero")).unwrap();
+    let mut returns = map.returns(system.start.as_ref().unwrap()).unwrap();
+    returns.by_ref().take(40).for_each(|it| drop(it.unwrap()));
+    let orbit = map.orbit(&returns.place().unwrap(), 1);
+    assert!(matches!(orbit, Err(NoOrbit::Rest(_))), "{orbit:?}");
 }

@@ -100,7 +100,8 @@ fn fast_turns_keep_their_phase() {
     }
 }
 
-/// x' = cos t - x follows the forcing as (cos t + sin t)/2; sine and cosine of 1e22 by mpmath 1.3.0.
+/// x' = cos t - x follows the forcing as (cos t + sin t)/2; sine and cosine of 1e22 are those of
+/// mpmath 1.3.0.
 #[test]
 fn many_turns_of_the_forcing_have_proved_digits() {
     const FOLLOWED: f64 = 0.5 * (0.523_214_785_395_138_945_5 - 0.852_200_849_767_188_801_8);

@@ -23,6 +23,8 @@ const SETTLING_RETURNS: u64 = 64;
 const MAX_POSTPONED_RETURNS: u64 = 64;
 /// Points of a trap's net on each of its shells for each dimension beyond three.
 const DIRECTIONS_PER_DIMENSION: usize = 16;
+/// Returns nearer to one another, beside 1 and their size, may be a state of rest.
+const STAY_TOLERANCE: f64 = 1e-12;
 /// The smallest change beside the largest one that is not a rounding of it.
 const MIN_RELATIVE_CHANGE: f64 = 1e-12;
 
@@ -109,6 +111,7 @@ impl Motions for SectionMotions<'_> {
         see: &mut Observer<'_, Self>,
     ) -> Result<Place<f64>, StopOf<Self>> {
         let mut returns = self.map.returns_after(from);
+        let mut last: Option<(f64, Spot)> = None;
         for n in 0..count + MAX_POSTPONED_RETURNS {
             if n >= count
                 && let Ok(place) = returns.place()
@@ -125,6 +128,14 @@ impl Motions for SectionMotions<'_> {
                 return Err(Stop::Label(Label::Escaping));
             }
             let spot = self.coordinates.spot(&point);
+            let stays = last.is_some_and(|(time, at)| {
+                self.coordinates.are_near(&at, &spot, STAY_TOLERANCE)
+                    && self.map.is_rest(&point, point.time - time)
+            });
+            if stays {
+                return Err(Stop::Rest(point));
+            }
+            last = Some((point.time, spot.clone()));
             if let Some(label) = see(n + 1, &point, &spot) {
                 return Err(Stop::Label(label));
             }

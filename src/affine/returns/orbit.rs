@@ -66,6 +66,8 @@ pub enum NoOrbit {
     NoReturn(NoReturn),
     /// No step comes closer, or the steps come closer too slowly: this is the least residual.
     Stalled(f64),
+    /// What was reached in this time is a state of rest, such as the limit of impacts.
+    Rest(f64),
     /// The derivative of an orbit that was reached is not finite.
     NoDerivative(f64),
 }
@@ -79,6 +81,9 @@ impl fmt::Display for NoOrbit {
             Self::NoReturn(why) => write!(f, "no orbit: {why}"),
             Self::Stalled(residual) => {
                 write!(f, "no orbit: no step comes closer, residual {residual:.3e}")
+            }
+            Self::Rest(time) => {
+                write!(f, "no orbit: the motion is at rest, and returns in a time of {time:.3e}")
             }
             Self::NoDerivative(residual) => {
                 write!(
@@ -115,6 +120,9 @@ impl SectionMap<'_, f64> {
         let shots = solve(self, shots).map_err(|it| NoOrbit::Stalled(it.residual))?;
         let shots = minimal_orbit(self, shots);
         let orbit = self.of_shots(&shots).ok_or(NoOrbit::NoDerivative(shots.residual))?;
+        if self.is_rest(&orbit.points[0], orbit.time) {
+            return Err(NoOrbit::Rest(orbit.time));
+        }
         Ok((orbit, shots.points))
     }
 
