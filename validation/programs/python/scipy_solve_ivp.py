@@ -151,4 +151,4 @@ def gradients(setup, course):
 
 if __name__ == "__main__":
     methods = {name: said[1:] for name, said in METHODS.items()}
-    serve("scipy", scipy.__version__, in_pairs(methods, gradients=True), make, gradients)
+    serve("scipy", scipy.__version__, in_pairs(methods, gradients=True, differences=True), make, gradients)

@@ -119,6 +119,10 @@ impl Engine for ProgramEngine {
         matches!(&self.runs, Runs::Set { set_up, .. } if set_up.gradients)
     }
 
+    fn takes_differences(&self) -> bool {
+        matches!(&self.runs, Runs::Set { set_up, .. } if set_up.differences)
+    }
+
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let (pool, set_up) = match &self.runs {
             Runs::Set { pool, set_up } => (pool, set_up),

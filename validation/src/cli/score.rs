@@ -56,6 +56,9 @@ pub(super) struct Arguments {
     /// The class of the method
     #[arg(long, value_name = "CLASS", value_parser = one_of(&METHODS))]
     method: Option<Class>,
+    /// Derivatives are differences of runs, whose step may be too large
+    #[arg(long)]
+    differences: bool,
     /// The folder of CASE.events.csv, CASE.samples.csv and CASE.gradients.csv
     #[arg(long, value_name = "DIR")]
     answers: PathBuf,
@@ -140,6 +143,13 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let differentiated: Vec<&str> = derivatives_of.iter().map(|it| it.name.as_str()).collect();
     let cases = judged.open(&differentiated)?;
     let answered = answered_cases(&arguments.answers)?;
+    if arguments.differences && differentiated.is_empty() {
+        let folder = arguments.answers.display();
+        bail!(
+            "--differences: --answers {folder} has no CASE{GRADIENTS_ENDING} of a chosen case; \
+             accepted is with derivatives"
+        );
+    }
     // What probes ask needs an engine that is there.
     let cases = cases.prepare(None)?;
     let all = &cases.all;
@@ -206,6 +216,7 @@ impl Arguments {
             class: self.method,
             order: self.order,
             stepping,
+            takes_differences: self.differences,
         };
         FileEngine::new(answerer, self.answers.clone(), case.to_owned())
     }

@@ -123,6 +123,11 @@ pub trait Engine: Sync {
         false
     }
 
+    /// Whether its derivatives are differences of whole runs, over a step that may be too large.
+    fn takes_differences(&self) -> bool {
+        false
+    }
+
     /// The longest step of a run, where the engine does not leave that to its library.
     fn longest_step_on(&self, _task: &Task) -> Option<f64> {
         None

@@ -7,6 +7,8 @@ pub struct GradientAnswer {
     pub by: Vec<Option<NameAnswer>>,
     /// The largest error of an event's time in the same run, where that was answered too.
     pub event_error: Option<f64>,
+    /// Whether the derivatives are differences of runs.
+    pub are_differences: bool,
 }
 
 /// The derivatives by one name: for each row of the table those of time and states, where given.

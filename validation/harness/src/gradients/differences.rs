@@ -1,6 +1,7 @@
 //! Difference quotients over steps of a name, by runs with the same events.
 
 use super::linear::Linear;
+use super::mechanism::EXPLAINED_SHARE;
 use super::path::{Stop, Stretch};
 use super::walk::{Along, Rows};
 use nalgebra::DVector;
@@ -36,17 +37,20 @@ impl<'a> Quotients<'a> {
         Some(weighted_sum(&[(1.0 / width, &above), (-1.0 / width, &below)]))
     }
 
-    /// The step over which differences give what was answered, if there is one. `weigh` takes the
-    /// cells that are compared, each divided by its unit, and `error` is what was answered less the
-    /// truth.
-    pub(super) fn step(
+    /// The steps over which differences, one-sided or central ones, give what was answered. Both
+    /// may: where little is compared their errors differ by a factor, and the step is free. `weigh`
+    /// takes the cells that are compared, each divided by its unit, and `error` is what was answered
+    /// less the truth.
+    pub(super) fn steps(
         &self,
         truth: &Rows,
         error: &Weighed,
         weigh: impl Fn(&Rows) -> Weighed,
-    ) -> Option<(f64, bool)> {
+    ) -> Vec<(f64, bool)> {
         let h = RELATIVE_STEP * self.size;
-        let [above, at, below] = [self.values(h)?, self.values(0.0)?, self.values(-h)?];
+        let [Some(above), Some(at), Some(below)] = [h, 0.0, -h].map(|it| self.values(it)) else {
+            return Vec::new();
+        };
         let second = weighted_sum(&[
             (1.0 / (h * h), &above),
             (-2.0 / (h * h), &at),
@@ -57,10 +61,11 @@ impl<'a> Quotients<'a> {
         let of_both = share(error, &weigh(&central)).max(0.0).sqrt() * h;
         [(of_one_side, false), (of_both, true)]
             .into_iter()
-            .find_map(|(step, central)| self.refined_step(step, central, truth, error, &weigh))
+            .filter_map(|(step, central)| self.refined_step(step, central, truth, error, &weigh))
+            .collect()
     }
 
-    /// A step near this one whose differences leave a tenth of the error at most.
+    /// A step near this one whose differences explain the error.
     fn refined_step(
         &self,
         mut step: f64,
@@ -77,7 +82,7 @@ impl<'a> Quotients<'a> {
             let found = weigh(&weighted_sum(&[(1.0, &quotient), (-1.0, truth)]));
             let rest: f64 = found.iter().zip(error).map(|(a, b)| (a - b) * (a - b)).sum();
             let all: f64 = error.iter().map(|it| it * it).sum();
-            if rest <= 0.01 * all {
+            if rest <= EXPLAINED_SHARE * EXPLAINED_SHARE * all {
                 return Some((step, central));
             }
             let more = share(error, &found).max(0.0);

@@ -1,7 +1,7 @@
 //! Answered derivatives held against the truth, and against what wrong rules would give.
 
 use super::answer::{GradientAnswer, NameAnswer};
-use super::mechanism::Mechanism;
+use super::mechanism::{EXPLAINED_SHARE, Mechanism};
 use super::reference::Reference;
 use super::verdict::{Judged, Verdict};
 use super::walk::Rows;
@@ -14,9 +14,6 @@ pub const ALLOWED_UNITS: f64 = 100.0;
 /// A cell is judged where what is allowed is below this share of the largest derivative of its
 /// kind: above it, no wrong term could be told from rounding.
 const JUDGED_SHARE: f64 = 0.1;
-
-/// A wrong rule explains an answer if it leaves at most this share of what the answer is off.
-const EXPLAINED_SHARE: f64 = 0.5;
 
 /// Judges answers to a case at tolerances, one after the other.
 #[must_use]
@@ -158,7 +155,7 @@ impl<'a> OneName<'a> {
                 format!("within {units:.2} units of derivatives with {mechanism}{also}; {off}");
             return (Verdict::MissingTerm, Some(*mechanism), why);
         }
-        if let Some(said) = self.coarse_step_verdict(answer, cells, &off) {
+        if let Some(said) = self.coarse_step_verdict(at, answer, cells, &off) {
             return said;
         }
         self.by_tolerances(cells, off)
@@ -232,13 +229,18 @@ impl<'a> OneName<'a> {
         Mechanism::ALL.into_iter().filter_map(|it| Some((it, of(it)?))).collect()
     }
 
-    /// Whether an answer is a difference over a step that is too large.
+    /// The verdict on differences over a step that is too large; none on an answer that is not said
+    /// to be differences.
     fn coarse_step_verdict(
         &self,
+        at: usize,
         answer: &NameAnswer,
         cells: &[(usize, usize)],
         off: &str,
     ) -> Option<Said> {
+        if !self.answers[at].1?.are_differences {
+            return None;
+        }
         let units = self.reference.units(self.name);
         let weigh = |rows: &Rows| cells.iter().map(|(n, k)| rows[*n][*k] / units[*n][*k]).collect();
         let error: Vec<f64> = cells
@@ -246,9 +248,15 @@ impl<'a> OneName<'a> {
             .filter_map(|(n, k)| Some((answer.cell(*n, *k)? - self.truth[*n][*k]) / units[*n][*k]))
             .collect();
         let quotients = self.reference.quotients(self.name);
-        let (step, central) = quotients.step(&self.truth, &error, weigh)?;
-        let kind = if central { "central" } else { "one-sided" };
-        let why = format!("as {kind} differences over a step of {step:.2e}; {off}");
+        let steps = quotients.steps(&self.truth, &error, weigh);
+        if steps.is_empty() {
+            return None;
+        }
+        let told = steps.into_iter().map(|(step, central)| {
+            let kind = if central { "central" } else { "one-sided" };
+            format!("{kind} differences over a step of {step:.2e}")
+        });
+        let why = format!("as {}; {off}", told.collect::<Vec<_>>().join(" or "));
         Some((Verdict::WrongLimit, Some(Mechanism::CoarseDifferences), why))
     }
 

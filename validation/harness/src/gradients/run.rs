@@ -100,7 +100,8 @@ fn answer_at(
     let task = reference.case.task()?;
     engine.takes(&task).map_err(Failure::new)?;
     let outcome = answer(engine, &task, accuracy, &Limits::default())?;
-    read(reference, &task, &outcome)
+    let answer = read(reference, &task, &outcome)?;
+    Ok(GradientAnswer { are_differences: engine.takes_differences(), ..answer })
 }
 
 /// What a run answers, once its events are known to be those of the table.
@@ -110,7 +111,7 @@ fn read(reference: &Reference, task: &Task, outcome: &Outcome) -> Result<Gradien
     let errors = outcome.events.iter().zip(&times).map(|(it, time)| (it.elapsed - time).abs());
     let event_error = errors.reduce(f64::max);
     let by = outcome.gradients.iter().map(|it| it.as_ref().map(|it| rows(it, outcome))).collect();
-    Ok(GradientAnswer { by, event_error })
+    Ok(GradientAnswer { by, event_error, are_differences: false })
 }
 
 /// Refuses a run with other events than the table: their derivatives are of another motion.

@@ -138,7 +138,7 @@ fn an_integrator_that_keeps_to_its_tolerance_is_right() {
                 let by = (0..reference.case.by.len()).map(|name| {
                     Some(NameAnswer::whole(&answer(&reference.along(name), until, tolerance)))
                 });
-                (tolerance, GradientAnswer { by: by.collect(), event_error: None })
+                (tolerance, GradientAnswer { by: by.collect(), ..Default::default() })
             });
             let asked: Vec<_> = answers.iter().map(|(at, it)| (*at, Some(it))).collect();
             let told = judge(&reference, &asked).into_iter().map(|it| {

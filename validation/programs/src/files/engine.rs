@@ -25,6 +25,8 @@ pub struct Answerer {
     pub order: Option<u32>,
     /// The way in which the engine's accuracy is chosen, which fixes the unit of its error.
     pub stepping: Stepping,
+    /// Whether the derivatives are differences of whole runs.
+    pub takes_differences: bool,
 }
 
 /// The answers to one case, which were made before, as an engine that runs this case alone.
@@ -71,6 +73,10 @@ impl Engine for FileEngine {
             return Ok(());
         }
         Err(format!("not answered: there is no {events}"))
+    }
+
+    fn takes_differences(&self) -> bool {
+        self.answerer.takes_differences
     }
 
     fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {

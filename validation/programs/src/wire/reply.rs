@@ -74,6 +74,9 @@ pub struct SetUp {
     /// Whether the program answers derivatives through events where they are asked for.
     #[serde(default)]
     pub gradients: bool,
+    /// Whether these derivatives are differences of whole runs.
+    #[serde(default)]
+    pub differences: bool,
 }
 
 /// Who finds the events of a set-up.
