@@ -22,15 +22,25 @@ fn proved_table() -> String {
 
 /// The exit code, stderr, and the names, verdicts and reasons of `score` on a file of derivatives.
 fn score(gradients: &str) -> (Option<i32>, String, Vec<[String; 3]>) {
+    score_with(&[], Some(gradients))
+}
+
+/// The same with further flags; the file may be left out.
+fn score_with(
+    flags: &[&str],
+    gradients: Option<&str>,
+) -> (Option<i32>, String, Vec<[String; 3]>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
     let system = reference(&format!("{CASE}.system.toml"));
     let events = run(&["events", system.to_str().expect("UTF-8"), "--until", "4"]);
     fs::write(path(&format!("{CASE}.events.csv")), &events.stdout).expect("written");
-    fs::write(path(&format!("{CASE}.gradients.csv")), gradients).expect("written");
+    if let Some(gradients) = gradients {
+        fs::write(path(&format!("{CASE}.gradients.csv")), gradients).expect("written");
+    }
     let (answers, out) = (path("").display().to_string(), path("out").display().to_string());
-    let flags = ["score", "--name", "mine", "--tolerance", "1e-9", "--answers", &answers];
-    let output = run(&[&flags[..], &["-c", CASE, "--out", &out]].concat());
+    let asked = ["score", "--name", "mine", "--tolerance", "1e-9", "--answers", &answers];
+    let output = run(&[&asked[..], &["-c", CASE, "--out", &out], flags].concat());
     let report = fs::read(path("out").join("report.json")).ok();
     let report: Value = report.map_or(Value::Null, |it| serde_json::from_slice(&it).expect("JSON"));
     let word = |it: &Value, key: &str| it[key].as_str().expect("a word").to_owned();
@@ -66,6 +76,36 @@ fn proved_derivatives_are_right_and_others_are_named() {
     let is_kept = |it: &&str| it.starts_with("n,") || it.contains(",end,");
     let ends: Vec<&str> = proved.lines().filter(is_kept).collect();
     assert_eq!(verdicts(&ends.join("\n")), ["right"; 4]);
+}
+
+/// Some step of differences explains a thousandth by which one cell is off, and it is named where the
+/// answers are said to be differences.
+#[test]
+fn a_step_is_a_cause_where_the_answers_are_differences() {
+    let proved = proved_table();
+    let end = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        (cells[1] == "end").then(|| {
+            let slope: f64 = cells[4].parse().expect("a number");
+            [&cells[..4], &[&(slope * 1.001).to_string(), cells[5]]].concat().join(",")
+        })
+    };
+    let header = proved.lines().next().map(str::to_owned);
+    let answer: Vec<String> = header.into_iter().chain(proved.lines().filter_map(end)).collect();
+    let answer = answer.join("\n");
+    for (flags, is_named) in [(&["--differences"][..], true), (&[], false)] {
+        let (code, said, found) = score_with(flags, Some(&answer));
+        assert_eq!(code, Some(0), "{said}");
+        let named = found.iter().filter(|it| it[2].contains("differences over a step of"));
+        assert_eq!(named.count() > 0, is_named, "{flags:?}: {found:?}");
+    }
+}
+
+#[test]
+fn differences_without_derivatives_are_refused() {
+    let (code, said, _) = score_with(&["--differences"], None);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("--differences") && said.contains("CASE.gradients.csv"), "{said}");
 }
 
 #[test]

@@ -56,7 +56,7 @@ pub(super) struct Arguments {
     /// The class of the method
     #[arg(long, value_name = "CLASS", value_parser = one_of(&METHODS))]
     method: Option<Class>,
-    /// Derivatives are differences of runs, whose step may be too large
+    /// The derivatives are differences of runs, whose step may be too large
     #[arg(long)]
     differences: bool,
     /// The folder of CASE.events.csv, CASE.samples.csv and CASE.gradients.csv

@@ -3,10 +3,9 @@
 use std::fmt;
 
 /// A wrong rule or a step of differences explains an answer if it leaves at most this share of what
-/// the answer is off. What is off has some size, whatever the cause: among twenty rules one that is
-/// off by half as much to twice as much is found by chance, and so were two, of an engine whose
-/// rules at events are right; they left 0.44 and 0.46. Rules that were really wrong left a
-/// thousandth at most. A tenth is also how far an allowance may reach into a derivative.
+/// the answer is off. Whatever that is, some of the sixteen derivatives that rules may give are off
+/// by about as much: where one might leave half of it, two were found by chance for an engine whose
+/// rules are right. A tenth loses no missing term of an engine that lacks one.
 pub(super) const EXPLAINED_SHARE: f64 = 0.1;
 
 /// The use of a term at an event.

@@ -157,6 +157,29 @@ fn example_run() -> (Value, u64) {
     (run.clone(), run["id"].as_u64().unwrap_or_default())
 }
 
+/// Derivatives are differences of runs only where a set-up says so.
+#[test]
+fn a_set_up_says_that_it_takes_differences() {
+    let schema = schema("answer");
+    let Some(plain) = examples("Answers").into_iter().find(|it| it["capabilities"].is_object())
+    else {
+        unreachable!("the page has capabilities")
+    };
+    let id = plain["id"].as_u64().unwrap_or_default();
+    let said = |changed: &Value| match decode(changed.to_string().as_bytes(), id) {
+        Ok(ReplyContent::Capabilities(it)) => it.set_ups[0].differences,
+        other => unreachable!("{changed}: {other:?}"),
+    };
+    assert!(!said(&plain));
+    let mut changed = plain;
+    changed["capabilities"]["setups"][0]["differences"] = json!(true);
+    assert!(schema.is_valid(&changed), "{changed}: {:?}", schema.validate(&changed).err());
+    assert!(said(&changed));
+    changed["capabilities"]["setups"][0]["differences"] = json!("central");
+    assert!(!schema.is_valid(&changed));
+    assert!(decode(changed.to_string().as_bytes(), id).is_err());
+}
+
 /// A change of an answer.
 type Spoiling = fn(&mut Value);
 
