@@ -26,10 +26,7 @@ fn score(gradients: &str) -> (Option<i32>, String, Vec<[String; 3]>) {
 }
 
 /// The same with further flags; the file may be left out.
-fn score_with(
-    flags: &[&str],
-    gradients: Option<&str>,
-) -> (Option<i32>, String, Vec<[String; 3]>) {
+fn score_with(flags: &[&str], gradients: Option<&str>) -> (Option<i32>, String, Vec<[String; 3]>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);
     let system = reference(&format!("{CASE}.system.toml"));
@@ -78,7 +75,7 @@ fn proved_derivatives_are_right_and_others_are_named() {
     assert_eq!(verdicts(&ends.join("\n")), ["right"; 4]);
 }
 
-/// Some step of differences explains a thousandth by which one cell is off, and it is named where the
+/// Some step of differences explains the thousandth by which one cell is off: it is named where the
 /// answers are said to be differences.
 #[test]
 fn a_step_is_a_cause_where_the_answers_are_differences() {

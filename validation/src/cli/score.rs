@@ -140,16 +140,16 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let stepping = arguments.stepping()?;
     let baseline = judged.baseline()?;
     let derivatives_of = gradients::answered(&judged.chosen, &arguments.answers)?;
-    let differentiated: Vec<&str> = derivatives_of.iter().map(|it| it.name.as_str()).collect();
-    let cases = judged.open(&differentiated)?;
-    let answered = answered_cases(&arguments.answers)?;
-    if arguments.differences && differentiated.is_empty() {
+    if arguments.differences && derivatives_of.is_empty() {
         let folder = arguments.answers.display();
         bail!(
             "--differences: --answers {folder} has no CASE{GRADIENTS_ENDING} of a chosen case; \
              accepted is with derivatives"
         );
     }
+    let differentiated: Vec<&str> = derivatives_of.iter().map(|it| it.name.as_str()).collect();
+    let cases = judged.open(&differentiated)?;
+    let answered = answered_cases(&arguments.answers)?;
     // What probes ask needs an engine that is there.
     let cases = cases.prepare(None)?;
     let all = &cases.all;

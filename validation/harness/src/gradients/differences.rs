@@ -37,10 +37,9 @@ impl<'a> Quotients<'a> {
         Some(weighted_sum(&[(1.0 / width, &above), (-1.0 / width, &below)]))
     }
 
-    /// The steps over which differences, one-sided or central ones, give what was answered. Both
-    /// may: where little is compared their errors differ by a factor, and the step is free. `weigh`
-    /// takes the cells that are compared, each divided by its unit, and `error` is what was answered
-    /// less the truth.
+    /// The steps over which one-sided differences and central ones give what was answered: both
+    /// may, where their errors differ by a factor alone. `weigh` takes the cells that are compared,
+    /// each divided by its unit, and `error` is what was answered less the truth.
     pub(super) fn steps(
         &self,
         truth: &Rows,

@@ -113,8 +113,8 @@ fn references_for_differences() -> Vec<Reference> {
     references().into_iter().filter(is_chosen).collect()
 }
 
-/// Differences over a step of a hundredth are named as such with their kind, or too good to tell. In
-/// `amici-3274` errors of one-sided and central ones differ by a factor, and the reason has both.
+/// Differences over a step of a hundredth are named as such with their kind, or too good to tell.
+/// In `amici-3274` errors of one-sided and central ones differ by a factor: the reason has both.
 #[test]
 fn differences_that_are_too_coarse_are_named() {
     let mut named = [0; 2];
