@@ -123,6 +123,7 @@ impl Answers {
             class: self.class.as_deref().map(class).transpose()?,
             order: self.order,
             stepping: self.stepping()?,
+            takes_differences: false,
         })
     }
 

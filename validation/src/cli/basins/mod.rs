@@ -235,7 +235,7 @@ fn show(survey: &Survey, shown: AttractorFormat, out: &mut dyn Write) -> Result<
 impl AttractorArguments {
     /// Refuses the flags of a system where none is chosen.
     pub(super) fn refuse_flags_of_system(&self) -> Result<()> {
-        self.grid.refuse_axes()?;
+        self.grid.check_without_system()?;
         self.section.refuse()
     }
 }
@@ -243,17 +243,21 @@ impl AttractorArguments {
 impl BasinArguments {
     /// Refuses the flags of a system where none is chosen.
     pub(super) fn refuse_flags_of_system(&self) -> Result<()> {
-        self.grid.refuse_axes()?;
+        self.grid.check_without_system()?;
         self.section.refuse()
     }
 }
 
 impl GridFlags {
-    fn refuse_axes(&self) -> Result<()> {
-        match &self.axes {
-            Some(axes) => bail!("{}", without_system("--axes", axes)),
-            None => Ok(()),
+    /// Refuses what only a system's grid has: axes, and states of any size.
+    fn check_without_system(&self) -> Result<()> {
+        if let Some(axes) = &self.axes {
+            bail!("{}", without_system("--axes", axes));
         }
+        if self.window.check().is_err() {
+            bail!("--window is accepted within 1e9 without SYSTEM");
+        }
+        Ok(())
     }
 
     /// The grid, with this displacement of the slider's top.

@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     arguments.picture.refuse_show()?;
     let diagram = diagram(arguments, &arguments.model)?;
     arguments.model.check_varied(diagram.parameter)?;
-    check_size(arguments, diagram.periods, most_rows(&outputs))?;
+    check_size(arguments, ("--periods", diagram.periods), most_rows(&outputs))?;
     let bar = long_work::bar(u64::from(arguments.steps), "values");
     let steps = long_work::pool(threads)?.install(|| diagram.steps(|| bar.inc(1)));
     bar.finish_and_clear();
@@ -164,12 +164,16 @@ pub(super) fn diagram(arguments: &Arguments, model: &ModelFlags) -> Result<Diagr
     })
 }
 
-/// Refuses more rows than are held in memory.
-pub(super) fn check_size(arguments: &Arguments, periods: u32, most: u64) -> Result<()> {
-    long_work::check_horizon(arguments.transient, u64::from(periods))?;
-    let rows = u64::from(arguments.steps) * u64::from(periods);
+/// Refuses more rows than are held in memory: so many a value, by this flag.
+pub(super) fn check_size(
+    arguments: &Arguments,
+    (flag, count): (&str, u32),
+    most: u64,
+) -> Result<()> {
+    long_work::check_horizon(arguments.transient, u64::from(count))?;
+    let rows = u64::from(arguments.steps) * u64::from(count);
     if rows > most {
-        bail!("--steps times --periods is {rows}: accepted are at most {most}");
+        bail!("--steps times {flag} is {rows}: accepted are at most {most}");
     }
     Ok(())
 }

@@ -75,7 +75,7 @@ pub(in crate::cli) fn returns(arguments: &Arguments, most: u64) -> Result<u32> {
     }
     arguments.check_steps()?;
     arguments.system.check_varied(&arguments.parameter)?;
-    check_size(arguments, returns, most)?;
+    check_size(arguments, ("--returns", returns), most)?;
     Ok(returns)
 }
 

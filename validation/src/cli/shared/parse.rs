@@ -183,9 +183,10 @@ pub(in crate::cli) fn window(text: &str) -> Result<Window, String> {
         }
         _ => None,
     };
-    window.filter(|window| window.check().is_ok()).ok_or_else(|| {
-        "accepted is pmin,pmax,ymin,ymax with each pair rising, within 1e9".to_owned()
-    })
+    // What rounding leaves of a narrower pair is no window.
+    let rises = |[from, to]: [f64; 2]| from.is_finite() && to.is_finite() && from.next_up() <= to;
+    let window = window.filter(|window| rises(window.p) && rises(window.y));
+    window.ok_or_else(|| "accepted is pmin,pmax,ymin,ymax with each pair rising".to_owned())
 }
 
 /// WxH, a size on paper in millimetres.

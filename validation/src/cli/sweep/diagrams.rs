@@ -49,7 +49,7 @@ impl DiagramWork {
 
     pub(super) fn new(arguments: Arguments, plan: &Plan) -> Result<Self> {
         let periods = arguments.periods_of_oscillator()?;
-        bifurcation::check_size(&arguments, periods, MAX_ROWS)?;
+        bifurcation::check_size(&arguments, ("--periods", periods), MAX_ROWS)?;
         if names_parameter(plan) {
             arguments.model.check_varied(arguments.parameter_of_oscillator()?)?;
         }
