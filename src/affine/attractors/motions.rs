@@ -130,7 +130,7 @@ impl Motions for SectionMotions<'_> {
             let spot = self.coordinates.spot(&point);
             let stays = last.is_some_and(|(time, at)| {
                 self.coordinates.are_near(&at, &spot, STAY_TOLERANCE)
-                    && self.map.is_rest(&point, point.time - time)
+                    && self.map.is_rest(point.mode, &point.state, point.time - time)
             });
             if stays {
                 return Err(Stop::Rest(point));

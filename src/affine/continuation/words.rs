@@ -62,7 +62,12 @@ impl Curve<'_> {
     /// The touch at the end of a piece by which an event is lost, so that no orbit is beyond or the
     /// same orbits are, from the other side: such an event may be the section's own.
     fn touch_before(&self, base: &CurvePoint, before: &CurvePoint) -> Option<Meaning> {
-        let [near, far] = [before, base].map(|it| self.crossings(it.value, &it.shots));
+        // Beside the speed of the motion, because an orbit may shrink to a state of rest.
+        let relative = |it: Crossing| Crossing { rate: it.rate / it.speed, ..it };
+        let [near, far] = [before, base].map(|it| {
+            let all = self.crossings(it.value, &it.shots)?;
+            Some(all.into_iter().map(relative).collect::<Vec<_>>())
+        });
         let (near, far) = same_events(near?, far?)?;
         let event = touched_event(&near, &far, &before.orbit.events, MIN_FALL_TO_TOUCH)?;
         let is_watched = event.is_watched;

@@ -16,6 +16,8 @@ pub(in crate::affine) struct Crossing {
     pub time: f64,
     /// The rate of the guard as it is crossed; infinite for an event at the entry of its mode.
     pub rate: f64,
+    /// The size of the states' rates there, in their units.
+    pub speed: f64,
 }
 
 impl SectionMap<'_, f64> {
@@ -32,7 +34,8 @@ impl SectionMap<'_, f64> {
         walk.next(&mut |from, to| {
             if let Some(guard) = Guard::new(&to.what) {
                 let time = to.time.since(&place.time).value();
-                crossings.push(Crossing { guard, time, rate: self.rate_of(guard, from, to) });
+                let [rate, speed] = self.rates_of(guard, from, to);
+                crossings.push(Crossing { guard, time, rate, speed });
             }
         })?;
         let is_onto = |it: &Crossing| walk.onto_section == Some(it.guard);
@@ -42,14 +45,16 @@ impl SectionMap<'_, f64> {
         Ok(crossings)
     }
 
-    /// The rate of a guard just before the event that it is.
-    fn rate_of(&self, guard: Guard, from: &Event<f64>, to: &Event<f64>) -> f64 {
+    /// The rate of a guard just before the event that it is, and the size of the states' rates.
+    fn rates_of(&self, guard: Guard, from: &Event<f64>, to: &Event<f64>) -> [f64; 2] {
         if is_at_once(from, to) {
-            return f64::INFINITY;
+            return [f64::INFINITY, 1.0];
         }
         let row = (guard.mode, guard.place_among_all(self.system()));
         let state = self.solver().state_at(from, &to.time);
         let [_, rate, _] = self.solver().guard_and_rate(row, &to.time, &state);
-        rate
+        let rates = self.solver().rates(guard.mode, &to.time, &state);
+        let scaled = rates[..state.len()].iter().zip(self.units()).map(|(it, unit)| it / unit);
+        [rate, scaled.map(|it| it * it).sum::<f64>().sqrt()]
     }
 }

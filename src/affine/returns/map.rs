@@ -1,7 +1,6 @@
 //! The return map of a section, and the times at which a motion may return to it.
 
 use super::section::{Resolved, Returning, Section};
-use super::walk::Return;
 use crate::affine::arithmetic::clock::{Time, full_turn};
 use crate::affine::arithmetic::vector::is_f64;
 use crate::affine::model::error::SystemError;
@@ -97,16 +96,15 @@ impl<'a, T: Number> SectionMap<'a, T> {
 
     /// Whether a return is no motion but a rest, to rounding: of a system without forcing, that the
     /// states go nowhere in its time; of a forced one, that it takes none of the forcing's periods.
-    pub(in crate::affine) fn is_rest(&self, point: &Return<T>, elapsed: T) -> bool {
+    pub(in crate::affine) fn is_rest(&self, mode: usize, states: &[T], elapsed: T) -> bool {
         /// The largest change of a state of size one that is taken for none.
         const REST_TOLERANCE: f64 = 1e-12;
         if let Some(period) = self.forcing_period() {
             return elapsed.to_f64() <= REST_TOLERANCE * period.to_f64();
         }
-        let time = Time { high: point.time, low: T::zero() };
-        let rates = self.solver.rates(point.mode, &time, &point.state);
-        let states = point.state.iter().zip(rates).zip(&self.system().scales).enumerate();
-        let mut counted = states.filter(|(n, _)| !self.is_drift(*n));
+        let rates = self.solver.rates(mode, &Time { high: T::zero(), low: T::zero() }, states);
+        let moved = states.iter().zip(rates).zip(&self.system().scales).enumerate();
+        let mut counted = moved.filter(|(n, _)| !self.is_drift(*n));
         counted.all(|(_, ((state, rate), scale))| {
             let moved = (rate * elapsed).to_f64().abs();
             moved <= REST_TOLERANCE * scale.max(state.to_f64().abs())

@@ -120,7 +120,8 @@ impl SectionMap<'_, f64> {
         let shots = solve(self, shots).map_err(|it| NoOrbit::Stalled(it.residual))?;
         let shots = minimal_orbit(self, shots);
         let orbit = self.of_shots(&shots).ok_or(NoOrbit::NoDerivative(shots.residual))?;
-        if self.is_rest(&orbit.points[0], orbit.time) {
+        let first = &orbit.points[0];
+        if self.is_rest(first.mode, &first.state, orbit.time) {
             return Err(NoOrbit::Rest(orbit.time));
         }
         Ok((orbit, shots.points))
