@@ -175,6 +175,7 @@ const PACKAGES: [Package; 10] = [
             "return_survey",
             "branches",
             "scores",
+            "gradient_scores",
             "command",
         ],
     },

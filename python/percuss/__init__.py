@@ -29,8 +29,25 @@ from importlib.metadata import version as _version
 
 from percuss._build import Mode, Until, Watch, build
 from percuss._gradient import Derivatives, Gradient
+from percuss._gradient_score import (
+    GradientReport,
+    Verdict,
+    gradient_case_names,
+    gradient_problem,
+    score_gradients,
+)
 from percuss._oscillator import Oscillator, Simulation
-from percuss._problem import Answer, EventRule, Happened, ModeRule, Problem, Successor
+from percuss._problem import (
+    Answer,
+    Differentiated,
+    EventRule,
+    Happened,
+    ModeRates,
+    ModeRule,
+    Problem,
+    Rates,
+    Successor,
+)
 from percuss._report import Report, ScoreFailure
 from percuss._results import Attractor, Basins, Bifurcation, Lyapunov, Orbit, Section
 from percuss._returns import (
@@ -58,17 +75,21 @@ __all__ = [
     "Branch",
     "BranchBifurcation",
     "Derivatives",
+    "Differentiated",
     "Digits",
     "Enclosure",
     "EventRule",
     "Gradient",
+    "GradientReport",
     "Happened",
     "Lyapunov",
     "Mode",
+    "ModeRates",
     "ModeRule",
     "Orbit",
     "Oscillator",
     "Problem",
+    "Rates",
     "Report",
     "ReturnAttractor",
     "ReturnBasins",
@@ -87,10 +108,14 @@ __all__ = [
     "System",
     "Systems",
     "Until",
+    "Verdict",
     "Watch",
     "build",
     "case_names",
+    "gradient_case_names",
+    "gradient_problem",
     "problem",
     "score",
+    "score_gradients",
     "systems",
 ]

@@ -60,6 +60,53 @@ class ModeRule:
     events: tuple[EventRule, ...]
 
 
+@dataclass(frozen=True)
+class ModeRates:
+    """The derivatives of a mode's coefficients, in the places of :class:`ModeRule`.
+
+    Attributes
+    ----------
+    A, B, c : ndarray
+        Of the right-hand side.
+    guards : ndarray, shape (e, d + 3)
+        Of the guard of each event, in their order.
+    resets : tuple of ndarray or None
+        Of each reset; None where the state stays.
+    """
+
+    A: Floats
+    B: Floats
+    c: Floats
+    guards: Floats
+    resets: tuple[Floats | None, ...]
+
+
+@dataclass(frozen=True)
+class Rates:
+    """The derivatives of a problem's coefficients by a parameter or by a state of the start.
+
+    Attributes
+    ----------
+    wrt : str
+        The name, which is `start.STATE` of a state.
+    value : float
+        The value of what the name says.
+    omega, phi : float
+        Of theta = omega t + phi.
+    state : ndarray, shape (d,)
+        Of the state at the start.
+    modes : dict of str to ModeRates
+        Of the modes.
+    """
+
+    wrt: str
+    value: float
+    omega: float
+    phi: float
+    state: Floats
+    modes: dict[str, ModeRates]
+
+
 class Problem:
     """A case: begin in `mode` at `state` at the time 0, and run to `horizon`.
 
@@ -83,6 +130,8 @@ class Problem:
         The times at which the state is wanted.
     backward : bool
         Whether time runs back: the first terminal event then ends the run.
+    by : tuple of Rates
+        What one differentiates by, of a case of derivatives; empty of others.
     asked : dict
         All of it as ``percuss export`` writes it.
     """
@@ -102,6 +151,8 @@ class Problem:
         self.horizon: float = asked["horizon"]
         self.sample_times: Floats = np.array(asked["sample_times"], dtype=np.float64)
         self.backward: bool = asked["backward"]
+        gradients = asked.get("gradients", {"by": []})
+        self.by = tuple(_rates(it, names) for it in gradients["by"])
 
     def wide(self, t: float, z: ArrayLike) -> Floats:
         """The vector (z, cos theta, sin theta, 1), over which all rows are."""
@@ -133,6 +184,25 @@ def _mode(mode: Mapping[str, Any], names: list[str]) -> ModeRule:
     a, b, c = (np.array(mode[key], dtype=np.float64) for key in "ABc")
     events = tuple(_event(event, names) for event in mode["events"])
     return ModeRule(mode["name"], a, b, c, events)
+
+
+def _rates(rates: Mapping[str, Any], names: list[str]) -> Rates:
+    modes = {name: _mode_rates(mode) for name, mode in zip(names, rates["modes"])}
+    state = np.array(rates["state"], dtype=np.float64)
+    return Rates(rates["wrt"], rates["value"], rates["omega"], rates["phi"], state, modes)
+
+
+def _mode_rates(mode: Mapping[str, Any]) -> ModeRates:
+    a, b, c = (np.array(mode[key], dtype=np.float64) for key in "ABc")
+    guards = [it["guard"] for it in mode["events"]]
+    resets = [it["reset"] for it in mode["events"]]
+    return ModeRates(
+        a,
+        b,
+        c,
+        np.array(guards, dtype=np.float64).reshape(len(guards), len(c) + 3),
+        tuple(None if it is None else np.array(it, dtype=np.float64) for it in resets),
+    )
 
 
 def _event(event: Mapping[str, Any], names: list[str]) -> EventRule:
@@ -178,6 +248,28 @@ class Happened:
 
 
 @dataclass
+class Differentiated:
+    """The derivatives of a run by one name, as a solver has them.
+
+    Attributes
+    ----------
+    wrt : str
+        The name, one of ``problem.by``.
+    times : array_like, shape (n,)
+        Of the time of each event; NaN where there is none.
+    states : array_like, shape (n, d)
+        Of the state after each event at its own time, which moves; NaN where there is none.
+    end : array_like, shape (d,)
+        Of the state at the horizon.
+    """
+
+    wrt: str
+    times: ArrayLike
+    states: ArrayLike
+    end: ArrayLike
+
+
+@dataclass
 class Answer:
     """What a solver answers to a problem.
 
@@ -193,6 +285,8 @@ class Answer:
         When, and in which state.
     work : (int, int, int, int), optional
         Right-hand sides, Jacobians, linear systems solved, and steps.
+    gradients : sequence of Differentiated, optional
+        The derivatives by each name of ``problem.by``, of a case of derivatives.
     """
 
     events: Sequence[Happened]
@@ -201,3 +295,4 @@ class Answer:
     end_time: float | None = None
     end_state: ArrayLike | None = None
     work: tuple[int, int, int, int] | None = None
+    gradients: Sequence[Differentiated] | None = None

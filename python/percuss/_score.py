@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from percuss import _percuss
-from percuss._problem import Answer, Problem
+from percuss._problem import Answer, Differentiated, Problem
 from percuss._report import Report
 from percuss._run import real
 from percuss._walk import SETUPS, NoAnswer, Walker
@@ -48,6 +48,7 @@ class Declared:
     kind: str | None
     order: int | None
     stepping: str
+    differences: bool = False
 
     def at(self, tolerance: float, folder: str = "") -> dict[str, Any]:
         """What the judge is told of answers at a tolerance."""
@@ -59,6 +60,7 @@ class Declared:
             "class": self.kind,
             "order": self.order,
             "stepping": self.stepping,
+            "differences": self.differences,
             "tolerance": tolerance,
             "folder": folder,
             "failures": {},
@@ -122,6 +124,8 @@ def write(folder: Path, problem: Problem, answer: Answer) -> None:
             tail = end_state if has_before else []
             time = math.nan if answer.end_time is None else float(answer.end_time)
             rows.writerow([time, answer.ending, mode, *end_state, *tail])
+    if answer.gradients is not None:
+        _write_gradients(folder, problem, answer, answer.gradients)
     if answer.samples is None:
         return
     with open(folder / f"{problem.case}.samples.csv", "w", newline="", encoding="utf-8") as file:
@@ -129,6 +133,27 @@ def write(folder: Path, problem: Problem, answer: Answer) -> None:
         rows.writerow(["time", *states])
         for time, state in zip(problem.sample_times, np.asarray(answer.samples, dtype=np.float64)):
             rows.writerow([float(time), *numbers(state)])
+
+
+def _write_gradients(
+    folder: Path, problem: Problem, answer: Answer, gradients: Sequence[Differentiated]
+) -> None:
+    """Write the derivatives of an answer into the third file of a case."""
+    size, events = len(problem.states), [it.name for it in answer.events]
+
+    def cells(values: Any) -> list[float | str]:
+        numbers = np.asarray(values, dtype=np.float64).reshape(-1)
+        return ["" if math.isnan(it) else float(it) for it in numbers]
+
+    with open(folder / f"{problem.case}.gradients.csv", "w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow(["n", "event", "wrt", "dtime", *(f"d{name}" for name in problem.states)])
+        for by in gradients:
+            times = np.asarray(by.times, dtype=np.float64).reshape(len(events))
+            states = np.asarray(by.states, dtype=np.float64).reshape(len(events), size)
+            for n, (name, time, state) in enumerate(zip(events, times, states), start=1):
+                rows.writerow([n, name, by.wrt, *cells(time), *cells(state)])
+            rows.writerow([len(events) + 1, "end", by.wrt, "", *cells(by.end)])
 
 
 def case_names(pattern: str | Iterable[str] = "*") -> list[str]:
@@ -145,8 +170,12 @@ def case_names(pattern: str | Iterable[str] = "*") -> list[str]:
     >>> percuss.case_names("small-*")
     ['small-b']
     """
+    return matching(pattern, _percuss.case_names())
+
+
+def matching(pattern: str | Iterable[str], names: Sequence[str]) -> list[str]:
+    """The names of cases that match one of some patterns, each of which has to match one."""
     patterns = [pattern] if isinstance(pattern, str) else list(pattern)
-    names = _percuss.case_names()
     for it in patterns:
         if not isinstance(it, str):
             raise TypeError(f"cases = {it!r} is not accepted: a pattern such as 'graze*' is")
@@ -240,9 +269,7 @@ def score(
     """
     if not callable(solver):
         raise TypeError(f"{solver!r} is no solver: a callable is accepted")
-    tolerances = [real("rtol", it) for it in np.atleast_1d(np.asarray(rtol, dtype=object))]
-    if not tolerances or len(set(tolerances)) < len(tolerances):
-        raise ValueError(f"rtol = {rtol!r} is not accepted: tolerances, each once, are")
+    tolerances = tolerances_of(rtol)
     whose = _Whose(solver, method, library, version)
     declared = [
         Declared(solve, name_, whose.library, whose.version, *whose.traits(kind, order), stepping)
@@ -260,6 +287,14 @@ def score(
         target = Path(out if owned is None else owned.name)  # type: ignore[arg-type]
         worse = chosen.judge([it.told() for it in answered], str(target), earlier)
     return Report(target, owned, worse)
+
+
+def tolerances_of(rtol: float | Sequence[float]) -> list[float]:
+    """The tolerances, each once."""
+    tolerances = [real("rtol", it) for it in np.atleast_1d(np.asarray(rtol, dtype=object))]
+    if not tolerances or len(set(tolerances)) < len(tolerances):
+        raise ValueError(f"rtol = {rtol!r} is not accepted: tolerances, each once, are")
+    return tolerances
 
 
 class _Whose:
@@ -294,6 +329,11 @@ class _Whose:
         own = self.method or ("rk45" if self.is_scipy else getattr(solver, "__name__", "solver"))
         text = re.sub(r"[^a-z0-9_.+-]+", "-", f"{self.library}-{own}".lower()).strip("-")
         return text[:32]
+
+
+def whose_is(solver: Callable[..., Any], library: str | None, version: str | None) -> _Whose:
+    """Whose a solver of problems is."""
+    return _Whose(solver, None, library, version)
 
 
 def _version(library: str) -> str:

@@ -15,6 +15,7 @@ mod diagram;
 mod dynamics;
 mod failure;
 mod gradient;
+mod gradient_scores;
 mod long_work;
 mod motion;
 mod oscillator;
@@ -42,6 +43,8 @@ mod _percuss {
     use super::diagram::bifurcation;
     #[pymodule_export]
     use super::dynamics::{lyapunov, orbits, poincare};
+    #[pymodule_export]
+    use super::gradient_scores::{GradientCases, gradient_case_names};
     #[pymodule_export]
     use super::oscillator::Oscillator;
     #[pymodule_export]

@@ -49,6 +49,8 @@ pub(crate) struct Answers {
     class: Option<String>,
     order: Option<u32>,
     stepping: String,
+    /// Whether derivatives are differences of whole runs.
+    differences: bool,
     tolerance: f64,
     folder: PathBuf,
     /// Why there is no answer to a case that was tried.
@@ -58,7 +60,7 @@ pub(crate) struct Answers {
 }
 
 /// The answer to one case in files, with what was said of it beside.
-struct Answered {
+pub(crate) struct Answered {
     files: FileEngine,
     failure: Option<String>,
     work: Option<Work>,
@@ -71,6 +73,10 @@ impl Engine for Answered {
 
     fn language(&self) -> &str {
         self.files.language()
+    }
+
+    fn takes_differences(&self) -> bool {
+        self.files.takes_differences()
     }
 
     fn available(&self) -> Result<(), String> {
@@ -87,7 +93,15 @@ impl Engine for Answered {
 }
 
 impl Answers {
-    fn engine(&self, answerer: Answerer, case: &str) -> Answered {
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(crate) fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    pub(crate) fn engine(&self, answerer: Answerer, case: &str) -> Answered {
         let work = |[rhs, jacobians, solves, steps]: [u64; 4]| Work {
             rhs_evaluations: rhs,
             jacobian_evaluations: jacobians,
@@ -101,7 +115,7 @@ impl Answers {
         }
     }
 
-    fn answerer(&self) -> PyResult<Answerer> {
+    pub(crate) fn answerer(&self) -> PyResult<Answerer> {
         if !is_name(&self.name) || self.name.starts_with(REFERENCE) {
             return Err(value(format!(
                 "name = {:?} is not accepted: {ACCEPTED_NAMES} that does not begin with \
@@ -123,7 +137,7 @@ impl Answers {
             class: self.class.as_deref().map(class).transpose()?,
             order: self.order,
             stepping: self.stepping()?,
-            takes_differences: false,
+            takes_differences: self.differences,
         })
     }
 
