@@ -128,8 +128,10 @@ impl Motions for SectionMotions<'_> {
                 return Err(Stop::Label(Label::Escaping));
             }
             let spot = self.coordinates.spot(&point);
+            // Several returns of one instant are no rest.
             let stays = last.is_some_and(|(time, at)| {
-                self.coordinates.are_near(&at, &spot, STAY_TOLERANCE)
+                point.time > time
+                    && self.coordinates.are_near(&at, &spot, STAY_TOLERANCE)
                     && self.map.is_rest(point.mode, &point.state, point.time - time)
             });
             if stays {

@@ -24,8 +24,9 @@ const ALIGNMENT_TOLERANCE: f64 = 1e-7;
 const MAX_FACTORS: usize = 16;
 
 /// The multipliers of an orbit, largest modulus first, as many as states: `returns` are the
-/// derivatives at fixed times, by columns, in units in which states are of size one. Of an autonomous system `flow` is the direction of the
-/// motion at the first point, which a section removes.
+/// derivatives at fixed times, by columns, in units in which states are of size one. Of an
+/// autonomous system `flow` is the direction of the motion at the first point, in these units,
+/// which a section removes.
 pub fn multipliers(returns: &[Columns], flow: Option<&[f64]>) -> Option<Vec<[f64; 2]>> {
     let states = returns.first()?.len();
     let mut space: Columns = (0..states).map(|n| unit(states, n)).collect();
