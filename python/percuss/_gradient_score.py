@@ -12,7 +12,7 @@ from typing import Any
 
 from percuss import _percuss
 from percuss._problem import Answer, Problem
-from percuss._report import ScoreFailure
+from percuss._report import raise_for
 from percuss._run import real
 from percuss._score import Answered, Declared, matching, tolerances_of, whose_is
 
@@ -87,11 +87,7 @@ class GradientReport:
         ScoreFailure
             With a line for each of the first ten.
         """
-        lines = [str(it) for it in self.failures]
-        if lines:
-            more = [f"and {len(lines) - 10} more"] if len(lines) > 10 else []
-            head = f"{len(lines)} of {len(self.verdicts)} derivatives:"
-            raise ScoreFailure("\n".join([head, *lines[:10], *more]))
+        raise_for([str(it) for it in self.failures], f"of {len(self.verdicts)} derivatives")
 
     def to_pandas(self) -> Any:
         """Make a table of the verdicts; needs pandas."""

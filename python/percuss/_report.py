@@ -17,6 +17,13 @@ class ScoreFailure(AssertionError):
     """A row that is out of bounds, or whose run gave no result."""
 
 
+def raise_for(lines: Sequence[str], of_all: str) -> None:
+    """Raise with the first ten of these lines, if there are any."""
+    if lines:
+        more = [f"and {len(lines) - 10} more"] if len(lines) > 10 else []
+        raise ScoreFailure("\n".join([f"{len(lines)} {of_all}:", *lines[:10], *more]))
+
+
 class Report:
     """What percuss says of a solver: a row for each case, set-up and tolerance.
 
@@ -66,12 +73,7 @@ class Report:
         ScoreFailure
             With a line for each of the first ten.
         """
-        lines = [reason(row) for row in self.failures]
-        if lines:
-            more = [f"and {len(lines) - 10} more"] if len(lines) > 10 else []
-            raise ScoreFailure(
-                "\n".join([f"{len(lines)} of {len(self.rows)} rows:", *lines[:10], *more])
-            )
+        raise_for([reason(row) for row in self.failures], f"of {len(self.rows)} rows")
 
     def to_pandas(self) -> Any:
         """Make a table of the rows; needs pandas."""
