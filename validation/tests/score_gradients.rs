@@ -25,7 +25,7 @@ fn score(gradients: &str) -> (Option<i32>, String, Vec<[String; 3]>) {
     score_with(&[], Some(gradients))
 }
 
-/// The same with further flags; the file may be left out.
+/// What [`score`] gives with further flags; there may be no file of derivatives.
 fn score_with(flags: &[&str], gradients: Option<&str>) -> (Option<i32>, String, Vec<[String; 3]>) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = |name: &str| folder.path().join(name);

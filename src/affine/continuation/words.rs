@@ -44,7 +44,7 @@ pub(super) fn cyclic(word: &[Guard]) -> Vec<[usize; 3]> {
 }
 
 impl Curve<'_> {
-    /// What a corner is to which the curve comes from `base`.
+    /// The meaning of a corner to which the curve comes from `base`.
     pub fn meaning(&self, base: &CurvePoint, corner: &Corner<CurvePoint>) -> Option<Meaning> {
         let Corner { before, beyond, .. } = corner;
         let beyond = beyond.as_ref();

@@ -261,7 +261,9 @@ impl SystemFile {
         let places = self.replaced.iter().map(|name| self.parameters[name].place.as_str());
         let places: Vec<_> = places.collect();
         match error {
-            SystemError::Place { place, what } if !places.is_empty() && place != places[0] => {
+            SystemError::Place { place, what }
+                if !(places.is_empty() || places.contains(&place.as_str())) =>
+            {
                 let what = format!("{what}, with {}", places.join(" and "));
                 SystemError::Place { place, what }
             }

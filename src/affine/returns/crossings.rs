@@ -38,8 +38,7 @@ impl SectionMap<'_, f64> {
                 crossings.push(Crossing { guard, time, rate, speed });
             }
         })?;
-        let is_onto = |it: &Crossing| walk.onto_section == Some(it.guard);
-        if let Some(onto) = crossings.iter().position(is_onto) {
+        if let Some(onto) = walk.place_of_onto_section(crossings.iter().map(|it| it.guard)) {
             crossings.remove(onto);
         }
         Ok(crossings)

@@ -187,7 +187,7 @@ impl<'a, T: Number> SectionMap<'a, T> {
         const STROBE_TOLERANCE: f64 = 1e-9;
         /// The rounding of a time and of its quotient by the period, in eps of the quotient.
         const ROUNDINGS: f64 = 4.0;
-        let Some([period, first]) = &self.period else { return (0.0, Some(0.0)) };
+        let Some([period, first]) = &self.period else { return (0.0, None) };
         let turns = (time.since(first).value() / period.high).to_f64();
         let nearest = libm::round(turns);
         let tolerance = STROBE_TOLERANCE.max(ROUNDINGS * f64::EPSILON * turns.abs());

@@ -66,7 +66,7 @@ pub enum NoOrbit {
     NoReturn(NoReturn),
     /// No step comes closer, or the steps come closer too slowly: this is the least residual.
     Stalled(f64),
-    /// What was reached in this time is a state of rest, such as the limit of impacts.
+    /// A state of rest was reached, such as the limit of impacts, which returns in this time.
     Rest(f64),
     /// The derivative of an orbit that was reached is not finite.
     NoDerivative(f64),
@@ -131,11 +131,7 @@ impl SectionMap<'_, f64> {
     pub(in crate::affine) fn of_shots(&self, shots: &Shots<Place<f64>, Way>) -> Option<Orbit> {
         let ways = || shots.images.iter().map(|it| &it.way);
         let returns: Vec<_> = ways().map(|it| it.at_fixed_time.clone()).collect();
-        let flow = || {
-            let rates = self.rates(&shots.points[0]);
-            let scaled = rates.iter().zip(self.units()).map(|(rate, unit)| rate / unit);
-            self.without_drifts(&scaled.collect::<Vec<_>>())
-        };
+        let flow = || self.in_units(&self.rates(&shots.points[0]), 1.0);
         let flow = self.system().forcing.is_none().then(flow);
         let point = |it: &Place<f64>| Return {
             mode: it.mode,
@@ -153,10 +149,12 @@ impl SectionMap<'_, f64> {
         })
     }
 
-    /// The entries of states that are no drifts.
-    fn without_drifts(&self, entries: &[f64]) -> Vec<f64> {
-        let kept = entries.iter().enumerate().filter(|(n, _)| !self.is_drift(*n));
-        kept.map(|(_, it)| *it).collect()
+    /// A multiple of the entries of states that are no drifts, in their
+    /// [units](SectionMap::units).
+    fn in_units(&self, entries: &[f64], factor: f64) -> Vec<f64> {
+        let entries = entries.iter().zip(self.units()).enumerate();
+        let kept = entries.filter(|(n, _)| !self.is_drift(*n));
+        kept.map(|(_, (it, unit))| it * factor / unit).collect()
     }
 
     /// The derivative of a return's co-ordinates: the states, and the time where points have one.
@@ -183,13 +181,9 @@ impl SectionMap<'_, f64> {
     /// [units](SectionMap::units), by columns.
     fn at_fixed_time(&self, passage: &Passage<f64>) -> Vec<Vec<f64>> {
         let states = self.system().states.len();
-        let scaled = |column: &[f64], by: f64| {
-            let entries = column.iter().zip(self.units()).map(|(it, unit)| it * by / unit);
-            self.without_drifts(&entries.collect::<Vec<_>>())
-        };
         let columns = passage.at_fixed_time.iter().zip(self.units()).enumerate();
         let columns = columns.filter(|(n, _)| !self.is_drift(*n));
-        columns.map(|(_, (column, by))| scaled(&column[..states], *by)).collect()
+        columns.map(|(_, (column, unit))| self.in_units(&column[..states], *unit)).collect()
     }
 }
 

@@ -93,8 +93,7 @@ impl<T: Number> SectionMap<'_, T> {
             variation.pass(self.solver(), from, to);
             crossed.extend(Guard::new(&to.what).map(|guard| (guard, to.time)));
         })?;
-        let onto = walk.onto_section;
-        let onto = onto.and_then(|onto| crossed.iter().position(|(guard, _)| *guard == onto));
+        let onto = walk.place_of_onto_section(crossed.iter().map(|(guard, _)| *guard));
         if let Some(repeated) = onto.or_else(|| self.repeated_at_strobe(&crossed)) {
             crossed.remove(repeated);
         }

@@ -49,7 +49,7 @@ pub(super) struct Walk<'a, T: Number> {
     /// The place where the motion begins, if it only approximates a point of the section.
     beside: Option<Place<T>>,
     /// The event by which it came onto the section from there, if it lay short of that.
-    pub onto_section: Option<Guard>,
+    onto_section: Option<Guard>,
 }
 
 impl<'a, T: Number> Walk<'a, T> {
@@ -118,6 +118,12 @@ impl<'a, T: Number> Walk<'a, T> {
         }
     }
 
+    /// The place among the events of the way of that by which the motion came onto the section.
+    pub fn place_of_onto_section(&self, events: impl Iterator<Item = Guard>) -> Option<usize> {
+        let onto = self.onto_section?;
+        events.into_iter().position(|it| it == onto)
+    }
+
     /// Whether an event, the first of the section's, is the crossing of the guard beside which the
     /// motion began: the guard has gone as far as it was short there, to rounding.
     ///
@@ -133,7 +139,7 @@ impl<'a, T: Number> Walk<'a, T> {
             return false;
         };
         let (solver, system) = (self.map.solver(), self.map.system());
-        if [place.mode, event.mode] != [guard.mode; 2] || !guard.is_kept_by_its_event(system) {
+        if [place.mode, event.mode] != [guard.mode; 2] {
             return false;
         }
         let row = (guard.mode, guard.place_among_all(system));
@@ -144,7 +150,8 @@ impl<'a, T: Number> Walk<'a, T> {
         let short = (-value * rate.signum()).max(0.0);
         let comes_onto = guard.fires_at_rate(system, rate)
             && rate * rate_there > 0.0
-            && gone <= MAX_DISTANCE_RATIO * short + ROUNDINGS * f64::EPSILON * size;
+            && gone <= MAX_DISTANCE_RATIO * short + ROUNDINGS * f64::EPSILON * size
+            && guard.is_kept_by_its_event(system);
         self.onto_section = comes_onto.then_some(guard);
         comes_onto
     }

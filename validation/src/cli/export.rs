@@ -39,8 +39,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     }
     for case in &differentiated {
         let task = case.task().map_err(|failure| anyhow!("{}: {}", case.name, failure.reason))?;
-        let parameters = case.system.parameters.iter().map(|(name, value)| (name.as_str(), *value));
-        let asked = CaseFile::new(&case.name, &task, parameters);
+        let asked = CaseFile::new(&case.name, &task, case.parameters());
         lines.push(write(&asked, &task, &arguments.out)?);
     }
     let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or_default();

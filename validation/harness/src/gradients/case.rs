@@ -38,6 +38,11 @@ pub struct GradientRow {
 }
 
 impl GradientCase {
+    /// The parameters of the case's system, by name.
+    pub fn parameters(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.system.parameters.iter().map(|(name, value)| (name.as_str(), *value))
+    }
+
     /// Reads a table; `system` gives the text of a system's file by its name.
     ///
     /// # Errors

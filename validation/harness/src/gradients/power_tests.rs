@@ -132,7 +132,7 @@ fn differences_that_are_too_coarse_are_named() {
     assert!(named.iter().all(|it| *it >= 8), "{named:?}");
 }
 
-/// Of answers that are not said to be differences no step is the cause, whatever they are off.
+/// An answer that is not said to be differences never has a step for its cause.
 #[test]
 fn no_step_is_named_of_an_engine_that_takes_no_differences() {
     let mut wrong = 0;
