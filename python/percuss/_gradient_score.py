@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
@@ -12,9 +11,9 @@ from typing import Any
 
 from percuss import _percuss
 from percuss._problem import Answer, Problem
-from percuss._report import raise_for
+from percuss._report import html_table, raise_for
 from percuss._run import real
-from percuss._score import Answered, Declared, matching, tolerances_of, whose_is
+from percuss._score import Declared, Whose, answers, matching, tolerances_of
 
 _WRONG = ("noisy", "wrong-limit", "zero", "missing-term")
 
@@ -96,23 +95,19 @@ class GradientReport:
         return pd.DataFrame([asdict(it) for it in self.verdicts])
 
     def __str__(self) -> str:
-        counts = ", ".join(f"{count} {name}" for name, count in self.summary.items())
-        lines = [*map(str, self.failures), f"{len(self.verdicts)} derivatives: {counts}"]
-        return "\n".join(lines)
+        return "\n".join([*map(str, self.failures), self._counts()])
 
     def __repr__(self) -> str:
+        return f"GradientReport({self._counts()})"
+
+    def _counts(self) -> str:
         counts = ", ".join(f"{count} {name}" for name, count in self.summary.items())
-        return f"GradientReport({len(self.verdicts)} derivatives: {counts})"
+        return f"{len(self.verdicts)} derivatives: {counts}"
 
     def _repr_html_(self) -> str:
         heads = ("engine", "case", "wrt", "tolerance", "verdict", "missing_term", "why")
-        head = "".join(f"<th>{it}</th>" for it in heads)
-        cells = [[getattr(it, key) for key in heads] for it in self.verdicts]
-        texts = [["" if it is None else html.escape(str(it)) for it in row] for row in cells]
-        body = "".join(
-            f"<tr>{''.join(f'<td>{it}</td>' for it in row)}</tr>" for row in texts
-        )
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        rows = [[getattr(it, key) for key in heads] for it in self.verdicts]
+        return html_table(heads, [["" if it is None else it for it in row] for row in rows])
 
 
 def gradient_case_names(pattern: str | Iterable[str] = "*") -> list[str]:
@@ -196,7 +191,7 @@ def score_gradients(
         raise TypeError(f"{solver!r} is no solver: a callable is accepted")
     tolerances = tolerances_of(rtol)
     chosen = _percuss.GradientCases(set(gradient_case_names(cases)))
-    who = whose_is(solver, library, version)
+    who = Whose(solver, None, library, version)
     own = name or who.name(solver)
     declared = Declared(
         solver, own, who.library, who.version, None, None, "adaptive", bool(differences)
@@ -204,17 +199,7 @@ def score_gradients(
     # What is wrong with a name or a tolerance is said before the work begins.
     _percuss.GradientCases(set()).judge([declared.at(it) for it in tolerances])
     texts = {case: chosen.ask(case) for case in chosen.names}
-    done, whole = 0, len(texts) * len(tolerances)
     with tempfile.TemporaryDirectory(prefix="percuss-gradients-") as folder:
-        answered = []
-        for n, tolerance in enumerate(tolerances):
-            path = Path(folder) / str(n)
-            path.mkdir()
-            answered.append(Answered(declared, tolerance, path))
-            for text in texts.values():
-                answered[-1].answer(Problem(text, tolerance))
-                done += 1
-                if progress is not None:
-                    progress(done, whole)
+        answered = answers(texts, [declared], tolerances, Path(folder), progress)
         rows = chosen.judge([it.told() for it in answered])
     return GradientReport([Verdict(*row) for row in rows])

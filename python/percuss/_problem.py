@@ -195,29 +195,29 @@ def _rates(rates: Mapping[str, Any], names: list[str]) -> Rates:
 def _mode_rates(mode: Mapping[str, Any]) -> ModeRates:
     a, b, c = (np.array(mode[key], dtype=np.float64) for key in "ABc")
     guards = [it["guard"] for it in mode["events"]]
-    resets = [it["reset"] for it in mode["events"]]
     return ModeRates(
         a,
         b,
         c,
         np.array(guards, dtype=np.float64).reshape(len(guards), len(c) + 3),
-        tuple(None if it is None else np.array(it, dtype=np.float64) for it in resets),
+        tuple(_row(it["reset"]) for it in mode["events"]),
     )
 
 
-def _event(event: Mapping[str, Any], names: list[str]) -> EventRule:
-    def row(it: Any) -> Floats | None:
-        return None if it is None else np.array(it, dtype=np.float64)
+def _row(it: Any) -> Floats | None:
+    return None if it is None else np.array(it, dtype=np.float64)
 
+
+def _event(event: Mapping[str, Any], names: list[str]) -> EventRule:
     successors = tuple(
-        Successor(row(it["when"]), names[int(it["mode"])]) for it in event["successors"]
+        Successor(_row(it["when"]), names[int(it["mode"])]) for it in event["successors"]
     )
     return EventRule(
         event["name"],
         np.array(event["guard"], dtype=np.float64),
         {"rising": 1, "falling": -1, "both": 0}[event["direction"]],
         bool(successors),
-        row(event["reset"]),
+        _row(event["reset"]),
         successors,
     )
 

@@ -6,7 +6,7 @@ import html
 import json
 import shutil
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,15 @@ def raise_for(lines: Sequence[str], of_all: str) -> None:
     if lines:
         more = [f"and {len(lines) - 10} more"] if len(lines) > 10 else []
         raise ScoreFailure("\n".join([f"{len(lines)} {of_all}:", *lines[:10], *more]))
+
+
+def html_table(heads: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """A table of rows under heads."""
+    head = "".join(f"<th>{it}</th>" for it in heads)
+    body = "".join(
+        f"<tr>{''.join(f'<td>{html.escape(str(it))}</td>' for it in row)}</tr>" for row in rows
+    )
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
 class Report:
@@ -122,11 +131,7 @@ class Report:
             )
             for row in self.rows
         ]
-        head = "".join(f"<th>{it}</th>" for it in heads)
-        body = "".join(
-            f"<tr>{''.join(f'<td>{html.escape(str(it))}</td>' for it in row)}</tr>" for row in cells
-        )
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        return html_table(heads, cells)
 
 
 def _tolerance(row: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ import platform
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
@@ -270,7 +270,7 @@ def score(
     if not callable(solver):
         raise TypeError(f"{solver!r} is no solver: a callable is accepted")
     tolerances = tolerances_of(rtol)
-    whose = _Whose(solver, method, library, version)
+    whose = Whose(solver, method, library, version)
     declared = [
         Declared(solve, name_, whose.library, whose.version, *whose.traits(kind, order), stepping)
         for solve, name_ in _solvers(solver, whose, setup, options or {}, name)
@@ -281,8 +281,13 @@ def score(
     for it in declared:
         # What is wrong with it is said before the work begins.
         chosen.beyond_budget(it.at(tolerances[0]))
+
+    def beyond_budget(method: Answered) -> set[str]:
+        return set(chosen.beyond_budget(method.declared.at(method.tolerance)))
+
     with tempfile.TemporaryDirectory(prefix="percuss-answers-") as folder:
-        answered = _answers(chosen, declared, tolerances, Path(folder), progress)
+        texts = {name: chosen.ask(name) for name in chosen.names}
+        answered = answers(texts, declared, tolerances, Path(folder), progress, beyond_budget)
         owned = None if out is not None else tempfile.TemporaryDirectory(prefix="percuss-report-")
         target = Path(out if owned is None else owned.name)  # type: ignore[arg-type]
         worse = chosen.judge([it.told() for it in answered], str(target), earlier)
@@ -297,7 +302,7 @@ def tolerances_of(rtol: float | Sequence[float]) -> list[float]:
     return tolerances
 
 
-class _Whose:
+class Whose:
     """Whose a solver is: its library with its version, and its method."""
 
     def __init__(
@@ -331,11 +336,6 @@ class _Whose:
         return text[:32]
 
 
-def whose_is(solver: Callable[..., Any], library: str | None, version: str | None) -> _Whose:
-    """Whose a solver of problems is."""
-    return _Whose(solver, None, library, version)
-
-
 def _version(library: str) -> str:
     try:
         return metadata.version(library)
@@ -345,7 +345,7 @@ def _version(library: str) -> str:
 
 def _solvers(
     solver: Callable[..., Any],
-    whose: _Whose,
+    whose: Whose,
     setup: str | Sequence[str],
     options: dict[str, Any],
     name: str | None,
@@ -379,24 +379,25 @@ def _takes_solve_ivp(solver: Callable[..., Any]) -> bool:
     return len(wanted) >= 3 or any(it.kind is it.VAR_POSITIONAL for it in parameters)
 
 
-def _answers(
-    chosen: _percuss.Cases,
+def answers(
+    texts: Mapping[str, str],
     declared: Sequence[Declared],
     tolerances: Sequence[float],
     folder: Path,
     progress: Callable[[int, int], object] | None,
+    beyond_budget: Callable[[Answered], Container[str]] = lambda _: (),
 ) -> list[Answered]:
-    """The answers of all solvers at all tolerances."""
+    """The answers of all solvers at all tolerances to the questions of these cases. Those beyond
+    the budget are not asked, as the quick suite does not ask them: this is told without an
+    answer."""
     answered = []
     for n, (it, tolerance) in enumerate((it, rtol) for it in declared for rtol in tolerances):
         own = folder / str(n)
         own.mkdir()
         answered.append(Answered(it, tolerance, own))
-    texts = {name: chosen.ask(name) for name in chosen.names}
     done, whole = 0, len(texts) * len(answered)
     for method in answered:
-        # Not run, as the quick suite does not run it: this is told without an answer.
-        beyond = set(chosen.beyond_budget(method.declared.at(method.tolerance)))
+        beyond = beyond_budget(method)
         for name, text in texts.items():
             if name in beyond:
                 method.failures[name] = "beyond the budget"

@@ -3,7 +3,7 @@
 use crate::failure::value;
 use crate::long_work::{Progress, interruptible};
 use crate::scores::{Answered, Answers};
-use percuss_programs::files::CaseFile;
+use percuss_programs::files::{Answerer, CaseFile};
 use percuss_validation::engine::{Accuracy, Declaration, Engine, Failure, Limits, Outcome, Task};
 use percuss_validation::gradients::{self, GradientCase, Judged, Reference, embedded, one};
 use pyo3::exceptions::PyKeyError;
@@ -78,27 +78,27 @@ impl GradientCases {
         let case = self.all.iter().find(|it| it.name == name);
         let case = case.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
         let task = case.task().map_err(|failure| value(failure.reason))?;
-        let parameters = case.system.parameters.iter().map(|(name, value)| (name.as_str(), *value));
-        serde_json::to_string(&CaseFile::new(name, &task, parameters)).map_err(value)
+        serde_json::to_string(&CaseFile::new(name, &task, case.parameters())).map_err(value)
     }
 
     /// The verdicts on answers, which are taken together where they have one name.
     fn judge(&self, py: Python<'_>, answers: Vec<Answers>) -> PyResult<Vec<VerdictRow>> {
-        let mut methods: BTreeMap<&str, Vec<&Answers>> = BTreeMap::new();
+        let mut methods: BTreeMap<&str, Vec<(Answerer, &Answers)>> = BTreeMap::new();
         for it in &answers {
-            it.answerer()?;
-            methods.entry(it.name()).or_default().push(it);
+            let answerer = it.answerer()?;
+            methods.entry(answerer.name).or_default().push((answerer, it));
         }
         let judged = interruptible(py, &Progress::default(), |stop| {
             let verdicts = |case: &GradientCase| -> Result<Vec<VerdictRow>, Failure> {
                 stop.look();
                 let reference = Reference::new(case.clone())?;
                 let rows = methods.iter().flat_map(|(name, answers)| {
-                    let answered = answers.iter().filter_map(|it| {
-                        Some((it.tolerance(), it.engine(it.answerer().ok()?, &case.name)))
-                    });
+                    let answered = answers
+                        .iter()
+                        .map(|(answerer, it)| (it.tolerance(), it.engine(*answerer, &case.name)));
                     let engine = AtTolerances { answered: answered.collect() };
-                    let tolerances: Vec<f64> = answers.iter().map(|it| it.tolerance()).collect();
+                    let tolerances: Vec<f64> =
+                        engine.answered.iter().map(|(tolerance, _)| *tolerance).collect();
                     let judged = one(&reference, &engine, &tolerances).into_iter();
                     judged.map(|it| row(name, &case.name, it)).collect::<Vec<_>>()
                 });

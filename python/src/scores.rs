@@ -93,10 +93,6 @@ impl Engine for Answered {
 }
 
 impl Answers {
-    pub(crate) fn name(&self) -> &str {
-        &self.name
-    }
-
     pub(crate) fn tolerance(&self) -> f64 {
         self.tolerance
     }
