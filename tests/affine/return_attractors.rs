@@ -234,3 +234,27 @@ fn a_motion_that_returns_to_rest_for_ever_is_an_equilibrium() {
     let orbit = map.orbit(&returns.place().unwrap(), 1);
     assert!(matches!(orbit, Err(NoOrbit::Rest(_))), "{orbit:?}");
 }
+
+/// Every dose takes the state to 1 - x: all starts are on orbits of period 2 with the multiplier -1,
+/// and no motion tells them apart however long it is.
+#[test]
+fn starts_on_neutral_orbits_stay_unresolved() {
+    let dose = r#"
+schema = 1
+name = "dose"
+states = ["x", "c"]
+[[mode]]
+name = "on"
+equations = ["x' = 0", "c' = 1"]
+until = [{ name = "dose", guard = "c > 1", reset = ["c = 0", "x = 1 - x"] }]
+[start]
+mode = "on"
+x = 0
+c = 0
+"#;
+    let system = with(dose, &[], "on");
+    let section = Section::event("dose");
+    let found = basins(&system, &section, &plane([-0.5, 1.7, 0.0, 0.9], 30, 30), 100);
+    assert!(found.attractors.is_empty(), "{:?}", kinds(&found));
+    assert!(found.labels.iter().all(|it| *it == Label::Unresolved));
+}

@@ -14,7 +14,7 @@ use crate::dynamics::attractor::motions::{Motions, Observer, RunMeans, Stop, Sto
 use crate::dynamics::attractor::thresholds::DIRECTIONS;
 use crate::dynamics::attractor::trap_search::metric;
 use crate::dynamics::attractor::{AttractorKind, Label};
-use crate::dynamics::linear::product;
+use crate::dynamics::linear::{ReIm, product};
 
 /// Returns in which small changes find their directions before exponents are taken.
 const SETTLING_RETURNS: u64 = 64;
@@ -202,8 +202,12 @@ impl Motions for SectionMotions<'_> {
         found.ok().and_then(|it| it.per_return.first().copied()).unwrap_or(f64::NAN)
     }
 
-    fn stable_orbit(&self, from: &Place<f64>, period: u32) -> Option<(Orbit, Vec<Place<f64>>)> {
-        self.map.orbit_with_places(from, period).ok().filter(|(orbit, _)| orbit.is_stable())
+    fn orbit(&self, from: &Place<f64>, period: u32) -> Option<(Orbit, Vec<Place<f64>>)> {
+        self.map.orbit_with_places(from, period).ok()
+    }
+
+    fn multipliers(orbit: &Orbit) -> &[ReIm] {
+        &orbit.multipliers
     }
 
     fn periodic(&self, orbit: Orbit, places: &[Place<f64>]) -> ReturnAttractor {

@@ -4,6 +4,7 @@ use super::AttractorKind;
 use super::coordinates::Coordinates;
 use super::known::{KnownAttractor, Label};
 use super::recognition::Recognizer;
+use crate::dynamics::linear::ReIm;
 use crate::dynamics::parallel;
 
 /// The return map of a section, with its motions.
@@ -61,12 +62,11 @@ pub(crate) trait Motions: Sized + Sync {
     /// motion included; NaN where it does not return so often.
     fn exponent(&self, from: &Self::Place, returns: u64) -> f64;
 
-    /// The stable orbit, with its places, that Newton's method reaches from a motion at a place.
-    fn stable_orbit(
-        &self,
-        from: &Self::Place,
-        period: u32,
-    ) -> Option<(Self::Orbit, Vec<Self::Place>)>;
+    /// The orbit, with its places, that Newton's method reaches from a motion at a place.
+    fn orbit(&self, from: &Self::Place, period: u32) -> Option<(Self::Orbit, Vec<Self::Place>)>;
+
+    /// The multipliers of an orbit.
+    fn multipliers(orbit: &Self::Orbit) -> &[ReIm];
 
     /// The attractor that is a stable orbit of these places.
     fn periodic(&self, orbit: Self::Orbit, places: &[Self::Place]) -> AttractorOf<Self>;

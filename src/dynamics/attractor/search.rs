@@ -9,10 +9,11 @@ use super::recognition::Recognizer;
 use super::thresholds::{
     DECISION_RETURNS, FIRST_LOOK_RETURNS, LATE_LOOKS, MAX_ATTRACTORS, MAX_ENDING_RETURNS,
     MAX_FIRST_PERIOD, MAX_TURNS_INTO_TRAP, MIN_PAIRS, NEUTRAL_TOLERANCE, REFERENCE_RETURNS,
-    REPEAT_TOLERANCE,
+    REPEAT_TOLERANCE, ROUNDING_TOLERANCE,
 };
 use super::trap_search::traps;
 use super::{AttractorKind, MAX_POINTS, MIN_STANDARD_ERRORS};
+use crate::dynamics::linear::{ReIm, modulus};
 
 /// The outcome of a search for the attractor of a motion.
 pub(crate) enum Settled<C: Coordinates> {
@@ -110,12 +111,22 @@ impl<M: Motions> AttractorSearch<'_, M> {
         Ok(None)
     }
 
-    /// The stable orbit that some returns repeat, if the motion is seen to enter its trap.
+    /// The stable orbit that some returns repeat, if the motion is seen to enter its trap. A motion
+    /// on a neutral orbit, which it neither leaves nor approaches however long it is followed, stays
+    /// unresolved.
     fn orbit(&self, spots: &[SpotOf<M>], last: &M::Place) -> Found<M, Settled<M::Coordinates>> {
         let (motions, coordinates) = (self.motions, self.motions.coordinates());
         let repeated = repeats(coordinates, spots, self.limits.max_period as usize);
-        let found = repeated.and_then(|period| motions.stable_orbit(last, period));
+        let found = repeated.and_then(|period| motions.orbit(last, period));
         let Some((orbit, places)) = found else { return Ok(None) };
+        let multipliers = M::multipliers(&orbit);
+        let stays = || repeats_with(coordinates, spots, places.len(), ROUNDING_TOLERANCE);
+        if are_neutral(multipliers) && stays() {
+            return Ok(Some(Settled::Label(Label::Unresolved)));
+        }
+        if !multipliers.iter().all(|it| modulus(*it) < 1.0) {
+            return Ok(None);
+        }
         let period = places.len() as u64;
         let own: Vec<_> = places.iter().map(|it| motions.spot_of(it)).collect();
         if self.known.iter().any(|it| it.is_orbit(coordinates, period, own.iter())) {
@@ -178,6 +189,12 @@ impl<M: Motions> AttractorSearch<'_, M> {
     }
 }
 
+/// Whether the largest of an orbit's multipliers cannot be told from one on the unit circle.
+fn are_neutral(multipliers: &[ReIm]) -> bool {
+    let excess = multipliers.iter().map(|it| modulus(*it) - 1.0).fold(f64::NEG_INFINITY, f64::max);
+    excess.abs() <= ROUNDING_TOLERANCE
+}
+
 /// The kind of the attractor of a motion that is on no orbit known as stable, by its exponents.
 fn kind_of(means: &RunMeans, repeats: bool) -> AttractorKind {
     let [exponent, error] = means.largest_exponent;
@@ -196,12 +213,19 @@ pub(crate) fn repeats<C: Coordinates>(
     spots: &[C::Spot],
     longest: usize,
 ) -> Option<u32> {
-    let repeats = |period: usize| {
-        let pairs = period.max(MIN_PAIRS);
-        let end = spots.len();
-        let is_near =
-            |n: usize| coordinates.are_near(&spots[n - period], &spots[n], REPEAT_TOLERANCE);
-        end >= period + pairs && (end - pairs..end).all(is_near)
-    };
-    (1..=longest).find(|period| repeats(*period)).and_then(|period| u32::try_from(period).ok())
+    let repeats = |period: &usize| repeats_with(coordinates, spots, *period, REPEAT_TOLERANCE);
+    (1..=longest).find(repeats).and_then(|period| u32::try_from(period).ok())
+}
+
+/// Whether the last returns repeat with a period to within a tolerance.
+fn repeats_with<C: Coordinates>(
+    coordinates: &C,
+    spots: &[C::Spot],
+    period: usize,
+    tolerance: f64,
+) -> bool {
+    let pairs = period.max(MIN_PAIRS);
+    let end = spots.len();
+    let is_near = |n: usize| coordinates.are_near(&spots[n - period], &spots[n], tolerance);
+    end >= period + pairs && (end - pairs..end).all(is_near)
 }

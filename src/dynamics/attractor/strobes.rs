@@ -12,7 +12,7 @@ use super::trap::Trap;
 use super::trap_search::metric;
 use super::{Attractor, AttractorKind, horizon};
 use crate::dynamics::ensemble::{self, Member, Watcher};
-use crate::dynamics::linear::IDENTITY;
+use crate::dynamics::linear::{IDENTITY, ReIm};
 use crate::dynamics::lyapunov::Spectrum;
 use crate::dynamics::orbit::Orbit;
 use crate::dynamics::section::Section;
@@ -200,10 +200,14 @@ impl Motions for StrobeMotions {
         self.spectrum(from, returns).exponents_per_period[0]
     }
 
-    fn stable_orbit(&self, from: &Entry, period: u32) -> Option<(Orbit, Vec<Entry>)> {
+    fn orbit(&self, from: &Entry, period: u32) -> Option<(Orbit, Vec<Entry>)> {
         let orbit = Orbit::find(&self.map, from.point(), period).ok()?;
         let places = orbit.points.iter().map(|it| self.map.entry(*it)).collect::<Result<_, _>>();
-        places.ok().filter(|_| orbit.is_stable()).map(|places| (orbit, places))
+        places.ok().map(|places| (orbit, places))
+    }
+
+    fn multipliers(orbit: &Orbit) -> &[ReIm] {
+        &orbit.multipliers
     }
 
     fn periodic(&self, orbit: Orbit, _: &[Entry]) -> Attractor {

@@ -16,6 +16,9 @@ pub(crate) const EXTENSIONS: u32 = 3;
 pub(crate) const MAX_FIRST_PERIOD: u32 = 128;
 /// Returns that repeat this closely (relative to their size) are handed to Newton's method.
 pub(crate) const REPEAT_TOLERANCE: f64 = 1e-3;
+/// Returns that repeat this closely, and multipliers this near to the unit circle, differ by no
+/// more than the roundings of an orbit's longest period: an orbit there is neutral.
+pub(crate) const ROUNDING_TOLERANCE: f64 = 1e-12;
 /// The least number of pairs of returns that must repeat.
 pub(crate) const MIN_PAIRS: usize = 8;
 /// Turns within which a motion must enter a trap of the orbit that it seems to follow: one that
