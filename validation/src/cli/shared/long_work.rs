@@ -3,7 +3,8 @@
 use super::parse::MAX_PERIODS;
 use super::terminal::{is_quiet, note};
 use anyhow::{Context, Result, bail};
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::fmt;
 use std::io::{self, IsTerminal};
 use std::sync::Mutex;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -48,12 +49,16 @@ impl Bar {
         done: impl Fn(&ProgressBar) -> String + Send + 'static,
     ) -> Self {
         let bar = match ProgressStyle::with_template(style) {
-            Ok(style) => bar.with_style(style),
+            Ok(style) => bar.with_style(style.with_key("to_go", show_time_to_go)),
             Err(_) => bar,
         };
         bar.set_draw_target(ProgressDrawTarget::hidden());
         let told = |bar: ProgressBar| {
-            told_every(LINE_INTERVAL, move || note(&line(&done(&bar), bar.elapsed(), bar.eta())))
+            told_every(LINE_INTERVAL, move || {
+                let elapsed = bar.elapsed();
+                let to_go = time_to_go(elapsed, bar.position(), bar.length());
+                note(&line(&done(&bar), elapsed, to_go));
+            })
         };
         let waiting = (!is_quiet()).then(|| match io::stderr().is_terminal() {
             true => shown_later(bar.clone()),
@@ -88,6 +93,23 @@ impl Drop for Bar {
     fn drop(&mut self) {
         self.finish_and_clear();
     }
+}
+
+/// The time that the rest of the work takes at the mean rate so far; zero where nothing is done. The
+/// bar's own estimate forgets early steps and grows to years while one step is slow.
+fn time_to_go(elapsed: Duration, position: u64, length: Option<u64>) -> Duration {
+    let rest = length.unwrap_or(position).saturating_sub(position);
+    let seconds = elapsed.as_secs_f64() * rest as f64 / position as f64;
+    Duration::try_from_secs_f64(seconds).unwrap_or_default()
+}
+
+/// Writes [`time_to_go`] of a bar, a question mark where it is not known.
+fn show_time_to_go(state: &ProgressState, out: &mut dyn fmt::Write) {
+    let to_go = time_to_go(state.elapsed(), state.pos(), state.len());
+    let _ = match to_go {
+        Duration::ZERO => write!(out, "?"),
+        _ => write!(out, "{:#}", HumanDuration(to_go)),
+    };
 }
 
 /// Shows a bar after a while, unless what is returned is dropped before.
@@ -126,7 +148,7 @@ fn line(done: &str, elapsed: Duration, to_go: Duration) -> String {
 
 /// A progress bar of the given number of units.
 pub(in crate::cli) fn bar(length: u64, unit: &'static str) -> Bar {
-    let style = format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} to go");
+    let style = format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{to_go}} to go");
     let done = move |bar: &ProgressBar| {
         format!("{} of {} {unit}", bar.position(), bar.length().unwrap_or_default())
     };
@@ -139,7 +161,7 @@ const SHARE_STEPS: f64 = 1000.0;
 /// A bar for a share of 0 to 1.
 pub(in crate::cli) fn share_bar() -> Bar {
     let done = |bar: &ProgressBar| format!("{} %", bar.position() * 100 / SHARE_STEPS as u64);
-    Bar::new(ProgressBar::new(SHARE_STEPS as u64), "{bar:40} {percent} %, {eta} to go", done)
+    Bar::new(ProgressBar::new(SHARE_STEPS as u64), "{bar:40} {percent} %, {to_go} to go", done)
 }
 
 /// A bar for a run of one motion, from its start to its horizon; none where its rows appear on the
@@ -161,6 +183,15 @@ mod tests {
         assert_eq!(known, "so far 40 of 120 rows in 30 seconds, about 60 seconds to go");
         let unknown = line("0 %", seconds(7200), Duration::ZERO);
         assert_eq!(unknown, "so far 0 % in 2 hours");
+    }
+
+    /// A slow step does not make the time to go grow without bound.
+    #[test]
+    fn the_time_to_go_is_that_at_the_mean_rate() {
+        let seconds = Duration::from_secs;
+        assert_eq!(time_to_go(seconds(1500), 30, Some(120)), seconds(4500));
+        assert_eq!(time_to_go(seconds(1500), 0, Some(120)), Duration::ZERO);
+        assert_eq!(time_to_go(seconds(9), 3, None), Duration::ZERO);
     }
 
     /// Lines come one after the other, none before its time, and none once the work is done.
