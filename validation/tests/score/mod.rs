@@ -206,6 +206,85 @@ fn what_events_prints_is_an_answer() {
     assert_eq!(rows[0]["events_missed"], 0, "{rows:?}");
 }
 
+/// The first line of what `percuss events` prints is the start, and its times go forward.
+#[test]
+fn a_printed_run_of_another_start_or_back_in_time_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let printed = run(&["events", "watched-impact-oscillator", "--until", "30"]).stdout;
+    let printed = text(&printed);
+    let file = folder.path().join("watched-every-direction.events.csv");
+    let answers = folder.path().display().to_string();
+    let asked = ["--answers", &answers, "-c", "^watched-every-direction$"];
+    let words = [&SCORE_COMMAND[..], &asked].concat();
+    let told = |rows: &dyn Fn(usize, Vec<String>) -> Vec<String>| {
+        let lines = printed.lines().enumerate().map(|(n, line)| {
+            let cells = line.split(',').map(str::to_owned).collect();
+            rows(n, cells).join(",") + "\n"
+        });
+        fs::write(&file, lines.collect::<String>()).expect("written");
+    };
+    let with = |place: usize, value: &str| {
+        let value = value.to_owned();
+        move |n: usize, mut cells: Vec<String>| {
+            if n == 1 {
+                cells[place].clone_from(&value);
+            }
+            cells
+        }
+    };
+    told(&|n, mut cells| {
+        if n > 0 {
+            cells[1].insert(0, '-');
+        }
+        cells
+    });
+    refused(&words, &["watched-every-direction.events.csv", "line 3"]);
+    for (place, value, said) in [(2, "hit", "event"), (3, "stuck", "mode"), (4, "9", "start")] {
+        told(&with(place, value));
+        refused(&words, &["line 2", said, "accepted is"]);
+    }
+}
+
+/// No event of a relay is near a graze, however narrow its switching is beside the tolerance.
+#[test]
+fn a_relay_that_never_switches_fails() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("relay-1e-6.events.csv");
+    fs::write(file, "time,event,mode,x1,x2,x3\n").expect("written");
+    let answers = folder.path().display().to_string();
+    for tolerance in ["1e-4", "1e-6"] {
+        let words = ["score", "--name", "mine", "--tolerance", tolerance, "--answers", &answers];
+        let (rows, code) = report(&[&words[..], &["-c", "^relay-1e-6$"]].concat());
+        assert_eq!((code, &rows[0]["verdict"]), (Some(1), &"fail".into()), "{rows:?}");
+    }
+}
+
+/// A state is judged also where the event's order in its instant is open, and without the state
+/// before the reset.
+#[test]
+fn a_wrong_state_of_the_last_of_many_impacts_at_once_fails() {
+    let case = "spheres-no-progress";
+    let folder = tempfile::tempdir().expect("a folder");
+    answers("exact", Accuracy::Exact, &format!("^{case}$"), folder.path());
+    let file = folder.path().join(format!("{case}.events.csv"));
+    let whole = fs::read_to_string(&file).expect("read");
+    let header = whole.lines().next().expect("a header");
+    let kept = header.split(',').take_while(|it| !it.starts_with("before.")).count();
+    let short: Vec<Vec<&str>> =
+        whole.lines().map(|line| line.split(',').take(kept).collect()).collect();
+    let last = short.iter().rposition(|it| it[1] != "no-progress").expect("an event");
+    let answers = folder.path().display().to_string();
+    let words = [&SCORE_COMMAND[..], &["--answers", &answers, "-c", case]].concat();
+    for (state, wrong) in [(short[last][3], false), ("2e8", true)] {
+        let mut lines = short.clone();
+        lines[last][3] = state;
+        let lines: Vec<String> = lines.iter().map(|it| it.join(",") + "\n").collect();
+        fs::write(&file, lines.concat()).expect("written");
+        let (rows, _) = report(&words);
+        assert_eq!(rows[0]["verdict"] == "fail", wrong, "{state}: {rows:?}");
+    }
+}
+
 /// Half of a declaration is refused: a unit of error that follows from an order needs one.
 #[test]
 fn a_stepping_that_needs_an_order_is_refused_without() {

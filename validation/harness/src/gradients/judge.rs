@@ -111,10 +111,23 @@ impl<'a> OneName<'a> {
         let Some(worst) = self.worst(answer, &cells, tolerance) else {
             return (Verdict::Refused, None, "no cell that is judged was answered".to_owned());
         };
+        if worst.units <= ALLOWED_UNITS && !self.tells_from_zero(&cells, tolerance) {
+            let why =
+                "of the cells that were answered those that can be told from their error are 0";
+            return (Verdict::NoneAsked, None, why.to_owned());
+        }
         if worst.units <= ALLOWED_UNITS {
             return (Verdict::Right, None, self.why_right(worst, tolerance, cells.len()));
         }
         self.wrong_verdict(at, answer, &cells, worst)
+    }
+
+    /// Whether a derivative of one of these cells is larger than its allowance: an answer of zeros
+    /// agrees with all others.
+    fn tells_from_zero(&self, cells: &[(usize, usize)], tolerance: f64) -> bool {
+        let units = self.reference.units(self.name);
+        let allowed = |n: usize, k: usize| ALLOWED_UNITS * tolerance * units[n][k];
+        cells.iter().any(|(n, k)| self.truth[*n][*k].abs() > allowed(*n, *k))
     }
 
     fn why_right(&self, worst: Worst, tolerance: f64, cells: usize) -> String {

@@ -130,12 +130,15 @@ impl Reasons {
         excused: &Excused,
     ) -> (Verdict, String) {
         let unmeasured = checked.iter().find(|it| it.verdict == Verdict::NotScored);
+        let wrong = run.measures.local.as_ref().and_then(|it| it.first_wrong.as_ref());
         if !self.failed.is_empty() {
-            let first = run.measures.local.as_ref().and_then(|it| it.first_wrong.as_ref());
-            let why = self.failed.into_iter().chain(first.map(FirstWrong::sentence));
+            let why = self.failed.into_iter().chain(wrong.map(FirstWrong::sentence));
             (Verdict::Fail, why.collect::<Vec<_>>().join("; "))
         } else if !self.known.is_empty() {
             (Verdict::Known, self.known.join("; "))
+        } else if let Some(first) = wrong {
+            // Whatever the bounds say, what is wrong by the local judgement does not pass.
+            (Verdict::Fail, first.sentence())
         } else if !excused.grazes.is_empty() {
             (Verdict::Undecidable, undecidable(excused))
         } else if let Some(open) =

@@ -18,6 +18,8 @@ pub(super) struct Place {
     pub(super) state: Vec<f64>,
     /// The guards that are outside and on their way back, as bits.
     pub(super) late: u64,
+    /// Whether the mode begins here: at the start, and after an event that ended the mode before.
+    pub(super) begins: bool,
 }
 
 /// An event of a mode, with the mode after it.

@@ -34,11 +34,12 @@ impl Walk<'_> {
         let off = event.state.iter().zip(&pending.exact.state).zip(&pending.allowed);
         let defect = worst(off.map(|((own, exact), allowed)| (own - exact).abs() / allowed));
         let is_of_the_crossing = defect <= 1.0 && named.next == self.place.mode;
-        let said = self.by_its_own_event(event, named);
+        let (said, defects) = self.own_event_of(event, named);
         if matches!(said, Said::Wrong(..)) && is_of_the_crossing {
             self.stays = true;
             return Said::Right;
         }
+        self.found.defects.append(defects);
         said
     }
 

@@ -96,8 +96,13 @@ impl LocalJudge {
         allowance: Allowance,
     ) -> Result<Walk<'a>, SystemError> {
         let mut coarse = self.0.problem.solver.follow(&self.0.problem.start)?;
-        let mut place =
-            Place { elapsed: 0.0, mode: task.mode, state: task.state.to_vec(), late: 0 };
+        let mut place = Place {
+            elapsed: 0.0,
+            mode: task.mode,
+            state: task.state.to_vec(),
+            late: 0,
+            begins: true,
+        };
         // A guard that is zero to rounding at the start is zero there.
         coarse.impose(self.0.guards_at_rounding(&place));
         place.state = self.0.projected(&mut coarse, &place);

@@ -242,6 +242,17 @@ pub(super) fn exceeds(defect: f64, limit: f64) -> bool {
 }
 
 impl Defects {
+    /// Adds the defects that another judgement of the same run has measured.
+    pub(super) fn append(&mut self, mut other: Self) {
+        let Self { location, time, state, sample, delay, inconsistency } = self;
+        location.append(&mut other.location);
+        time.append(&mut other.time);
+        state.append(&mut other.state);
+        sample.append(&mut other.sample);
+        delay.append(&mut other.delay);
+        inconsistency.append(&mut other.inconsistency);
+    }
+
     /// The quantiles of defects, of which the sign does not count.
     #[must_use]
     pub fn spread(defects: &[f64]) -> Spread {

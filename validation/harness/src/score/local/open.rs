@@ -124,6 +124,21 @@ impl Walk<'_> {
         value.value.abs() <= allowed + value.rounding
     }
 
+    /// Whether a mode begins on the inside of a guard that is crossed soon after, where no event put
+    /// the state on the guard: the answer has both signs before it, and no error of the flow takes
+    /// the crossing away. A record amid a mode may be the one of two close crossings.
+    pub(super) fn begins_inside(&mut self, guard: usize, elapsed: f64) -> bool {
+        let begin = self.place.elapsed;
+        let near = begin + self.units.allowance.time * self.at_once_within();
+        let is_at_begin = self.extremum_near(elapsed, guard).is_some_and(|at| at <= near);
+        if !self.place.begins || !is_at_begin || self.zeros_of(guard) > 0 {
+            return false;
+        }
+        let mode = self.place.mode;
+        let value = self.motion().value((mode, guard, 0), begin, &self.place.state);
+        self.signs(mode, guard).iter().any(|sign| sign * value.value < -value.rounding)
+    }
+
     /// The error of a guard that the answer's own samples on the present flow show near a time,
     /// with room; none where no sample is near.
     fn shown_near(&mut self, at: f64, row: &RowDVector<f64>, state: &[f64]) -> Option<f64> {

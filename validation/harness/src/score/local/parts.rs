@@ -2,7 +2,7 @@
 //! before and after the reset, and the mode.
 
 use super::continuation::Named;
-use super::judgement::{WrongKind, exceeds};
+use super::judgement::{Defects, WrongKind, exceeds};
 use super::motion::value as value_of;
 use super::walk::{Said, Walk};
 use crate::engine::Event;
@@ -26,16 +26,31 @@ impl Walk<'_> {
     /// Judges a record whose event may fire, by what that event makes of the present flow at the
     /// record's own time.
     pub(super) fn by_its_own_event(&mut self, event: &Event, named: Named) -> Said {
-        if let Some(said) = self.contradiction(event, named) {
+        let (said, defects) = self.own_event_of(event, named);
+        self.found.defects.append(defects);
+        said
+    }
+
+    /// The judgement of [`Self::by_its_own_event`], and the defects that it measures.
+    pub(super) fn own_event_of(&mut self, event: &Event, named: Named) -> (Said, Defects) {
+        let mut defects = Defects::default();
+        let said = self.own_defects(event, named, &mut defects);
+        (said, defects)
+    }
+
+    fn own_defects(&mut self, event: &Event, named: Named, defects: &mut Defects) -> Said {
+        if let Some(said) = self.contradiction(event, named, defects) {
             return said;
         }
         let before = self.off_the_flow(event);
-        self.found.defects.sample.extend(before);
+        defects.sample.extend(before);
         if let Some(defect) = before.filter(|it| exceeds(*it, self.units.allowance.sample)) {
             return Said::Wrong(WrongKind::Sample, None, defect);
         }
         let state = self.off_the_reset(event, named);
+        // Of an event that is only counted the state is one of the flow, with the flow's bound.
         if exceeds(state, self.units.allowance.state.max(self.units.allowance.sample)) {
+            defects.state.push(state);
             return Said::Wrong(WrongKind::State, None, state);
         }
         let stretch = self.place.stretch(event.elapsed);
@@ -58,14 +73,19 @@ impl Walk<'_> {
 
     /// The contradiction between an event and the parts of its record: a guard that is not zero
     /// where it was located, or a state that is not the reset of the state before it.
-    pub(super) fn contradiction(&mut self, event: &Event, named: Named) -> Option<Said> {
+    pub(super) fn contradiction(
+        &self,
+        event: &Event,
+        named: Named,
+        defects: &mut Defects,
+    ) -> Option<Said> {
         let location = self.location(event, named);
-        self.found.defects.location.extend(location);
+        defects.location.extend(location);
         if let Some(location) = location.filter(|it| exceeds(*it, MAX_LOCATION_ERROR)) {
             return Some(Said::Wrong(WrongKind::Location, None, location));
         }
         let inconsistency = self.inconsistency(event, named);
-        self.found.defects.inconsistency.extend(inconsistency);
+        defects.inconsistency.extend(inconsistency);
         let defect = inconsistency.filter(|it| exceeds(*it, MAX_INCONSISTENCY))?;
         Some(Said::Wrong(WrongKind::Inconsistent, None, defect))
     }

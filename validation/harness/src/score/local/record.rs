@@ -1,7 +1,7 @@
 //! What is said of one record, beside what the exact continuation has.
 
 use super::continuation::{Exact, Found, Named};
-use super::judgement::{WrongKind, exceeds};
+use super::judgement::{Defects, WrongKind, exceeds};
 use super::parts::{MAX_INCONSISTENCY, MAX_LOCATION_ERROR};
 use super::walk::{Said, Walk};
 use crate::engine::Event;
@@ -29,10 +29,18 @@ impl Walk<'_> {
             Found::Nothing(next) => self.judge_unexpected(event, named, next, decided),
             Found::Ended(Ending::Undecided) => match self.take_pending(named) {
                 Some(pending) => self.judge_awaited(event, named, &pending),
-                None => self.contradiction(event, named).unwrap_or(Said::Undecidable),
+                None => self.after_undecided(event, named),
             },
             Found::Ended(_) => self.judge_unexpected(event, named, None, decided),
         }
+    }
+
+    /// A record beyond which the exact continuation is not decided: its parts still have to agree.
+    fn after_undecided(&mut self, event: &Event, named: Named) -> Said {
+        let mut defects = Defects::default();
+        let said = self.contradiction(event, named, &mut defects);
+        self.found.defects.append(defects);
+        said.unwrap_or(Said::Undecidable)
     }
 
     /// A record of the exact continuation's event, at its time.

@@ -126,7 +126,11 @@ impl<'a> Walk<'a> {
     pub(super) fn count_missed(&mut self, n: usize, next: Option<&Event>, exact: Exact) -> bool {
         // An event of a mode that the records have left since is none of the present flow.
         let is_present = exact.mode == self.place.mode;
-        if is_present && self.is_graze(exact.elapsed, exact.named.event) {
+        let guard = exact.named.event;
+        if is_present
+            && !self.begins_inside(guard, exact.elapsed)
+            && self.is_graze(exact.elapsed, guard)
+        {
             self.found.undecidable += 1;
             return false;
         }

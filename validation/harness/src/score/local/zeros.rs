@@ -50,12 +50,13 @@ impl JudgedRun {
 impl Walk<'_> {
     /// Goes on to a record: from here on the exact continuation is that of the record.
     pub(super) fn go_on(&mut self, named: Named, event: &Event, at_entry: bool) {
+        let begins = named.event < self.until_count();
         let followed: Followed = named.followed(self.until_count());
         if !self.coarse.pass(followed, at_entry) {
             self.coarse.forget(named.next);
         }
         let state = self.finite_state(event);
-        self.place = Place { elapsed: event.elapsed, mode: named.next, state, late: 0 };
+        self.place = Place { elapsed: event.elapsed, mode: named.next, state, late: 0, begins };
         self.drop_untrue();
         self.place.state = self.judge.projected(&mut self.coarse, &self.place);
         self.place.late = self.guards_returning();
