@@ -111,9 +111,9 @@ impl<'a> OneName<'a> {
         let Some(worst) = self.worst(answer, &cells, tolerance) else {
             return (Verdict::Refused, None, "no cell that is judged was answered".to_owned());
         };
-        if worst.units <= ALLOWED_UNITS && !self.tells_from_zero(&cells, tolerance) {
+        if worst.units <= ALLOWED_UNITS && self.tells_zeros_alone(answer, &cells, tolerance) {
             let why =
-                "of the cells that were answered those that can be told from their error are 0";
+                "of what was answered only derivatives that are 0 can be told from their error";
             return (Verdict::NoneAsked, None, why.to_owned());
         }
         if worst.units <= ALLOWED_UNITS {
@@ -122,12 +122,20 @@ impl<'a> OneName<'a> {
         self.wrong_verdict(at, answer, &cells, worst)
     }
 
-    /// Whether a derivative of one of these cells is larger than its allowance: an answer of zeros
-    /// agrees with all others.
-    fn tells_from_zero(&self, cells: &[(usize, usize)], tolerance: f64) -> bool {
+    /// Whether some derivative that was answered is not 0, and none of those is larger than its
+    /// allowance: an answer of zeros would agree as well.
+    fn tells_zeros_alone(
+        &self,
+        answer: &NameAnswer,
+        cells: &[(usize, usize)],
+        tolerance: f64,
+    ) -> bool {
         let units = self.reference.units(self.name);
         let allowed = |n: usize, k: usize| ALLOWED_UNITS * tolerance * units[n][k];
-        cells.iter().any(|(n, k)| self.truth[*n][*k].abs() > allowed(*n, *k))
+        let is_told = |(n, k): &(usize, usize)| self.truth[*n][*k].abs() > allowed(*n, *k);
+        let all = (1..self.truth.len()).flat_map(|n| (0..self.sizes.len()).map(move |k| (n, k)));
+        let mut answered = all.filter(|(n, k)| answer.cell(*n, *k).is_some());
+        answered.any(|(n, k)| self.truth[n][k] != 0.0) && !cells.iter().any(is_told)
     }
 
     fn why_right(&self, worst: Worst, tolerance: f64, cells: usize) -> String {

@@ -57,6 +57,20 @@ fn derivatives_walked_in_f64_are_right_in_every_case() {
     assert!(told * 10 >= names * 9, "{told} of {names} names can be told");
 }
 
+/// Where only derivatives that are zero can be told from their error, nothing can be said.
+#[test]
+fn an_answer_of_zeros_is_never_right() {
+    for reference in &references() {
+        let zeros = |name| {
+            let rows: Vec<Vec<f64>> = reference.derivatives(name);
+            Some(rows.iter().map(|it| vec![0.0; it.len()]).collect())
+        };
+        let found = verdicts(reference, zeros);
+        let right = found.iter().find(|it| it.verdict == Verdict::Right);
+        assert!(right.is_none(), "{}", place(reference, right.unwrap()));
+    }
+}
+
 /// Central differences over a step of 1e-5 of the value are off by its square.
 #[test]
 fn good_differences_are_right() {

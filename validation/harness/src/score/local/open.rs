@@ -124,9 +124,9 @@ impl Walk<'_> {
         value.value.abs() <= allowed + value.rounding
     }
 
-    /// Whether a mode begins on the inside of a guard that is crossed soon after, where no event put
-    /// the state on the guard: the answer has both signs before it, and no error of the flow takes
-    /// the crossing away. A record amid a mode may be the one of two close crossings.
+    /// Whether a mode begins on the inside of a guard that is crossed soon after, where no event
+    /// put the state on the guard: the answer has both signs before it, and no error of the flow
+    /// takes the crossing away. A record amid a mode may be the one of two close crossings.
     pub(super) fn begins_inside(&mut self, guard: usize, elapsed: f64) -> bool {
         let begin = self.place.elapsed;
         let near = begin + self.units.allowance.time * self.at_once_within();
