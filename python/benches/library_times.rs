@@ -79,7 +79,7 @@ fn dynamics(system: &System) {
     least("rig.poincare(returns=1)", || map().returns(start).expect("a start").next());
     least("rig.lyapunov(returns=10)", || returns::exponents(&map(), 0, 10, &mut |_| {}));
     least("rig.orbit(1, transient=10)", || {
-        let (guess, _) = returns::guess(&map(), 10).expect("a start");
+        let (guess, _) = returns::guess(&map(), 10, || ()).expect("a start");
         let guess: Place<f64> = guess.expect("returns");
         map().orbit(&guess, 1)
     });

@@ -129,7 +129,17 @@ class Oscillator(Swept):
             real("v", v),
             phase,
         )
-        self._native = _percuss.Oscillator(list(self.parameters.values()), *self._start)
+        self._native = self._made()
+
+    def _made(self) -> _percuss.Oscillator:
+        return _percuss.Oscillator(list(self.parameters.values()), *self._start)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_native"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._native = self._made()
 
     def _at(self, parameter: str, value: float) -> _percuss.Oscillator:
         """The oscillator with another value of a parameter, at the same start."""

@@ -201,7 +201,9 @@ class Run:
         errors = self._rows.errors()
         if errors is None:
             raise AttributeError("a run in f64 has no bounds of its errors: one of events() has")
-        return Enclosure(_between(self.time, errors[0]), _between(self.state, errors[1]))
+        # Of the run's own numbers: those of `time` and `state` may have been changed.
+        time, state = self._rows.times(), self._rows.states()
+        return Enclosure(_between(time, errors[0]), _between(state, errors[1]))
 
     @property
     def sol(self) -> Sol:

@@ -86,11 +86,11 @@ class Answered:
                 raise NoAnswer(f"a {type(answer).__name__} is no answer: percuss.Answer is")
             write(self.folder, problem, answer)
             if answer.work is not None:
-                self.work[problem.case] = tuple(int(it) for it in answer.work)  # type: ignore[assignment]
+                self.work[problem.case] = _counts(answer.work)
         except NoAnswer as why:
             self.failures[problem.case] = _line(str(why))
         except Exception as error:  # what a solver raises is the reason of its row
-            self.failures[problem.case] = _line(f"{type(error).__name__}: {error}")
+            self.failures[problem.case] = _line(f"{type(error).__name__}: {_text(error)}")
 
     def told(self) -> dict[str, Any]:
         """What the judge is told of these answers."""
@@ -98,15 +98,33 @@ class Answered:
         return told | {"failures": self.failures, "work": self.work}
 
 
+def _counts(work: Sequence[int]) -> tuple[int, int, int, int]:
+    """The four counts of an answer's work."""
+    counts = tuple(int(it) for it in work)
+    if len(counts) != 4 or not all(0 <= it < 2**64 for it in counts):
+        raise NoAnswer(f"work = {work!r} is not accepted: four counts from 0 on are")
+    return counts
+
+
+def _text(error: Exception) -> str:
+    """What an exception says; nothing where it cannot."""
+    try:
+        return str(error)
+    except Exception:  # of a solver's own class
+        return ""
+
+
 def _line(text: str) -> str:
-    return " ".join(text.split()) or "no reason was given"
+    """A text in one line, of characters that UTF-8 has."""
+    return " ".join(text.encode("utf-8", "replace").decode("utf-8").split()) or "no reason was given"
 
 
 def write(folder: Path, problem: Problem, answer: Answer) -> None:
     """Write an answer into the two files of a case."""
     states = problem.states
     before = [f"before.{name}" for name in states]
-    has_before = all(it.before is not None for it in answer.events)
+    events = list(answer.events)
+    has_before = all(it.before is not None for it in events)
 
     def numbers(values: Any) -> list[float]:
         return [float(it) for it in np.asarray(values, dtype=np.float64).reshape(-1)]
@@ -115,7 +133,7 @@ def write(folder: Path, problem: Problem, answer: Answer) -> None:
         rows = csv.writer(file)
         rows.writerow(["time", "event", "mode", *states, *(before if has_before else [])])
         mode = problem.mode
-        for event in answer.events:
+        for event in events:
             tail = numbers(event.before) if has_before else []
             rows.writerow([float(event.time), event.name, event.mode, *numbers(event.state), *tail])
             mode = event.mode
@@ -125,7 +143,7 @@ def write(folder: Path, problem: Problem, answer: Answer) -> None:
             time = math.nan if answer.end_time is None else float(answer.end_time)
             rows.writerow([time, answer.ending, mode, *end_state, *tail])
     if answer.gradients is not None:
-        _write_gradients(folder, problem, answer, answer.gradients)
+        _write_gradients(folder, problem, [it.name for it in events], answer.gradients)
     if answer.samples is None:
         return
     with open(folder / f"{problem.case}.samples.csv", "w", newline="", encoding="utf-8") as file:
@@ -136,10 +154,10 @@ def write(folder: Path, problem: Problem, answer: Answer) -> None:
 
 
 def _write_gradients(
-    folder: Path, problem: Problem, answer: Answer, gradients: Sequence[Differentiated]
+    folder: Path, problem: Problem, events: Sequence[str], gradients: Sequence[Differentiated]
 ) -> None:
-    """Write the derivatives of an answer into the third file of a case."""
-    size, events = len(problem.states), [it.name for it in answer.events]
+    """Write the derivatives of an answer with these events into the third file of a case."""
+    size = len(problem.states)
 
     def cells(values: Any) -> list[float | str]:
         numbers = np.asarray(values, dtype=np.float64).reshape(-1)
@@ -176,6 +194,8 @@ def case_names(pattern: str | Iterable[str] = "*") -> list[str]:
 def matching(pattern: str | Iterable[str], names: Sequence[str]) -> list[str]:
     """The names of cases that match one of some patterns, each of which has to match one."""
     patterns = [pattern] if isinstance(pattern, str) else list(pattern)
+    if not patterns:
+        raise ValueError("cases are empty: a pattern such as 'graze*' is accepted")
     for it in patterns:
         if not isinstance(it, str):
             raise TypeError(f"cases = {it!r} is not accepted: a pattern such as 'graze*' is")
@@ -357,6 +377,8 @@ def _solvers(
             raise TypeError("method and options are accepted of a solver like solve_ivp alone")
         return [(solver, own)]
     setups = [setup] if isinstance(setup, str) else list(setup)
+    if not setups:
+        raise ValueError(f"setup is empty: {' and '.join(SETUPS)} are accepted")
     for it in setups:
         if it not in SETUPS:
             raise ValueError(f"setup = {it!r} is not accepted: {' and '.join(SETUPS)} are")

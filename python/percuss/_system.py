@@ -68,6 +68,9 @@ class System(Dynamics, Swept):
             raise ValueError(f"{path}: {error.reason}: UTF-8 is accepted") from None
         self._native = _percuss.System.parse(str(path), text)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, self._native.origin
+
     @classmethod
     def _of(cls, native: _percuss.System) -> System:
         system = System.__new__(System)
@@ -347,6 +350,14 @@ class System(Dynamics, Swept):
     def __repr__(self) -> str:
         parameters = ", ".join(f"{name}={value:g}" for name, value in self.parameters.items())
         return f"<System {self.name}({parameters}): states {', '.join(self.states)}>"
+
+
+def _restored(text: str, parameters: Mapping[str, float], start: str | None) -> System:
+    """The system of a text, with other values of parameters and another start."""
+    native = _percuss.System.parse("text", text)
+    if start is not None:
+        native = native.with_start(start)
+    return System._of(native.with_parameters(dict(parameters)))
 
 
 class Systems(Mapping[str, System]):

@@ -96,6 +96,7 @@ class Walker:
 
         guards = [_watched(course, place, zeros) for place in range(len(system.modes[mode].events))]
         tolerance = course.run["tolerance"]
+        tolerances = {"rtol": tolerance["relative"], "atol": tolerance["absolute"]}
         # The state at the horizon is wanted in any case: the next run begins there.
         times = [t for t in course.pending() if t < course.span] + [course.span]
         solved = self.solve_ivp(
@@ -104,9 +105,7 @@ class Walker:
             course.z,
             t_eval=times,
             events=[*guards, each_step],
-            rtol=tolerance["relative"],
-            atol=tolerance["absolute"],
-            **{**extra, **self.options},
+            **{**tolerances, **extra, **self.options},
         )
         meter.steps -= 1
         meter.jacobians += int(getattr(solved, "njev", 0) or 0)

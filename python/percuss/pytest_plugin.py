@@ -61,8 +61,8 @@ def _solver(name: str) -> Any:
         found: Any = importlib.import_module(module)
         for part in attribute.split("."):
             found = getattr(found, part)
-    except (ImportError, AttributeError) as error:
-        raise pytest.UsageError(f"--percuss={name}: {error}") from error
+    except Exception as error:  # a module may raise anything where it is imported
+        raise pytest.UsageError(f"--percuss={name}: {type(error).__name__}: {error}") from error
     return found
 
 

@@ -151,7 +151,7 @@ pub(crate) fn system_follow<'py>(
     let solver = first.solver::<f64>().map_err(value)?;
     let map = section.map(&solver)?;
     let branch = interruptible(py, &Progress { told, all: WORK_PARTS }, |stop| {
-        let (guess, _) = returns::guess(&map, transient)?;
+        let (guess, _) = returns::guess(&map, transient, || stop.look())?;
         let family = ReturnFamily::new(section.section(), section.longest, &at);
         let told = &mut |share| stop.share(share);
         Ok(guess.and_then(|it| ReturnBranch::follow(&family, &it, period, ends, told)))

@@ -193,8 +193,8 @@ pub(crate) fn system_orbit<'py>(
     check_returns(transient, 1)?;
     let solver = solver(system)?;
     let map = section.map(&solver)?;
-    let found = attended(py, &Progress::default(), |_| {
-        let (guess, _) = returns::guess(&map, transient)?;
+    let found = attended(py, &Progress::default(), |stop| {
+        let (guess, _) = returns::guess(&map, transient, || stop.look())?;
         Ok(guess.and_then(|it| map.orbit(&it, period)))
     })?;
     let found = found.map_err(|it: affine::SystemError| value(it))?.map_err(value)?;

@@ -21,6 +21,10 @@ WORK = {
     "exponents": "percuss.Oscillator().lyapunov(periods=10**9)",
     "returns": "percuss.systems['rigid-impact-oscillator'].poincare(returns=10**8)",
     "exponents of returns": "percuss.systems['rigid-impact-oscillator'].lyapunov(returns=10**9)",
+    "orbit after a transient": "percuss.systems['rigid-impact-oscillator']"
+    ".orbit(1, transient=10**8)",
+    "branch after a transient": "percuss.systems['rigid-impact-oscillator']"
+    ".continue_('A', .5, .9, period=1, transient=10**8)",
     "basins": "percuss.Oscillator().basins((-1, 1), (-1, 1), grid=4000, transient=10**4)",
     "diagram": "percuss.Oscillator().bifurcation("
     "'b', np.linspace(0, .3, 1000), transient=10**7, periods=1)",

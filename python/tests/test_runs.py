@@ -1,8 +1,11 @@
 """Systems and runs: every number is the command's."""
 
+import copy
 import csv
 import io
 import multiprocessing
+import os
+import pickle
 import threading
 from decimal import Decimal
 
@@ -274,6 +277,43 @@ def first_impact(height):
 def test_processes_share_the_work():
     with multiprocessing.get_context("spawn").Pool(2) as pool:
         assert pool.map(first_impact, [4.0, 16.0, 36.0]) == [2.0, 4.0, 6.0]
+
+
+def test_systems_and_oscillators_are_copied_and_pickled():
+    changed = percuss.systems["bouncing-ball"](e=0.6).at("flight", x=4, v=0)
+    oscillator = percuss.Oscillator(xi=0.1, p=0.2, y=0.1)
+    for copied in (copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))):
+        run, same = changed.events(count=5), copied(changed).events(count=5)
+        assert np.array_equal(run.time, same.time) and np.array_equal(run.state, same.state)
+        assert np.array_equal(
+            oscillator.simulate(20).state, copied(oscillator).simulate(20).state
+        )
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert pool.map(impacts, [changed]) == [5]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_a_forked_process_has_threads_of_its_own():
+    expected = cells(0)
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        assert pool.map_async(cells, [0]).get(timeout=120) == [expected]
+
+
+def cells(_):
+    basins = percuss.Oscillator(xi=0.1).basins((0, 1), (0, 1), grid=8, transient=40)
+    return basins.labels.tolist()
+
+
+def impacts(system):
+    return len(system.events(count=5)) - 1
+
+
+def test_an_enclosure_is_of_the_run_whatever_becomes_of_its_arrays():
+    run = percuss.systems["bouncing-ball"].events(count=2)
+    run.time[0] = 9
+    low, high = run.enclosure.time[0]
+    assert low <= 0 <= high
 
 
 def test_tables_and_pictures():

@@ -104,6 +104,59 @@ def test_a_solver_that_answers_nonsense_is_an_error():
     assert row["verdict"] == "error" and "int is no answer" in row["why"]
 
 
+class Silent(Exception):
+    def __str__(self):
+        raise RuntimeError("no text")
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        (Silent(), "Silent"),
+        (ValueError("\ud800"), "ValueError: ?"),
+        ((1, 2, 3), "four counts"),
+        ((1, 2, 3, -4), "four counts"),
+        ((1, 2, 3, 2**64), "four counts"),
+    ],
+)
+def test_an_answer_that_cannot_be_read_is_the_error_of_its_row(fault, said):
+    def solve(problem):
+        if isinstance(fault, Exception):
+            raise fault
+        answer = stepped(problem)
+        return percuss.Answer(events=answer.events, samples=answer.samples, work=fault)
+
+    (row,) = percuss.score(solve, rtol=1e-6, cases="small-b", name="own").rows
+    assert row["verdict"] == "error" and said in row["why"]
+
+
+def test_events_may_come_from_an_iterator():
+    def solve(problem):
+        answer = stepped(problem)
+        return percuss.Answer(events=iter(list(answer.events)), samples=answer.samples)
+
+    declared = {"rtol": 1e-6, "cases": "small-b", "name": "own", "kind": "explicit", "order": 8}
+    (row,) = percuss.score(solve, **declared).rows
+    assert row["verdict"] == "pass", row["why"]
+
+
+def test_options_win_over_the_set_up():
+    seen = set()
+
+    def spied(fun, t_span, y0, **options):
+        seen.add((options["rtol"], options["atol"]))
+        return solve_ivp(fun, t_span, y0, **options)
+
+    percuss.score(spied, rtol=1e-6, cases="small-b", setup="experts", options={"atol": 1e-9})
+    assert seen == {(1e-6, 1e-9)}
+
+
+@pytest.mark.parametrize("nothing", [{"cases": []}, {"setup": []}])
+def test_nothing_selected_is_refused(nothing):
+    with pytest.raises(ValueError, match="empty"):
+        percuss.score(solve_ivp, **nothing)
+
+
 def test_a_solver_of_problems_is_judged_right_where_it_is():
     """A walk through the modes by the matrix exponential, with events by bisection."""
     report = percuss.score(

@@ -235,8 +235,8 @@ fn a_motion_that_returns_to_rest_for_ever_is_an_equilibrium() {
     assert!(matches!(orbit, Err(NoOrbit::Rest(_))), "{orbit:?}");
 }
 
-/// Every dose takes the state to 1 - x: all starts are on orbits of period 2 with the multiplier -1,
-/// and no motion tells them apart however long it is.
+/// Every dose takes the state to 1 - x: all starts are on orbits of period 2 with the multiplier
+/// -1, and no motion tells them apart however long it is.
 #[test]
 fn starts_on_neutral_orbits_stay_unresolved() {
     let dose = r#"

@@ -112,7 +112,7 @@ impl<M: Motions> AttractorSearch<'_, M> {
     }
 
     /// The stable orbit that some returns repeat, if the motion is seen to enter its trap. A motion
-    /// on a neutral orbit, which it neither leaves nor approaches however long it is followed, stays
+    /// on a neutral orbit, which it neither leaves nor approaches however long it is followed, is
     /// unresolved.
     fn orbit(&self, spots: &[SpotOf<M>], last: &M::Place) -> Found<M, Settled<M::Coordinates>> {
         let (motions, coordinates) = (self.motions, self.motions.coordinates());

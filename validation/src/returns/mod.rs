@@ -51,9 +51,13 @@ pub type Guess = Result<Place<f64>, NoOrbit>;
 ///
 /// # Errors
 /// A system that does not start.
-pub fn guess(map: &SectionMap<'_, f64>, transient: u64) -> Result<(Guess, u64), SystemError> {
+pub fn guess(
+    map: &SectionMap<'_, f64>,
+    transient: u64,
+    seen: impl Fn(),
+) -> Result<(Guess, u64), SystemError> {
     let mut returns = map.returns(map.system().start()?)?;
-    let wanted = returns.by_ref().take(transient as usize + 1);
+    let wanted = returns.by_ref().take(transient as usize + 1).inspect(|_| seen());
     if let Some(why) = wanted.filter_map(Result::err).last() {
         return Ok((Err(NoOrbit::NoReturn(why)), 0));
     }

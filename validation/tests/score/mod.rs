@@ -238,10 +238,16 @@ fn a_printed_run_of_another_start_or_back_in_time_is_refused() {
         }
         cells
     });
-    refused(&words, &["watched-every-direction.events.csv", "line 3"]);
+    let refuses = |said: &[&str]| {
+        let output = run(&words);
+        let error = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(said.iter().all(|it| error.contains(it)), "{error}");
+    };
+    refuses(&["watched-every-direction.events.csv line 3", "accepted is"]);
     for (place, value, said) in [(2, "hit", "event"), (3, "stuck", "mode"), (4, "9", "start")] {
         told(&with(place, value));
-        refused(&words, &["line 2", said, "accepted is"]);
+        refuses(&["events.csv line 2", said, "accepted is"]);
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) fn points<'a>(system: &'a System, orbit: &'a Orbit) -> Vec<PointJson<
 
 /// The return after the transient, from the system's start.
 pub(super) fn guess(map: &SectionMap<'_, f64>, transient: Option<u64>) -> Result<Guess> {
-    let (guess, undecidable) = returns::guess(map, transient.unwrap_or(0))?;
+    let (guess, undecidable) = returns::guess(map, transient.unwrap_or(0), || ())?;
     tell_undecidable(undecidable);
     Ok(guess)
 }

@@ -95,8 +95,8 @@ impl Drop for Bar {
     }
 }
 
-/// The time that the rest of the work takes at the mean rate so far; zero where nothing is done. The
-/// bar's own estimate forgets early steps and grows to years while one step is slow.
+/// The time that the rest of the work takes at the mean rate so far; zero where nothing is done.
+/// The bar's own estimate forgets early steps and grows to years while one step is slow.
 fn time_to_go(elapsed: Duration, position: u64, length: Option<u64>) -> Duration {
     let rest = length.unwrap_or(position).saturating_sub(position);
     let seconds = elapsed.as_secs_f64() * rest as f64 / position as f64;

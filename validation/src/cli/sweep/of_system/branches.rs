@@ -39,7 +39,7 @@ impl SystemBranchWork {
     ) -> Result<Result<ReturnBranch, NoOrbit>> {
         let solver = Solver::<f64>::new(first)?;
         let map = self.arguments.section.map(&solver)?;
-        let (guess, _) = returns::guess(&map, self.arguments.transient.unwrap_or(0))?;
+        let (guess, _) = returns::guess(&map, self.arguments.transient.unwrap_or(0), || ())?;
         let at = |value| chosen.system_at(&self.arguments.parameter, value);
         of_system::branch(&self.arguments, guess, &at, &mut |_| ())
     }
