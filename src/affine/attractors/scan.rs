@@ -46,6 +46,8 @@ impl SectionMap<'_, f64> {
         });
         let mut found: Vec<Orbit> = Vec::new();
         for orbit in reached.into_iter().flatten() {
+            // Many orbits take long to tell apart, and who waits may end the work.
+            seen(0);
             if !found.iter().any(|it| motions.is_same(it, &orbit)) {
                 found.push(orbit);
             }
