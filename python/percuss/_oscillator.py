@@ -129,25 +129,25 @@ class Oscillator(Swept):
             real("v", v),
             phase,
         )
-        self._native = self._made()
+        self._native = self._made(self.parameters)
 
-    def _made(self) -> _percuss.Oscillator:
-        return _percuss.Oscillator(list(self.parameters.values()), *self._start)
+    def _made(self, parameters: dict[str, float]) -> _percuss.Oscillator:
+        """The oscillator with these parameters, at this start."""
+        return _percuss.Oscillator(list(parameters.values()), *self._start)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_native"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        self._native = self._made()
+        self._native = self._made(self.parameters)
 
     def _at(self, parameter: str, value: float) -> _percuss.Oscillator:
         """The oscillator with another value of a parameter, at the same start."""
         if parameter not in self.parameters:
             accepted = ", ".join(self.parameters)
             raise ValueError(f"parameter = {parameter!r} is not accepted: one of {accepted} is")
-        values = self.parameters | {parameter: value}
-        return _percuss.Oscillator(list(values.values()), *self._start)
+        return self._made(self.parameters | {parameter: value})
 
     @property
     def period(self) -> float:

@@ -83,8 +83,13 @@ impl<'a> OneName<'a> {
         let is_told = |n: usize, k: usize| {
             ALLOWED_UNITS * tolerance * units[n][k] <= JUDGED_SHARE * self.sizes[k]
         };
-        let all = (1..self.truth.len()).flat_map(|n| (0..self.sizes.len()).map(move |k| (n, k)));
-        all.filter(|(n, k)| is_told(*n, *k)).collect()
+        self.all_cells().filter(|(n, k)| is_told(*n, *k)).collect()
+    }
+
+    /// The cells behind the start.
+    fn all_cells(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let (rows, columns) = (self.truth.len(), self.sizes.len());
+        (1..rows).flat_map(move |n| (0..columns).map(move |k| (n, k)))
     }
 
     fn judge(&self, at: usize) -> Said {
@@ -111,15 +116,15 @@ impl<'a> OneName<'a> {
         let Some(worst) = self.worst(answer, &cells, tolerance) else {
             return (Verdict::Refused, None, "no cell that is judged was answered".to_owned());
         };
-        if worst.units <= ALLOWED_UNITS && self.tells_zeros_alone(answer, &cells, tolerance) {
+        if worst.units > ALLOWED_UNITS {
+            return self.wrong_verdict(at, answer, &cells, worst);
+        }
+        if self.tells_zeros_alone(answer, &cells, tolerance) {
             let why =
                 "of what was answered only derivatives that are 0 can be told from their error";
             return (Verdict::NoneAsked, None, why.to_owned());
         }
-        if worst.units <= ALLOWED_UNITS {
-            return (Verdict::Right, None, self.why_right(worst, tolerance, cells.len()));
-        }
-        self.wrong_verdict(at, answer, &cells, worst)
+        (Verdict::Right, None, self.why_right(worst, tolerance, cells.len()))
     }
 
     /// Whether some derivative that was answered is not 0, and none of those is larger than its
@@ -133,8 +138,7 @@ impl<'a> OneName<'a> {
         let units = self.reference.units(self.name);
         let allowed = |n: usize, k: usize| ALLOWED_UNITS * tolerance * units[n][k];
         let is_told = |(n, k): &(usize, usize)| self.truth[*n][*k].abs() > allowed(*n, *k);
-        let all = (1..self.truth.len()).flat_map(|n| (0..self.sizes.len()).map(move |k| (n, k)));
-        let mut answered = all.filter(|(n, k)| answer.cell(*n, *k).is_some());
+        let mut answered = self.all_cells().filter(|(n, k)| answer.cell(*n, *k).is_some());
         answered.any(|(n, k)| self.truth[n][k] != 0.0) && !cells.iter().any(is_told)
     }
 
