@@ -93,6 +93,9 @@ class Gradient(Derivatives):
         self.below = Derivatives(rows, names, digits, 0)
         self.above = Derivatives(rows, names, digits, 1)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return self._run.gradient, (self.names,)
+
     @cached_property
     def side(self) -> Texts:
         """``-+`` where the derivatives of the two sides differ, else empty, shape (n, k)."""

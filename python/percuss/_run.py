@@ -18,6 +18,8 @@ from percuss._xarray import dataset
 if TYPE_CHECKING:
     import pandas as pd
 
+    from percuss._system import System
+
 Floats = NDArray[np.float64]
 Texts = NDArray[np.str_]
 
@@ -96,10 +98,16 @@ class Run:
         where the run has the number of events that was asked for.
     """
 
-    def __init__(self, rows: _percuss.Rows, system: _percuss.System, digits: int) -> None:
+    def __init__(
+        self, rows: _percuss.Rows, system: System, digits: int, made: tuple[Any, ...]
+    ) -> None:
         self._rows = rows
-        self._system = system
+        self._system = system._native
         self._digits = digits
+        self._made = system, made, digits
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _made_again, self._made
 
     @cached_property
     def states(self) -> list[str]:
@@ -359,6 +367,12 @@ class Stream:
     def cause(self) -> str | None:
         """The cause of an ending that was not decided."""
         return self._rows.cause
+
+
+def _made_again(system: System, made: tuple[Any, ...], digits: int) -> Run:
+    """A run that was pickled, which is as quick to make as to carry."""
+    verb, *arguments = made
+    return Run(getattr(system._native, verb)(*arguments), system, digits, made)
 
 
 def whole(name: str, number: Any, least: int = 0, most: int = sys.maxsize) -> int:

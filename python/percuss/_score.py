@@ -21,7 +21,7 @@ import numpy as np
 from percuss import _percuss
 from percuss._problem import Answer, Differentiated, Problem
 from percuss._report import Report
-from percuss._run import real
+from percuss._run import real, whole
 from percuss._walk import SETUPS, NoAnswer, Walker
 
 # The class, the order and whether the method wants a Jacobian, of SciPy's methods.
@@ -49,6 +49,15 @@ class Declared:
     order: int | None
     stepping: str
     differences: bool = False
+
+    def __post_init__(self) -> None:
+        for what in ("name", "library", "version", "stepping"):
+            if not isinstance(text := getattr(self, what), str):
+                raise TypeError(f"{what} = {text!r} is not accepted: a text is")
+        if self.kind is not None and not isinstance(self.kind, str):
+            raise TypeError(f"kind = {self.kind!r} is not accepted: a text is")
+        if self.order is not None:
+            self.order = whole("order", self.order, 1, 64)
 
     def at(self, tolerance: float, folder: str = "") -> dict[str, Any]:
         """What the judge is told of answers at a tolerance."""
@@ -124,6 +133,8 @@ def write(folder: Path, problem: Problem, answer: Answer) -> None:
     states = problem.states
     before = [f"before.{name}" for name in states]
     events = list(answer.events)
+    if answer.ending is not None and answer.ending not in (known := _percuss.ending_names()):
+        raise NoAnswer(f"ending = {answer.ending!r} is not accepted: {', '.join(known)} are")
     has_before = all(it.before is not None for it in events)
 
     def numbers(values: Any) -> list[float]:
@@ -146,10 +157,13 @@ def write(folder: Path, problem: Problem, answer: Answer) -> None:
         _write_gradients(folder, problem, [it.name for it in events], answer.gradients)
     if answer.samples is None:
         return
+    samples, asked = np.asarray(answer.samples, dtype=np.float64), len(problem.sample_times)
+    if len(samples) > asked:
+        raise NoAnswer(f"{len(samples)} samples are not accepted: {asked} are, one for each time")
     with open(folder / f"{problem.case}.samples.csv", "w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
         rows.writerow(["time", *states])
-        for time, state in zip(problem.sample_times, np.asarray(answer.samples, dtype=np.float64)):
+        for time, state in zip(problem.sample_times, samples):
             rows.writerow([float(time), *numbers(state)])
 
 

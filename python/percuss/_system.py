@@ -77,7 +77,7 @@ class System(Dynamics, Swept):
         system._native = native
         return system
 
-    def __call__(self, **parameters: float) -> System:
+    def __call__(self, /, **parameters: float) -> System:
         """Make the system with other values of some parameters.
 
         Raises
@@ -94,7 +94,7 @@ class System(Dynamics, Swept):
         values = {name: real(name, value) for name, value in parameters.items()}
         return System._of(self._native.with_parameters(values))
 
-    def at(self, mode: str | None = None, t: float | None = None, **states: float) -> System:
+    def at(self, /, mode: str | None = None, t: float | None = None, **states: float) -> System:
         """Make the system with another start.
 
         Parameters
@@ -230,8 +230,8 @@ class System(Dynamics, Swept):
         wanted = whole("digits", digits)
         bits = None if max_bits is None else whole("max_bits", max_bits, most=2**32 - 1)
         until, count, most = length
-        rows = self._native.events(until, count, wanted, bits, most, bool(backward))
-        return Run(rows, self._native, wanted)
+        asked = until, count, wanted, bits, most, bool(backward)
+        return Run(self._native.events(*asked), self, wanted, ("events", *asked))
 
     def simulate(
         self,
@@ -305,8 +305,8 @@ class System(Dynamics, Swept):
             raise ValueError(f"{name} = {given} is not accepted of a run back in time: until is")
         else:
             measured = (wanted, left_out, cut)
-        rows = self._native.simulate(until, count, most, bool(backward), measured)
-        return Run(rows, self._native, 17)
+        asked = until, count, most, bool(backward), measured
+        return Run(self._native.simulate(*asked), self, 17, ("simulate", *asked))
 
     def iterate(
         self,

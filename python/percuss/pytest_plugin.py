@@ -150,23 +150,26 @@ class BaselineTest(_Item):
 
 
 class Rows(pytest.Collector):
-    """The rows of the report."""
+    """The rows of the report, with the shortcomings that are declared."""
+
+    def __init__(self, *, report: Report, known: dict[str, str], **options: Any) -> None:
+        super().__init__(**options)
+        self.report = report
+        self.known = known
 
     def collect(self) -> Iterator[pytest.Item]:
         """One test a row, and one of the baseline; declared shortcomings are expected to fail."""
-        known = _known(self.config.getoption("--percuss-known"))
-        report = _report(self.config)
-        for row in report.rows:
+        for row in self.report.rows:
             tolerance = f"{row['tolerance']:g}"
             item = Row.from_parent(
                 self, name=f"{row['case']}[{row['engine']}-{tolerance}]", row=row
             )
-            why = known.get(f"{row['case']}@{tolerance}", known.get(row["case"]))
+            why = self.known.get(f"{row['case']}@{tolerance}", self.known.get(row["case"]))
             if why is not None:
                 item.add_marker(pytest.mark.xfail(reason=why, strict=True))
             yield item
         if self.config.getoption("--percuss-baseline"):
-            yield BaselineTest.from_parent(self, name="baseline", worse=report.worse)
+            yield BaselineTest.from_parent(self, name="baseline", worse=self.report.worse)
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -179,7 +182,12 @@ def pytest_collection(session: pytest.Session) -> None:
 
 def pytest_collection_modifyitems(session: pytest.Session, items: list[pytest.Item]) -> None:
     """Put the rows behind the tests that files have."""
-    if session.config.getoption("--percuss") is None:
+    config = session.config
+    if config.getoption("--percuss") is None:
         return
-    rows = Rows.from_parent(session, name="percuss")
-    items.extend(rows.collect())
+    known = _known(config.getoption("--percuss-known"))
+    rows = Rows.from_parent(session, name="percuss", report=_report(config), known=known)
+    # Counted as those of a file are, by whoever shows the tests.
+    found = rows.ihook.pytest_make_collect_report(collector=rows)
+    rows.ihook.pytest_collectreport(report=found)
+    items.extend(found.result)

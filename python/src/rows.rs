@@ -5,6 +5,7 @@ use crate::asked::{Asked, Shared, all};
 use crate::collect::{End, Kept};
 use crate::derivatives::{DerivativeDigits, Derivatives, derivatives, digits};
 use crate::failure::value;
+use crate::long_work::Patience;
 use crate::motion::{Motion, beginning};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
 use percuss::Proved;
@@ -150,18 +151,20 @@ impl Rows {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (motion, times) = (self.motion()?, times.as_array().to_vec());
         let columns = self.columns();
-        let states = py.detach(|| {
+        let outside = |time: f64| {
+            let (first, last) = motion.range().unwrap_or((f64::NAN, f64::NAN));
+            value(format!("t = {time} is not accepted: the run goes from {first} to {last}"))
+        };
+        let states: PyResult<_> = py.detach(|| {
+            let mut patience = Patience::new();
             let mut states = Vec::with_capacity(times.len() * columns);
             for time in times {
-                states.extend(motion.at(time).ok_or(time)?);
+                states.extend(motion.at(time).ok_or_else(|| outside(time))?);
+                patience.step()?;
             }
             Ok(states)
         });
-        let states = states.map_err(|time: f64| {
-            let (first, last) = motion.range().unwrap_or((f64::NAN, f64::NAN));
-            value(format!("t = {time} is not accepted: the run goes from {first} to {last}"))
-        })?;
-        table(py, states, columns)
+        table(py, states?, columns)
     }
 
     /// The name of the ending; none where the run has the number of events that was asked for.

@@ -31,6 +31,11 @@ def test_declared_shortcomings_have_to_fail(pytester):
     pytester.runpytest_subprocess(SOLVER, *ASKED, known).assert_outcomes(failed=1)
 
 
+def test_rows_are_shown_without_being_run(pytester):
+    done = pytester.runpytest_subprocess(SOLVER, *ASKED, "--collect-only")
+    done.stdout.fnmatch_lines(["*table1-first-row?scipy-rk45-1e-06*", "*1 test collected*"])
+
+
 def test_the_report_is_a_folder(pytester):
     pytester.runpytest_subprocess(SOLVER, *ASKED, "--percuss-out=report").assert_outcomes(passed=1)
     assert (pytester.path / "report/report.html").exists()

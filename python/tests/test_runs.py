@@ -292,6 +292,25 @@ def test_systems_and_oscillators_are_copied_and_pickled():
         assert pool.map(impacts, [changed]) == [5]
 
 
+def test_runs_and_gradients_are_pickled():
+    relay = percuss.systems["relay-feedback"]
+    measured = relay.simulate(returns=2, transient=5, section="switch-up", every=2)
+    proved = percuss.systems["bouncing-ball"](e=0.75).at("flight", x=4, v=0).events(3, digits=25)
+    for run in (measured, proved, relay.simulate(3)):
+        same = pickle.loads(pickle.dumps(run))
+        assert np.array_equal(run.time, same.time) and np.array_equal(run.state, same.state)
+        assert run.ending == same.ending and np.array_equal(run.name, same.name)
+    assert np.array_equal(pickle.loads(pickle.dumps(proved)).digits.time, proved.digits.time)
+    gradient = proved.gradient(["e", "start.x"])
+    assert np.array_equal(pickle.loads(pickle.dumps(gradient)).state, gradient.state)
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        assert [len(it) for it in pool.map(run_of, [4.0])] == [2]
+
+
+def run_of(height):
+    return percuss.systems["bouncing-ball"].at(x=height, v=0.0).events(count=1)
+
+
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 @pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 def test_a_forked_process_has_threads_of_its_own():

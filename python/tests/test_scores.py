@@ -1,5 +1,6 @@
 """Scores: the judgement is the command's."""
 
+import dataclasses
 import json
 import sys
 
@@ -114,9 +115,11 @@ class Silent(Exception):
     [
         (Silent(), "Silent"),
         (ValueError("\ud800"), "ValueError: ?"),
-        ((1, 2, 3), "four counts"),
-        ((1, 2, 3, -4), "four counts"),
-        ((1, 2, 3, 2**64), "four counts"),
+        ({"work": (1, 2, 3)}, "four counts"),
+        ({"work": (1, 2, 3, -4)}, "four counts"),
+        ({"work": (1, 2, 3, 2**64)}, "four counts"),
+        ({"ending": "impact"}, "accumulation, leaves-domain, no-progress"),
+        ({"samples": np.zeros((10**6, 4))}, "1000000 samples are not accepted"),
     ],
 )
 def test_an_answer_that_cannot_be_read_is_the_error_of_its_row(fault, said):
@@ -124,7 +127,7 @@ def test_an_answer_that_cannot_be_read_is_the_error_of_its_row(fault, said):
         if isinstance(fault, Exception):
             raise fault
         answer = stepped(problem)
-        return percuss.Answer(events=answer.events, samples=answer.samples, work=fault)
+        return dataclasses.replace(answer, **fault)
 
     (row,) = percuss.score(solve, rtol=1e-6, cases="small-b", name="own").rows
     assert row["verdict"] == "error" and said in row["why"]
