@@ -8,6 +8,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 /// A number for bounds, with the digits of f64.
 pub trait Bound:
     Copy
+    + Send
+    + Sync
     + Debug
     + Default
     + PartialOrd

@@ -13,6 +13,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// A real number, as the closed forms need it.
 pub trait Number:
     Copy
+    + Send
+    + Sync
     + Debug
     + Default
     + PartialOrd

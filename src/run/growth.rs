@@ -35,11 +35,17 @@ impl Growth {
 
 /// Collects the growth along a run. Its memory and the cost of a switch grow with the number of
 /// switches: it is for scoring, not for running.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct GrowthRecorder {
     /// Derivatives of the state at the start of the current phase by the states at which errors
     /// entered.
     sources: Vec<Matrix>,
+}
+
+impl Default for GrowthRecorder {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl GrowthRecorder {

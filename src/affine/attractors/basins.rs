@@ -66,9 +66,10 @@ impl UnresolvedReturn {
 }
 
 impl Plane {
-    /// The centres of the columns, or with 1 of the rows.
+    /// The centres of the columns for the axis 0, and of the rows for any other.
     #[must_use]
     pub fn centres(&self, axis: usize) -> Vec<f64> {
+        let axis = axis.min(1);
         grid::centres(self.window[axis], [self.columns, self.rows][axis])
     }
 

@@ -43,7 +43,7 @@ pub trait Answer: sealed::Sealed + Sized {
     fn begin<'a>(
         prepared: &'a Self::Prepared,
         request: &Request,
-    ) -> Result<Box<dyn Running<'a, Self::Value> + 'a>, SystemError>;
+    ) -> Result<Box<dyn Running<'a, Self::Value> + Send + 'a>, SystemError>;
 }
 
 pub(super) mod sealed {

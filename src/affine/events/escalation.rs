@@ -42,7 +42,7 @@ impl ProvedSolver {
         &'a self,
         level: usize,
         request: &Request,
-    ) -> Result<Box<dyn Level<'a> + 'a>, SystemError> {
+    ) -> Result<Box<dyn Level<'a> + Send + 'a>, SystemError> {
         match level {
             0 => self.begin_in(&self.bits106, request),
             1 => self.begin_in(&self.bits212, request),
@@ -57,7 +57,7 @@ impl ProvedSolver {
         &'a self,
         solver: &'a OnceLock<Solver<T>>,
         request: &Request,
-    ) -> Result<Box<dyn Level<'a> + 'a>, SystemError> {
+    ) -> Result<Box<dyn Level<'a> + Send + 'a>, SystemError> {
         let solver = match solver.get() {
             Some(solver) => solver,
             None => {
@@ -102,7 +102,7 @@ impl Answer for Proved {
     fn begin<'a>(
         prepared: &'a ProvedSolver,
         request: &Request,
-    ) -> Result<Box<dyn Running<'a, Self> + 'a>, SystemError> {
+    ) -> Result<Box<dyn Running<'a, Self> + Send + 'a>, SystemError> {
         Ok(Box::new(Escalating::begin(prepared, request)?))
     }
 }
@@ -230,7 +230,7 @@ struct Escalating<'a> {
     solver: &'a ProvedSolver,
     request: Request,
     level: usize,
-    run: Box<dyn Level<'a> + 'a>,
+    run: Box<dyn Level<'a> + Send + 'a>,
     given: Count,
     /// The steps that fewer bits have given out, and that are not given out again.
     repeated: Count,

@@ -7,7 +7,7 @@ use std::iter::FusedIterator;
 
 /// The events of a run, as an iterator; the last is the ending, of a run that ends.
 pub struct Events<'a, A: Answer> {
-    pub(super) run: Box<dyn Running<'a, A::Value> + 'a>,
+    pub(super) run: Box<dyn Running<'a, A::Value> + Send + 'a>,
     /// The number of events that are still wanted, where it is limited.
     pub(super) left: Option<usize>,
 }

@@ -22,6 +22,7 @@ const MAX_DIGITS: usize = 300;
 #[must_use = "a run begins when it is told its length"]
 pub struct Run<'a, A: Answer> {
     prepared: &'a A::Prepared,
+    /// The start: borrowed, it is the system's own.
     start: Option<Cow<'a, StartPoint>>,
     digits: usize,
     most_bits: u32,
@@ -93,7 +94,8 @@ impl<'a, A: Answer> Run<'a, A> {
                 let what = "a run back in time has none: accepted is a run forward".to_owned();
                 return Err(SystemError::Name { item: format!("a derivative by {name}"), what });
             }
-            self.tangents.push(Arc::new(system.tangent(&name, start)?));
+            let is_own = matches!(start, Cow::Borrowed(_));
+            self.tangents.push(Arc::new(system.tangent(&name, start, is_own)?));
         }
         Ok(self)
     }

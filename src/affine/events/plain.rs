@@ -96,7 +96,7 @@ macro_rules! answers {
                 fn begin<'a>(
                     prepared: &'a Solver<Self>,
                     request: &Request,
-                ) -> Result<Box<dyn Running<'a, Self> + 'a>, SystemError> {
+                ) -> Result<Box<dyn Running<'a, Self> + Send + 'a>, SystemError> {
                     Ok(Box::new(Plain::begin(prepared, request)?))
                 }
             }

@@ -20,6 +20,9 @@ const MAX_UNSCALED_EXPONENT: i64 = 800;
 /// beyond it.
 const MAX_PRINTED_EXPONENT: i64 = 4_000_000;
 
+/// The most digits that are looked for: 3392 bits have 1021, and an f64 that is exact has 767.
+const MOST_DIGITS: usize = 2000;
+
 /// The digits of a number that is printed without a precision.
 const DEFAULT_DIGITS: usize = 17;
 
@@ -118,22 +121,23 @@ impl Proved {
             && number <= shift(&own.most, own.exponent, exponent)
     }
 
-    /// The number with the digits that are proved, at most so many, as it is printed.
+    /// The number with the digits that are proved, at most so many and at most 2000, as it is
+    /// printed.
     #[must_use]
     pub fn to_digits(&self, digits: usize) -> String {
         match &self.0 {
-            Content::Within(it) => it.decimal(digits),
+            Content::Within(it) => it.decimal(digits.min(MOST_DIGITS)),
             Content::Below(power) => format!("0e{power}"),
         }
     }
 
-    /// The number of significant digits that are proved, of so many at most; none (`None`) of a
-    /// number that is exactly zero, which has no leading digit.
+    /// The number of significant digits that are proved, of so many and of 2000 at most; none
+    /// (`None`) of a number that is exactly zero, which has no leading digit.
     #[must_use]
     pub fn digits(&self, most: usize) -> Option<usize> {
         match &self.0 {
             Content::Within(it) if it.is_zero() => None,
-            Content::Within(it) => Some(it.digits_alike(most)),
+            Content::Within(it) => Some(it.digits_alike(most.min(MOST_DIGITS))),
             Content::Below(_) => Some(0),
         }
     }

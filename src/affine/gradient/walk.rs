@@ -83,7 +83,7 @@ impl<'a, T: Number> Walk<'a, T> {
             state: Vec::new(),
             fires: 0,
             entered_by: None,
-            is_chosen_at_start: system.start.as_ref() == Some(point),
+            is_chosen_at_start: !tangent.start_modes.is_empty(),
             is_sampled: false,
             side: None,
             refused: None,

@@ -162,11 +162,12 @@ impl SystemFile {
 
 impl System {
     /// The derivatives of all coefficients by a name, with those of a start: by its expressions
-    /// where it is the file's own, and else of a state alone that is the name.
+    /// where it is the system's own and not changed, and else of a state alone that is the name.
     pub(in crate::affine) fn tangent(
         &self,
         by: &Name,
         start: &StartPoint,
+        is_own: bool,
     ) -> Result<Tangent, SystemError> {
         let refused = |what: &str| SystemError::Name {
             item: format!("a derivative by {by}"),
@@ -178,11 +179,12 @@ impl System {
             return Err(refused("the system was changed, and its expressions were not"));
         }
         let mut tangent = file.tangent(by)?;
-        if read.start.as_ref() != Some(start) {
+        if !is_own || read.start.as_ref() != Some(start) {
             let rate =
                 |state: &String| [Rational::ZERO, Rational::ZERO, Name::is_start(Some(by), state)];
             let state = self.states.iter().map(rate).collect();
             tangent.start = Some(StartPoint { mode: start.mode, time: Rational::ZERO, state });
+            tangent.start_modes.clear();
             if let Some(nearby) = &mut tangent.nearby {
                 let mut moved = start.clone();
                 move_start(&mut moved, &self.states, by, 1);

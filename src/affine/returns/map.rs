@@ -31,10 +31,15 @@ impl<'a, T: Number> SectionMap<'a, T> {
     /// [`time_scale`](System::time_scale).
     ///
     /// # Errors
-    /// A strobe of a system without forcing, and an event that the system has not.
+    /// A strobe of a system without forcing or of an angle beyond its range, an event that the
+    /// system has not, and a solver of runs back in time.
     pub fn new(solver: &'a Solver<T>, section: &Section) -> Result<Self, SystemError> {
         let system = solver.system();
         let resolved = section.resolve(system)?;
+        if solver.is_backward() {
+            let what = "a run back in time has no returns: accepted is a run forward".to_owned();
+            return Err(SystemError::Name { item: "section".to_owned(), what });
+        }
         let angle = match resolved.returns {
             Returning::Strobe(angle) => angle,
             Returning::Events(_) => 0.0,
@@ -47,10 +52,12 @@ impl<'a, T: Number> SectionMap<'a, T> {
         Ok(Self { solver, section: resolved, longest, period, drifts, units })
     }
 
-    /// Waits for a return no longer than this time.
+    /// Waits for a return no longer than this time. An infinite one is taken for the largest f64,
+    /// and of one that is not positive there is no return.
     #[must_use]
     pub fn within(self, longest: T) -> Self {
-        Self { longest, ..self }
+        let most = T::exact(f64::MAX);
+        Self { longest: if longest > most { most } else { longest }, ..self }
     }
 
     /// The system of the map.

@@ -5,6 +5,9 @@ use crate::affine::model::system::{Direction, System, row_times};
 use crate::affine::solver::event::What;
 use std::fmt;
 
+/// The largest angle of a strobe, in radians: as of a time of the oscillator.
+const MAX_ANGLE: f64 = 1e15;
+
 /// A section through the motions of a system: instants of one forcing angle, or an event.
 ///
 /// ```
@@ -27,7 +30,8 @@ enum Cut {
 }
 
 impl Section {
-    /// The instants at which omega t has this angle modulo 2 pi, in radians; phi is not included.
+    /// The instants at which omega t has this angle modulo 2 pi, in radians from -1e15 to 1e15; phi
+    /// is not included.
     #[must_use]
     pub fn strobe(angle: f64) -> Self {
         Self { cut: Cut::Strobe(angle), every: 1 }
@@ -67,8 +71,10 @@ impl Section {
                 );
                 return Err(error(what));
             }
-            Cut::Strobe(angle) if !angle.is_finite() => {
-                return Err(error(format!("the angle {angle} is not accepted: a number is")));
+            // Written so that a NaN is refused.
+            Cut::Strobe(angle) if !(-MAX_ANGLE..=MAX_ANGLE).contains(angle) => {
+                let what = format!("the angle {angle} is not accepted: -1e15 to 1e15 is");
+                return Err(error(what));
             }
             Cut::Strobe(angle) => Returning::Strobe(*angle),
             Cut::Event { name, mode } => Returning::Events(events(system, name, mode.as_deref())?),

@@ -15,14 +15,16 @@ use crate::numeric::number::{Bound, Number};
 const STEPS_AHEAD: f64 = 16.0;
 
 impl<T: Number> Run<'_, T> {
-    /// Lets a run that has ended at its horizon go on to a later one, and says whether it does. Its
-    /// state at any time is so known between its events: [`Ending::Horizon`] has it, with bounds
-    /// of its errors where they are followed.
+    /// Lets a run that has ended at its horizon go on to one that is not earlier, and says whether
+    /// it does. Its state at any time is so known between its events: [`Ending::Horizon`] has it,
+    /// with bounds of its errors where they are followed.
     pub fn go_on(&mut self, until: T) -> bool {
-        let goes_on = self.queue.is_empty() && self.ending() == Some(&Ending::Horizon);
+        let step = self.solver.directed(until - self.horizon.value());
+        // Written so that a NaN is refused.
+        let is_later = step >= T::zero() && step.to_f64().is_finite();
+        let goes_on = is_later && self.queue.is_empty() && self.ending() == Some(&Ending::Horizon);
         if goes_on {
             if self.ahead.is_none() {
-                let step = self.solver.directed(until - self.horizon.value());
                 self.search_ahead(step * T::exact(STEPS_AHEAD));
             }
             (self.horizon, self.ended) = (Time { high: until, low: T::zero() }, false);

@@ -112,7 +112,10 @@ impl ZeroGraph {
         let same = |node: &usize| {
             self.nodes.get(*node).is_some_and(|it| it.mode == mode && it.zeros == *zeros)
         };
-        known.filter(same).unwrap_or_else(|| self.intern(mode, zeros.clone()))
+        known.filter(same).unwrap_or_else(|| {
+            self.make_room();
+            self.intern(mode, zeros.clone())
+        })
     }
 
     /// A space of zeros in a mode, with these guards of it as zeros too.
@@ -175,14 +178,22 @@ impl ZeroGraph {
             return known;
         }
         let after = arrival.after.clone();
-        if self.nodes.len() >= MAX_NODES {
-            self.nodes.clear();
-            self.known.clear();
+        if self.make_room() {
             return self.intern(mode, after);
         }
         let next = self.intern(mode, after);
         self.arrival(node, firing).nodes[successor] = Some(next);
         next
+    }
+
+    /// Forgets all nodes where there are too many, and says whether it does.
+    fn make_room(&mut self) -> bool {
+        let is_full = self.nodes.len() >= MAX_NODES;
+        if is_full {
+            self.nodes.clear();
+            self.known.clear();
+        }
+        is_full
     }
 
     fn intern(&mut self, mode: usize, zeros: ZeroSpace) -> usize {

@@ -125,7 +125,8 @@ pub fn uncertainty_of_labels(labels: &[Label], columns: usize) -> Uncertainty {
     while step > 0 {
         let mut scale = Scale { epsilon: step as f64 / columns as f64, starts: 0, uncertain: 0 };
         for row in labels.chunks(columns) {
-            for at in largest..columns - largest {
+            // A last row may be short.
+            for at in largest..row.len().saturating_sub(largest) {
                 scale.starts += 1;
                 let here = row[at];
                 scale.uncertain += u64::from(row[at - step] != here || row[at + step] != here);

@@ -73,11 +73,11 @@ impl Basins {
         let (motions, limits) = (StrobeMotions { map: *map }, limits.into());
         let starts = self.grid.starts();
         let example = |place: usize| {
-            let point = starts[place];
+            let point = *starts.get(place)?;
             let late = described(&motions, limits, &point);
             let (lyapunov_per_period, recurrence) = (late.exponent, late.recurrence);
-            UnresolvedStart { point, lyapunov_per_period, recurrence }
+            Some(UnresolvedStart { point, lyapunov_per_period, recurrence })
         };
-        examples(&self.labels).into_iter().map(example).collect()
+        examples(&self.labels).into_iter().filter_map(example).collect()
     }
 }

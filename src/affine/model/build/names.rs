@@ -13,6 +13,10 @@ use crate::affine::model::tangent::Name;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 
+/// The most definitions each of which needs the next one's value: they are read in each other, and
+/// the stack of a thread holds four times as many.
+const MAX_NESTED_DEFINITIONS: usize = 250;
+
 /// The names that a file's expressions may use, with their values.
 pub(super) struct Names<'a> {
     pub(super) file: &'a SystemFile,
@@ -276,6 +280,12 @@ impl Scope for Names<'_> {
         };
         if self.open.iter().any(|it| it == name) {
             return Err(format!("{name} is defined by itself"));
+        }
+        if self.open.len() >= MAX_NESTED_DEFINITIONS {
+            return Err(format!(
+                "{name} is one definition too many: {MAX_NESTED_DEFINITIONS} are accepted that \
+                 follow from each other"
+            ));
         }
         self.open.push(name.to_owned());
         let before = std::mem::replace(&mut self.accepts, Accepts::States);
