@@ -56,7 +56,7 @@ mod _percuss {
     #[pymodule_export]
     use super::rows::Rows;
     #[pymodule_export]
-    use super::scores::{Cases, case_names};
+    use super::scores::{Cases, case_names, ending_names};
     #[pymodule_export]
     use super::section::Section;
     #[pymodule_export]

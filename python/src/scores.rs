@@ -6,7 +6,8 @@ use percuss_programs::files::{Answerer, CaseFile, FileEngine};
 use percuss_programs::{ACCEPTED_NAMES, is_name};
 use percuss_validation::case;
 use percuss_validation::engine::{
-    Accuracy, Class, Declaration, Engine, Failure, Limits, Outcome, REFERENCE, Stepping, Task, Work,
+    Accuracy, Class, Declaration, Ending, Engine, Failure, Limits, Outcome, REFERENCE, Stepping,
+    Task, Work,
 };
 use percuss_validation::report::{
     Baseline, Report, ReportEvidence, RowPlace, event_pictures, exporters, pictures,
@@ -30,6 +31,12 @@ const SUITE: Suite = Suite::Quick;
 pub(crate) fn case_names() -> PyResult<Vec<String>> {
     let cases = case::embedded().map_err(value)?;
     Ok(cases.into_iter().map(|it| it.name).collect())
+}
+
+/// The names of the endings of a run before its horizon.
+#[pyfunction]
+pub(crate) fn ending_names() -> Vec<&'static str> {
+    Ending::ALL.into_iter().filter(|it| *it != Ending::Horizon).map(Ending::as_str).collect()
 }
 
 /// Cases with their truth.
@@ -233,7 +240,7 @@ impl Cases {
         let written = interruptible(py, &Progress::default(), |stop| {
             let engine =
                 |(answerer, it): &(Answerer, &Answers), case: &str| it.engine(*answerer, case);
-            let defaults = case::defaults().map_err(Unjudged::new)?;
+            let defaults = case::bounds_alone().map_err(Unjudged::new)?;
             let row = |(case, method): (&PreparedCase, &(Answerer, &Answers))| {
                 stop.look();
                 let accuracy = Accuracy::Tolerance(method.1.tolerance);

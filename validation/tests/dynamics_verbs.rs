@@ -347,3 +347,15 @@ fn a_motion_without_end_is_told() {
         assert!(said.contains("never returns") && said.lines().count() == 1, "{said}");
     }
 }
+
+#[test]
+fn a_state_that_the_axes_of_a_grid_replace_is_told() {
+    let at = ["percussive-oscillator", "--at", "p=1", "--at", "q=0.1"];
+    let grid = ["--grid", "1x1", "--window", "0,1,0,1", "--axes", "y,p"];
+    for verb in [&["attractors", "--transient", "10"][..], &["orbit", "--all", "--period", "1"]] {
+        let output = run(&[&verb[..1], &at, &grid, &verb[1..]].concat());
+        let said = text(&output.stderr);
+        assert!(said.contains("--at p=1 is not used: starts are the centres"), "{said}");
+        assert!(!said.contains("--at q"), "{said}");
+    }
+}

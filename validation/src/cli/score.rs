@@ -7,6 +7,7 @@ use super::shared::long_work;
 use super::shared::names::{CASES, held_by};
 use super::shared::parse;
 use super::{note, say};
+use crate::case;
 use crate::engine::{Accuracy, Class, REFERENCE, Stepping, SteppingKind};
 use crate::number::shortest;
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
@@ -154,7 +155,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let cases = cases.prepare(None)?;
     let all = &cases.all;
     check_names(arguments, all, &differentiated, &answered)?;
-    let defaults = judged.defaults()?;
+    let defaults = case::bounds_alone()?;
     let pool = long_work::pool(threads)?;
     let bar = long_work::bar(all.len() as u64, "cases");
     let row = |case: &PreparedCase| {

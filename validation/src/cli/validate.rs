@@ -7,7 +7,7 @@ use super::shared::names::ENGINES;
 use super::shared::programs::ProgramFlags;
 use super::shared::{long_work, parse};
 use super::{OUT_OF_BOUNDS, say};
-use crate::case::Defaults;
+use crate::case::{self, Defaults};
 use crate::engine::{Engine, hush_contained_panics};
 use crate::integrators;
 use crate::integrators::WrongEngine;
@@ -58,10 +58,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let derivatives_of = gradients::names(&judged.chosen, &engines);
     let cases = judged.open(&derivatives_of)?.prepare(probed.then_some(arguments.suite))?;
     let all = &cases.all;
-    let mut defaults = judged.defaults()?;
-    if judged.chosen.cases.is_none() {
-        defaults.shortcomings.extend(arguments.programs.shortcomings()?);
-    }
+    let defaults = defaults(arguments)?;
     hush_contained_panics();
     let pool = long_work::pool(threads)?;
     let steps = suite::size(all.len(), &engines, &scope) + wrong.count();
@@ -175,6 +172,16 @@ fn is_unnoticed(findings: &[Finding]) -> bool {
     let missed: Vec<_> = findings.iter().filter(|it| !it.is_caught()).collect();
     missed.iter().for_each(|it| say(&format!("no bound notices {}: {}", it.engine, it.fault)));
     !missed.is_empty()
+}
+
+/// The bounds and expected failures that apply: these were seen on the cases inside the binary.
+fn defaults(arguments: &Arguments) -> Result<Defaults> {
+    if arguments.judged.chosen.cases.is_some() {
+        return Ok(case::bounds_alone()?);
+    }
+    let mut defaults = case::defaults()?;
+    defaults.shortcomings.extend(arguments.programs.shortcomings()?);
+    Ok(defaults)
 }
 
 fn chosen_engines(patterns: &[Regex]) -> Result<Vec<&'static dyn Engine>> {

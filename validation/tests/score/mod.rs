@@ -178,6 +178,18 @@ fn exact_answers_have_every_event() {
     assert!(same > 25, "{same}");
 }
 
+/// Expected failures are of the engine that is built in, whatever the name of an answer in files.
+#[test]
+fn an_answer_called_as_an_engine_has_none_of_its_expected_failures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = "^chaos-from-rest$";
+    answers("exact", Accuracy::Exact, case, folder.path());
+    let answers = folder.path().display().to_string();
+    let score = ["score", "--name", "ode_solvers-dop853", "--tolerance", "1e-6", "-c", case];
+    let (rows, code) = report(&[&score[..], &["--answers", &answers]].concat());
+    assert_eq!((&rows[0]["verdict"], code), (&"pass".into(), Some(0)), "{rows:?}");
+}
+
 /// What `events` prints is an answer as it is: its first line is the start, its last one the end.
 #[test]
 fn what_events_prints_is_an_answer() {

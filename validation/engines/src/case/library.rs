@@ -108,7 +108,7 @@ fn is_case(path: &Path) -> bool {
 /// [`FileError`]; a test shows that there is none.
 pub fn defaults() -> Result<Defaults, FileError> {
     let shortcomings = read_shortcomings("shortcomings.toml", SHORTCOMINGS)?;
-    Ok(Defaults { shortcomings, ..defaults_of_own_cases()? })
+    Ok(Defaults { shortcomings, ..bounds_alone()? })
 }
 
 /// The expected failures in a file of their own, as of engines that are not of this program.
@@ -120,12 +120,12 @@ pub fn shortcomings_of(path: &Path) -> Result<Vec<Shortcoming>, FileError> {
     read_shortcomings(&path.display().to_string(), &text)
 }
 
-/// What is expected on a case of a user's own: the bounds alone, because the shortcomings that are
-/// known were seen on the cases inside the binary.
+/// The bounds alone, for a user's own cases and for answers in files: an expected failure is of one
+/// engine, in the version that is built in, on the cases inside the binary.
 ///
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
-pub fn defaults_of_own_cases() -> Result<Defaults, FileError> {
+pub fn bounds_alone() -> Result<Defaults, FileError> {
     let classes = read_classes("classes.toml", CLASSES)?;
     Ok(Defaults { classes, ..read_bounds("bounds.toml", BOUNDS)? })
 }

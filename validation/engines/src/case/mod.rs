@@ -19,9 +19,7 @@ pub use accepted::accepted;
 pub use bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
 pub use classes::ClassBounds;
 pub use expectations::Defaults;
-pub use library::{
-    defaults, defaults_of_own_cases, embedded, from_directory, parse_case, shortcomings_of,
-};
+pub use library::{bounds_alone, defaults, embedded, from_directory, parse_case, shortcomings_of};
 pub use located::{FileError, Origins, read_text};
 pub use of_oscillator::{SAMPLES_PER_PERIOD, percussive_oscillator, place};
 pub use percuss::affine::TROUBLE;

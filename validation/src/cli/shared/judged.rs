@@ -6,7 +6,7 @@ use super::names::{CASES, Selection, held_by};
 use super::output::{Destination, make_folder, reader_left};
 use super::terminal::{note, say};
 use super::{parse, reports};
-use crate::case::{self, Case, Defaults};
+use crate::case::{self, Case};
 use crate::report::{
     Baseline, CASES_FLAG, Compared, RankingFormat, Report, ReportEvidence, RowPlace, ScreenParts,
     Summary, ranking_text, screen,
@@ -210,14 +210,6 @@ impl JudgedFlags {
         let cases = self.chosen.open(self.reference.as_deref(), others)?;
         self.out.as_deref().map(make_folder).transpose()?;
         Ok(cases)
-    }
-
-    /// The bounds and expected failures that apply.
-    pub(in crate::cli) fn defaults(&self) -> Result<Defaults> {
-        Ok(match self.chosen.cases {
-            Some(_) => case::defaults_of_own_cases()?,
-            None => case::defaults()?,
-        })
     }
 
     /// The folders that data were read from, with their flags.

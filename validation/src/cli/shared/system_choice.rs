@@ -4,6 +4,7 @@
 use super::model::ModelFlags;
 use super::names;
 use super::parse;
+use super::terminal::note;
 use crate::case::{FileError, parse_system_case, read_text};
 use crate::sweep::SweepPoint;
 use crate::systems::{SYSTEMS, named};
@@ -52,6 +53,8 @@ pub(in crate::cli) struct ChosenSystem {
     /// The text of the file.
     text: String,
     path: PathBuf,
+    /// What `--at` replaced.
+    at: Vec<[String; 2]>,
 }
 
 impl SystemChoice {
@@ -107,7 +110,7 @@ impl SystemFlags {
         if let Some(mode) = &self.mode {
             file.set_start_mode(mode, "--mode");
         }
-        Ok(ChosenSystem { file, text, path: path.to_owned() })
+        Ok(ChosenSystem { file, text, path: path.to_owned(), at: self.at.clone() })
     }
 
     /// Refuses the flags where no system is chosen.
@@ -126,12 +129,12 @@ impl SystemFlags {
 impl ChosenSystem {
     /// The system with the values of a sweep's point.
     pub(in crate::cli) fn at(&self, point: &SweepPoint) -> Result<Self> {
-        let Self { file, text, path } = self;
-        let mut file = file.clone();
+        let mut file = self.file.clone();
         for (name, value) in &point.values {
             file.set(name, *value, &format!("{name} = {value}"))?;
         }
-        Ok(Self { file, text: text.clone(), path: path.clone() })
+        let Self { text, path, at, .. } = self;
+        Ok(Self { file, text: text.clone(), path: path.clone(), at: at.clone() })
     }
 
     /// The system where a parameter, which a verb varies, has a value.
@@ -143,6 +146,16 @@ impl ChosenSystem {
         let mut file = self.file.clone();
         file.set(parameter, value, &format!("{parameter} = {value}"))?;
         file.system()
+    }
+
+    /// Says which replaced states of the start the axes of a grid of starts take the place of.
+    pub(in crate::cli) fn note_replaced_by_grid(&self, system: &System, axes: [usize; 2]) {
+        let is_axis = |name: &String| axes.iter().any(|it| system.states[*it] == *name);
+        for [name, value] in self.at.iter().filter(|[name, _]| is_axis(name)) {
+            note(&format!(
+                "--at {name}={value} is not used: starts are the centres of the grid's cells"
+            ));
+        }
     }
 
     /// The text of the system's file, as it was before flags replaced anything.

@@ -39,6 +39,10 @@ impl JudgedRun {
             .collect();
         let weighted = DMatrix::from_fn(rows.len(), states, |n, k| rows[n][k] * weights[k]);
         let values = DVector::from_iterator(imposed.len(), imposed.iter().map(|it| it.value));
+        // States near the largest f64 have values beyond it, which no decomposition takes.
+        if !weighted.iter().chain(&values).all(|it| it.is_finite()) {
+            return place.state.clone();
+        }
         // Rows of theta alone say nothing of the states, and some rows say the same.
         let moved = weighted.svd(true, true).solve(&values, SINGULAR_VALUE_TOLERANCE);
         let Ok(moved) = moved else { return place.state.clone() };

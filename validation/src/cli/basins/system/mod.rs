@@ -34,7 +34,9 @@ impl Survey {
         threads: Option<u16>,
     ) -> Result<Self> {
         let system = chosen.system()?;
-        let bar = long_work::bar(grid.plane(&system)?.count() as u64, "starts");
+        let plane = grid.plane(&system)?;
+        chosen.note_replaced_by_grid(&system, plane.axes);
+        let bar = long_work::bar(plane.count() as u64, "starts");
         let seen = |count| bar.inc(count);
         let survey =
             long_work::pool(threads)?.install(|| Self::watched(system, grid, section, &seen));

@@ -74,7 +74,7 @@ pub(super) fn run(
     let solver = Solver::<f64>::new(&system)?;
     let map = arguments.section.map(&solver)?;
     if arguments.all {
-        return write_all(arguments, &map, outputs, threads);
+        return write_all(arguments, chosen, &map, outputs, threads);
     }
     arguments.starts.refuse_without_all()?;
     let found = orbit_after_transient(&map, arguments)?;
@@ -100,6 +100,7 @@ pub(super) fn run(
 /// Finds and writes all orbits that are reached from a grid of starts.
 fn write_all(
     arguments: &Arguments,
+    chosen: &ChosenSystem,
     map: &SectionMap<'_, f64>,
     outputs: &Outputs<OrbitFormat>,
     threads: Option<u16>,
@@ -119,6 +120,7 @@ fn write_all(
     };
     let system = map.system();
     let plane = plane(system, axes.as_deref(), *grid, *window)?;
+    chosen.note_replaced_by_grid(system, plane.axes);
     let bar = long_work::bar(plane.count() as u64, "starts");
     let seen = |count| bar.inc(count);
     let (start, period) = (system.start()?, arguments.period);
