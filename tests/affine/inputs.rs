@@ -45,8 +45,7 @@ fn a_start_of_the_same_numbers_is_not_the_systems_own() {
     let solver = system.solver::<f64>().unwrap();
     let by_height = |run: percuss::Run<'_, f64>| {
         let event = run.gradients(["h"]).unwrap().events(1).unwrap().next().unwrap();
-        let by = *event.gradient("h").unwrap().unwrap().time();
-        by
+        *event.gradient("h").unwrap().unwrap().time()
     };
     assert_eq!(by_height(solver.run()), 0.5);
     for height in [1.0, 2.0, 3.0] {
