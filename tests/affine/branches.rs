@@ -140,6 +140,42 @@ fn an_event_that_passes_the_strobe_is_no_bifurcation() {
     assert_eq!((modes[0], modes[modes.len() - 1]), (0, 1));
 }
 
+/// Unstable orbits are followed past it, too, and orbits that a reset changes there.
+#[test]
+fn no_angle_of_the_strobe_changes_a_branch() {
+    let along = |angle: f64| {
+        let set = [("k", 30.0), ("gap", 1.2), ("A", 0.7)];
+        let varied = Varied::new(BILINEAR, Section::strobe(angle), "frequency", &set);
+        varied.follow(&varied.settled_return(1.0, 300), 1, [1.0, 2.5])
+    };
+    let expected = along(0.0);
+    assert!(expected.is_complete() && expected.bifurcations.len() >= 2, "{}", expected.ending);
+    for angle in [1.0, 2.0, 4.0, 5.0] {
+        let found = along(angle);
+        assert!(found.is_complete(), "{angle}: {}", found.ending);
+        assert_eq!(found.bifurcations.len(), expected.bifurcations.len(), "{angle}");
+        for (own, known) in found.bifurcations.iter().zip(&expected.bifurcations) {
+            assert_eq!((own.kind, own.turns), (known.kind, known.turns), "{angle}");
+            let rounding = 8.0 * f64::EPSILON * known.value;
+            let off = (own.value - known.value).abs();
+            assert!(off <= own.error + known.error + rounding, "{angle}: {} {}", own.value, off);
+        }
+    }
+    let impacts = "schema = 1\nname = \"hammer\"\nstates = [\"x\", \"v\"]\n\
+                   forcing = { omega = 2.6, phi = 0 }\n\
+                   [parameters]\nm = 1\nz = 0.04\nF = 1\nd = 0.25\nr = 0.7\n[[mode]]\n\
+                   name = \"fly\"\nequations = [\"x' = v\", \"v' = (F*cos - 2*z*v - x)/m\"]\n\
+                   until = [{ name = \"hit\", guard = \"x > d\", \
+                   reset = [\"x = d\", \"v = -r*v\"] }]\n\
+                   [start]\nmode = \"fly\"\nx = 0\nv = 0\n";
+    for angle in [0.0, 1.0] {
+        let varied = Varied::new(impacts, Section::strobe(angle), "m", &[]);
+        let branch = varied.follow(&varied.settled_return(0.6, 500), 1, [0.6, 0.3]);
+        assert!(branch.is_complete(), "{angle}: {}", branch.ending);
+        assert!(branch.bifurcations.is_empty(), "{:?}", bifurcation_rows(&branch));
+    }
+}
+
 #[test]
 fn a_rigid_stop_is_touched_where_the_free_motion_is_as_large_as_the_gap() {
     let varied = Varied::new(system!("rigid-impact-oscillator"), Section::strobe(0.0), "A", &[]);

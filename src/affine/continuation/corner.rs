@@ -13,7 +13,7 @@ use core::cell::Cell;
 const CORNER_TOLERANCE: f64 = 1e-14;
 /// Places beyond a corner lie within this many times the square root of the step: a touch moves an
 /// orbit by a root.
-const MAX_ROOT_MULTIPLE: f64 = 10.0;
+pub(super) const MAX_ROOT_MULTIPLE: f64 = 10.0;
 /// Distances beyond the corner at which its other side is looked at and entered, nearest first.
 const PROBE_DISTANCES: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
 /// Relative error of a corner with which no nearer place beyond is looked for; none is said to be
@@ -49,6 +49,9 @@ impl Curve<'_> {
     pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
         let (before, own) = self.end(base, distance);
         let least = self.least_error(base, &before);
+        if let Some(beyond) = self.past_strobe(&before) {
+            return Corner { before, beyond: Some(beyond), error: own.max(least) };
+        }
         let mut best = Corner { before, beyond: None, error: f64::INFINITY };
         for step in PROBE_DISTANCES {
             let before = &best.before;
@@ -234,7 +237,13 @@ impl Curve<'_> {
     }
 
     /// Whether shots lie as near to an orbit as a step may lead.
-    fn is_near(&self, value: f64, shots: &OrbitShots, from: &CurvePoint, step: f64) -> bool {
+    pub(super) fn is_near(
+        &self,
+        value: f64,
+        shots: &OrbitShots,
+        from: &CurvePoint,
+        step: f64,
+    ) -> bool {
         let distance = self.family.at(value, |map| {
             let pairs = shots.points.iter().zip(&from.carried);
             let sizes =

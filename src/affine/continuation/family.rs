@@ -42,14 +42,28 @@ impl<'a> ReturnFamily<'a> {
         Self { section, longest, system, prepared: RefCell::default() }
     }
 
+    pub(super) fn section(&self) -> &Section {
+        &self.section
+    }
+
     /// What the map at a value has; none where there is no such map.
     pub(super) fn at<R>(
         &self,
         value: f64,
         then: impl FnOnce(&SectionMap<'_, f64>) -> Option<R>,
     ) -> Option<R> {
+        self.at_section(value, &self.section, then)
+    }
+
+    /// What the map of another section at a value has.
+    pub(super) fn at_section<R>(
+        &self,
+        value: f64,
+        section: &Section,
+        then: impl FnOnce(&SectionMap<'_, f64>) -> Option<R>,
+    ) -> Option<R> {
         let solver = self.solver(value)?;
-        let map = SectionMap::new(&solver, &self.section).ok()?;
+        let map = SectionMap::new(&solver, section).ok()?;
         match self.longest {
             Some(longest) => then(&map.within(longest)),
             None => then(&map),

@@ -4,7 +4,8 @@
 //! pseudo-arclength continuation of all points of the orbit, each solved to its last digits. The
 //! map is smooth as long as each return has the same events; where these change the curve has a
 //! corner, which is found by halving, and at which it is taken up again with the derivative of the
-//! other side. [`words`] says what has happened there.
+//! other side. [`words`] says what has happened there. [`passing`] takes the curve past a corner
+//! that only the section makes.
 //!
 //! [`family`] has the maps at the parameter's values, [`point`] the points of the curve, [`curve`]
 //! its tangent and the corrector, [`corner`] the ends of its pieces, [`halving`] those of a doubled
@@ -19,6 +20,7 @@ mod curve;
 mod family;
 mod follow;
 mod halving;
+mod passing;
 mod plane;
 mod point;
 mod traced;

@@ -60,6 +60,17 @@ impl Section {
         Self { every: count.max(1), ..self }
     }
 
+    /// How many instants, of which the last alone counts, make a return.
+    pub(in crate::affine) fn count(&self) -> u32 {
+        self.every
+    }
+
+    /// The strobe of an angle that is larger by this, of a section that is a strobe.
+    pub(in crate::affine) fn turned(&self, by: f64) -> Option<Self> {
+        let Cut::Strobe(angle) = self.cut else { return None };
+        Some(Self { cut: Cut::Strobe(angle + by), every: self.every })
+    }
+
     /// The section among the events of a system.
     pub(super) fn resolve(&self, system: &System) -> Result<Resolved, SystemError> {
         let returns = match &self.cut {
