@@ -1,6 +1,6 @@
 //! `score`: the same verdicts for the same answers.
 
-use crate::support::{refused, run, text};
+use crate::support::{number, refused, run, text};
 use percuss::Ending;
 use percuss_validation::case::defaults;
 use percuss_validation::engine::{Accuracy, Outcome, Task};
@@ -304,6 +304,50 @@ fn a_wrong_state_of_the_last_of_many_impacts_at_once_fails() {
 }
 
 /// Half of a declaration is refused: a unit of error that follows from an order needs one.
+/// The state in which a run ends is judged as a sample is, and an ending is one of the model.
+#[test]
+fn the_end_of_an_answer_is_judged() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cases = ["rigid-chaos", "watched-backward-to-stop", "watched-every-direction"];
+    answers("exact", Accuracy::Exact, &format!("^({})$", cases.join("|")), folder.path());
+    let directory = folder.path().display().to_string();
+    let judged = |case: &str| {
+        let case = format!("^{case}$");
+        let score = ["score", "--name", "mine", "--tolerance", "1e-6", "-c", &case];
+        let (rows, _) = report(&[&score[..], &["--answers", &directory]].concat());
+        let kind = rows[0]["first_wrong"]["kind"].as_str().unwrap_or_default().to_owned();
+        (rows[0]["verdict"].as_str().unwrap_or_default().to_owned(), kind)
+    };
+    for case in cases {
+        assert_eq!(judged(case), ("pass".to_owned(), String::new()), "{case}");
+    }
+    let spoil = |file: &str, column: usize, add: f64| {
+        let path = folder.path().join(file);
+        let text = fs::read_to_string(&path).expect("read");
+        let (before, last) = text.trim_end().rsplit_once('\n').expect("two lines");
+        let mut cells: Vec<String> = last.split(',').map(str::to_owned).collect();
+        cells[column] = (number(&cells[column]) + add).to_string();
+        fs::write(&path, format!("{before}\n{}\n", cells.join(","))).expect("written");
+    };
+    spoil("rigid-chaos.samples.csv", 1, 1e-3);
+    assert_eq!(judged("rigid-chaos"), ("fail".to_owned(), "sample".to_owned()));
+    // The state where the mode is left, in a direction that its guard does not look at.
+    spoil("watched-backward-to-stop.events.csv", 4, 1e-3);
+    assert_eq!(judged("watched-backward-to-stop"), ("fail".to_owned(), "sample".to_owned()));
+    spoil("watched-backward-to-stop.events.csv", 3, 1e-3);
+    assert_eq!(judged("watched-backward-to-stop"), ("fail".to_owned(), "location".to_owned()));
+    let path = |ending: &str| folder.path().join(format!("watched-every-direction.{ending}.csv"));
+    let samples = fs::read_to_string(path("samples")).expect("read");
+    let (time, state) =
+        samples.lines().last().and_then(|it| it.split_once(',')).expect("a last sample");
+    let events = fs::read_to_string(path("events")).expect("read");
+    let before = if events.contains("before.") { format!(",{state}") } else { String::new() };
+    let ended = format!("{events}{time},no-progress,free,{state}{before}\n");
+    fs::write(path("events"), ended).expect("written");
+    let expected = ("fail".to_owned(), "spurious".to_owned());
+    assert_eq!(judged("watched-every-direction"), expected);
+}
+
 #[test]
 fn a_stepping_that_needs_an_order_is_refused_without() {
     for stepping in ["per-step", "fixed"] {

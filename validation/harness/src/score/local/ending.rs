@@ -1,9 +1,11 @@
 //! The way in which a run ended, beside the ending of the exact continuation.
 
-use super::judgement::{FirstWrong, WrongKind};
+use super::continuation::Named;
+use super::judgement::{FirstWrong, WrongKind, exceeds};
+use super::parts::MAX_LOCATION_ERROR;
 use super::units::Units;
-use super::walk::Walk;
-use crate::engine::Outcome;
+use super::walk::{MAX_SIMULTANEOUS_EVENTS, Walk};
+use crate::engine::{self, Outcome};
 use percuss::Ending;
 use percuss::affine::{self, Event, What};
 
@@ -33,18 +35,47 @@ impl Walk<'_> {
         let is_in_time = (outcome.ended_at - elapsed).abs() <= self.allowed_at(end);
         match (exact, own) {
             (None, None) => {}
-            (Some(exact), Some(own)) if exact == own && is_in_time => {}
-            // The ending may come just after the horizon, where it is not looked for.
-            (None, Some(_)) if is_in_time => {}
+            (Some(exact), Some(own)) if exact == own && is_in_time => {
+                let location = self.location_of_end(outcome);
+                self.found.defects.location.extend(location);
+                if let Some(defect) = location.filter(|it| exceeds(*it, MAX_LOCATION_ERROR)) {
+                    self.found.inaccurate += 1;
+                    let wrong = (WrongKind::Location, defect);
+                    self.wrong_ending(n, wrong, Some(own), (Some(exact), elapsed), outcome);
+                }
+            }
+            (None, Some(own)) if is_in_time && self.ends_just_after(own, end) => {}
             (Some(exact), _) => {
                 self.found.missed += 1;
-                self.wrong_ending(n, WrongKind::Missed, own, (Some(exact), elapsed), outcome);
+                self.wrong_ending(
+                    n,
+                    (WrongKind::Missed, f64::NAN),
+                    own,
+                    (Some(exact), elapsed),
+                    outcome,
+                );
             }
             (None, own) => {
                 self.found.spurious += 1;
-                self.wrong_ending(n, WrongKind::Spurious, own, (None, elapsed), outcome);
+                self.wrong_ending(
+                    n,
+                    (WrongKind::Spurious, f64::NAN),
+                    own,
+                    (None, elapsed),
+                    outcome,
+                );
             }
         }
+    }
+
+    /// Whether the exact continuation, which comes to its horizon, ends in this way so soon after
+    /// it that the run may say so.
+    fn ends_just_after(&mut self, own: Ending, end: &Event<f64>) -> bool {
+        let until = self.coarse.elapsed(end) + 2.0 * self.allowed_at(end);
+        let place = &self.place;
+        self.coarse.go_on(place.elapsed, &place.state, until, place.late);
+        let mut events = self.coarse.by_ref().take(MAX_SIMULTANEOUS_EVENTS + 1);
+        events.any(|it| matches!(&it.what, What::End(ending) if Ending::from(ending) == own))
     }
 
     /// Whether a run ends before its horizon by more than another count of the same time.
@@ -67,10 +98,25 @@ impl Walk<'_> {
         nearest.map_or(plain + Units::rounding_of_time(elapsed), allowed)
     }
 
+    /// The location of the end of a run back in time that leaves its mode: the guard nearest to
+    /// zero in its last state.
+    fn location_of_end(&self, outcome: &Outcome) -> Option<f64> {
+        if outcome.ended != Ending::LeavesDomain {
+            return None;
+        }
+        let mode = self.place.mode;
+        let of = |event: usize| {
+            let (elapsed, state) = (outcome.ended_at, outcome.end);
+            let left = engine::Event { elapsed, event, mode, state, before: Some(state) };
+            self.location(&left, Named { event, next: mode })
+        };
+        (0..self.until_count()).filter_map(of).min_by(f64::total_cmp)
+    }
+
     fn wrong_ending(
         &mut self,
         n: usize,
-        kind: WrongKind,
+        (kind, defect): (WrongKind, f64),
         own: Option<Ending>,
         (exact, elapsed): (Option<Ending>, f64),
         outcome: &Outcome,
@@ -88,7 +134,7 @@ impl Walk<'_> {
             time: own.map(|_| clock(outcome.ended_at)),
             state: None,
             exact: Some((exact, mode, clock(elapsed))),
-            defect: f64::NAN,
+            defect,
         };
         self.found.wrong(wrong);
     }

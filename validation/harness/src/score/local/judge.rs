@@ -3,6 +3,7 @@
 use super::continuation::Place;
 use super::judgement::{Allowance, LocalJudgement};
 use super::run::JudgedRun;
+use super::samples::Sampled;
 use super::units::Units;
 use super::walk::{Samples, Walk};
 use crate::engine::{Outcome, Task};
@@ -51,7 +52,9 @@ impl LocalJudge {
         if !accumulates {
             walk.end(outcome);
         }
-        super::samples::judge(&walk.units, &self.0.problem, task, outcome, &mut walk.found);
+        let to_its_end = !accumulates && outcome.ended_at <= self.0.judged_until;
+        let sampled = Sampled { task, outcome, to_its_end };
+        super::samples::judge(&walk.units, &self.0.problem, &sampled, &mut walk.found);
         Ok(walk.found)
     }
 

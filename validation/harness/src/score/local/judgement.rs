@@ -178,6 +178,9 @@ impl FirstWrong {
                 let exact = exact.unwrap_or_default();
                 format!("the first wrong event is missed before record {n}: {exact}")
             }
+            WrongKind::Sample if self.event.is_some() => {
+                format!("the first wrong record, {n}, is off the flow before it{units}: {own}")
+            }
             WrongKind::Sample => format!("the first wrong sample is{} off{units}", at(self.time)),
             WrongKind::Spurious => {
                 let next = exact.map_or("there is no event by then".to_owned(), |exact| {

@@ -1,29 +1,40 @@
-//! The states at the instants of output, each against the closed form from the record before it.
+//! The states at the instants of output and at the end, each against the closed form from the
+//! record before it.
 
 use super::judgement::{FirstWrong, LocalJudgement, WrongKind, exceeds};
 use super::units::{Stretch, Units};
 use crate::engine::{Outcome, Task};
-use crate::system::SystemProblem;
+use crate::system::{SystemProblem, Values};
+use percuss::Ending;
 use percuss::affine::{Event, Time, What};
 
 /// The relative distance within which an instant of output is that of a record: 8 roundings.
 const INSTANT_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 
+/// An answer whose samples are judged.
+pub(super) struct Sampled<'a> {
+    pub(super) task: &'a Task,
+    pub(super) outcome: &'a Outcome,
+    /// Whether the run is judged to its end: that of one whose impacts accumulate is not.
+    pub(super) to_its_end: bool,
+}
+
 /// Judges the samples of an answer.
 pub(super) fn judge(
     units: &Units<'_>,
     problem: &SystemProblem,
-    task: &Task,
-    outcome: &Outcome,
+    sampled: &Sampled<'_>,
     found: &mut LocalJudgement,
 ) {
+    let Sampled { task, outcome, .. } = *sampled;
     let begin = Time::new(&problem.start.time);
     let mut record = 0;
-    for (n, (elapsed, own)) in task.samples.iter().zip(&outcome.samples).enumerate() {
-        if *elapsed > outcome.ended_at {
-            break;
+    let all = task.samples.iter().copied().zip(&outcome.samples).chain(sampled.end());
+    for (n, (elapsed, own)) in all.enumerate() {
+        if elapsed > outcome.ended_at {
+            continue;
         }
-        while outcome.events.get(record).is_some_and(|it| it.elapsed <= *elapsed) {
+        while outcome.events.get(record).is_some_and(|it| it.elapsed <= elapsed) {
             record += 1;
         }
         let near = |it: f64| (it - elapsed).abs() <= INSTANT_TOLERANCE * elapsed;
@@ -53,7 +64,7 @@ pub(super) fn judge(
                 mode,
                 errors: None,
             };
-            let exact = problem.solver.state_at(&event, &clock(*elapsed));
+            let exact = problem.solver.state_at(&event, &clock(elapsed));
             let length = (elapsed - since).max(0.0);
             let stretch = Stretch { mode, elapsed: since, state, length };
             let both = (&own[..], &exact[..]);
@@ -71,12 +82,24 @@ pub(super) fn judge(
                 kind: WrongKind::Sample,
                 event: None,
                 mode: Some(units.motion.system().modes[mode].name.clone()),
-                elapsed: *elapsed,
-                time: Some(problem.clock(*elapsed)),
+                elapsed,
+                time: Some(problem.clock(elapsed)),
                 state: Some(own.to_vec()),
                 exact: None,
                 defect,
             });
         }
+    }
+}
+
+impl<'a> Sampled<'a> {
+    /// The state at the end of a run that has samples, at its time, where a state is defined there
+    /// and is none of the samples: at the horizon, and where a run back in time leaves its mode.
+    fn end(&self) -> Option<(f64, &'a Values)> {
+        let (task, outcome) = (self.task, self.outcome);
+        let is_defined = matches!(outcome.ended, Ending::Horizon | Ending::LeavesDomain);
+        let is_sample = task.samples.last().is_some_and(|it| *it >= outcome.ended_at);
+        let is_judged = self.to_its_end && is_defined && !is_sample && !outcome.samples.is_empty();
+        is_judged.then_some((outcome.ended_at, &outcome.end))
     }
 }

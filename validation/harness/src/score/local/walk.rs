@@ -16,7 +16,7 @@ const MIN_F64_TOLERANCE: f64 = 1e-9;
 /// The most exact events after the last record that are counted.
 const MAX_EVENTS_LEFT: usize = 100_000;
 /// Events of one instant after which a run makes no progress.
-const MAX_SIMULTANEOUS_EVENTS: usize = 64;
+pub(super) const MAX_SIMULTANEOUS_EVENTS: usize = 64;
 
 /// A walk, at one of the records.
 pub(super) struct Walk<'a> {
