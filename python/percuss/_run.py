@@ -370,7 +370,7 @@ class Stream:
 
 
 def _made_again(system: System, made: tuple[Any, ...], digits: int) -> Run:
-    """A run that was pickled, which is as quick to make as to carry."""
+    """Make a run that was pickled again: the same call gives the same numbers."""
     verb, *arguments = made
     return Run(getattr(system._native, verb)(*arguments), system, digits, made)
 

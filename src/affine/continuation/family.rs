@@ -55,7 +55,7 @@ impl<'a> ReturnFamily<'a> {
         self.at_section(value, &self.section, then)
     }
 
-    /// What the map of another section at a value has.
+    /// Something of the map of another section at a value; none where there is no such map.
     pub(super) fn at_section<R>(
         &self,
         value: f64,

@@ -60,7 +60,7 @@ impl Section {
         Self { every: count.max(1), ..self }
     }
 
-    /// How many instants, of which the last alone counts, make a return.
+    /// The number of instants of which the last alone counts, and makes a return.
     pub(in crate::affine) fn count(&self) -> u32 {
         self.every
     }

@@ -53,7 +53,7 @@ pub(in crate::cli) struct ChosenSystem {
     /// The text of the file.
     text: String,
     path: PathBuf,
-    /// What `--at` replaced.
+    /// The states of the start that `--at` replaced, with their values.
     at: Vec<[String; 2]>,
 }
 
