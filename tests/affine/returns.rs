@@ -1,5 +1,6 @@
 //! Return maps: their derivatives beside differences in 212 bits, and returns that are known.
 
+use super::past_limits::two_masses;
 use percuss::affine::{Bits212, Passage, Place, SectionMap, Solver, System, Time};
 use percuss::gallery;
 use percuss::number::Number;
@@ -139,6 +140,15 @@ fn derivatives_of_relays_and_friction_are_those_of_differences() {
     check(gallery::THERMOSTAT, &Section::event("switch-off"), &[0, 4]);
     check(system!("buck-converter"), &Section::event("clock"), &[2, 15]);
     check(system!("dry-friction-oscillator"), &Section::strobe(0.0), &[1, 15]);
+}
+
+#[test]
+fn derivatives_past_accumulations_are_those_of_differences() {
+    for [load, r, kick] in [[0.6, 0.3, 0.0], [0.6, 0.3, 0.2], [0.9, 0.6, 0.2], [0.6, 0.0, 0.2]] {
+        let masses = two_masses([0.7, 0.1, load, r, kick]);
+        check(&masses, &Section::strobe(0.0), &[1, 4]);
+        check(&masses, &Section::event("detach"), &[0, 2]);
+    }
 }
 
 /// From v at the table a ball of e = 1/2 and g = 1 comes back after 2 v, with v/2.

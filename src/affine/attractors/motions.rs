@@ -122,7 +122,7 @@ impl Motions for SectionMotions<'_> {
                 Some(Ok(point)) => point,
                 Some(Err(NoReturn::Equilibrium)) => return Err(Stop::Rest(returns.last_event())),
                 Some(Err(NoReturn::Ended(_))) => return Err(Stop::Label(Label::Ended)),
-                Some(Err(NoReturn::AmidEvents | NoReturn::PastAccumulation)) | None => break,
+                Some(Err(NoReturn::AmidEvents | NoReturn::AmidImpacts)) | None => break,
             };
             if self.map.has_escaped(&point.state) {
                 return Err(Stop::Label(Label::Escaping));

@@ -178,6 +178,14 @@ pub struct Until {
     pub accumulates_to: Option<Limit>,
 }
 
+impl Until {
+    /// Whether the guard is zero after the reset wherever it is zero before it.
+    pub(in crate::affine) fn keeps_guard_zero(&self) -> bool {
+        let after = row_times(&self.guard, &self.reset);
+        after == self.guard || after.iter().all(Rational::is_zero)
+    }
+}
+
 /// The passage from the limit at which an event accumulates to the mode that follows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limit {

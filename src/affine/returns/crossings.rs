@@ -32,6 +32,7 @@ impl SectionMap<'_, f64> {
         let mut walk = Walk::beside(self, place);
         let mut crossings = Vec::new();
         walk.next(&mut |from, to| {
+            Guard::join_accumulated(&to.what, &mut crossings, |it: &Crossing| it.guard);
             if let Some(guard) = Guard::new(&to.what) {
                 let time = to.time.since(&place.time).value();
                 let [rate, speed] = self.rates_of(guard, from, to);

@@ -11,7 +11,7 @@ use crate::affine::arithmetic::vector::Vector;
 use crate::affine::run::place::Place;
 use crate::affine::run::variation::{Variation, is_at_once};
 use crate::affine::solver::Solver;
-use crate::affine::solver::event::Event;
+use crate::affine::solver::event::{Event, What};
 use crate::dynamics::batches::{Batches, Stationarity, standard_error};
 
 /// The most that a rate times a piece of a segment may be: a change then decays by a factor that
@@ -181,6 +181,9 @@ impl<'a> Frame<'a> {
     fn pass(&mut self, from: &Event<f64>, to: &Event<f64>) {
         if is_at_once(from, to) {
             return self.variation.reset(self.solver, to);
+        }
+        if matches!(to.what, What::Limit(..)) {
+            return self.variation.pass(self.solver, from, to);
         }
         let state = self.solver.complete(&from.state, &from.time);
         self.settle_at(from, &state);

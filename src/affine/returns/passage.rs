@@ -91,6 +91,7 @@ impl<T: Number> SectionMap<'_, T> {
         let mut crossed = Vec::new();
         let event = walk.next_with_derivative(&mut |from, to| {
             variation.pass(self.solver(), from, to);
+            Guard::join_accumulated(&to.what, &mut crossed, |it: &(Guard, Time<T>)| it.0);
             crossed.extend(Guard::new(&to.what).map(|guard| (guard, to.time)));
         })?;
         let onto = walk.place_of_onto_section(crossed.iter().map(|(guard, _)| *guard));

@@ -1,7 +1,7 @@
 //! Sections through the motions of a system, and the events of a system that they name.
 
 use crate::affine::model::error::SystemError;
-use crate::affine::model::system::{Direction, System, row_times};
+use crate::affine::model::system::{Direction, System};
 use crate::affine::solver::event::What;
 use std::fmt;
 
@@ -146,19 +146,29 @@ impl Guard {
         }
     }
 
+    /// Takes away the impacts that have accumulated but for the first of them, where an event of a
+    /// run is their limit, from the events before it: their number changes with every digit.
+    pub(super) fn join_accumulated<T, E>(
+        what: &What<T>,
+        events: &mut Vec<E>,
+        guard: impl Fn(&E) -> Self,
+    ) {
+        let What::Limit(mode, index) = *what else { return };
+        let own = Self { mode, index, is_watched: false };
+        let before = events.iter().rposition(|it| guard(it) != own).map_or(0, |n| n + 1);
+        events.truncate(before + 1);
+    }
+
     /// The index among all guards of its mode: those of `until`, then those of `watch`.
     pub(super) fn place_among_all(&self, system: &System) -> usize {
         let before = if self.is_watched { system.modes[self.mode].until.len() } else { 0 };
         before + self.index
     }
 
-    /// Whether the guard is as it was after its event, so that the section's points lie on it: a
+    /// Whether the guard is zero after its event too, so that the section's points lie on it: a
     /// reset may leave them anywhere, such as that of a clock.
     pub(super) fn is_kept_by_its_event(&self, system: &System) -> bool {
-        self.is_watched || {
-            let event = &system.modes[self.mode].until[self.index];
-            row_times(&event.guard, &event.reset) == event.guard
-        }
+        self.is_watched || system.modes[self.mode].until[self.index].keeps_guard_zero()
     }
 
     /// Whether the event is one where its guard changes at this rate.

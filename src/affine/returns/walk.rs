@@ -20,8 +20,9 @@ pub enum NoReturn {
     Ended(Ending),
     /// The return is one of several events of one instant, between which no run begins.
     AmidEvents,
-    /// The motion passes the limit of infinitely many impacts, across which no derivative is taken.
-    PastAccumulation,
+    /// The return lies between the last impact that is an event and the limit of those that follow,
+    /// where no derivative is taken.
+    AmidImpacts,
 }
 
 impl fmt::Display for NoReturn {
@@ -29,8 +30,8 @@ impl fmt::Display for NoReturn {
         match self {
             Self::Equilibrium => f.write_str("the motion does not return to the section"),
             Self::Ended(ending) => write!(f, "the run ends: {ending}"),
-            Self::PastAccumulation => f.write_str(
-                "the motion passes an accumulation of impacts, across which no derivative is taken",
+            Self::AmidImpacts => f.write_str(
+                "the return lies among impacts that accumulate, where no derivative is taken",
             ),
             Self::AmidEvents => f.write_str("the section's event is one of several at once"),
         }
@@ -101,21 +102,13 @@ impl<'a, T: Number> Walk<'a, T> {
         }
     }
 
-    /// The next return, whose way has a derivative as far as accumulations go.
+    /// The next return, at which a derivative is taken.
     pub fn next_with_derivative(
         &mut self,
         see: &mut dyn FnMut(&Event<T>, &Event<T>),
     ) -> Result<Event<T>, NoReturn> {
-        let mut passes_limit = false;
-        let event = self.next(&mut |from, to| {
-            passes_limit |= matches!(to.what, What::Limit(..));
-            see(from, to);
-        })?;
-        if passes_limit || self.run.is_silent() {
-            Err(NoReturn::PastAccumulation)
-        } else {
-            Ok(event)
-        }
+        let event = self.next(see)?;
+        if self.run.is_silent() { Err(NoReturn::AmidImpacts) } else { Ok(event) }
     }
 
     /// The place among the events of the way of that by which the motion came onto the section.

@@ -6,8 +6,9 @@
 //! there, and [`enclosure`] carries the errors along in a run that follows them. [`horizon`] has
 //! the errors at a time that is given, and [`given_up`] the motion that is known where such a run
 //! is not decided. [`follow`] continues the records of a run that someone else has made, [`place`]
-//! is where a run may be cut and go on with another state, and [`variation`] carries small changes
-//! of the state along. Read this file first, then `crossed` and `transition`.
+//! is where a run may be cut and go on with another state, [`variation`] carries small changes of
+//! the state along, and [`variation_at_limit`] does so across limits. Read this file first, then
+//! `crossed` and `transition`.
 
 mod accumulation;
 mod ahead;
@@ -25,6 +26,7 @@ mod reduction;
 mod transition;
 mod undecided;
 pub mod variation;
+mod variation_at_limit;
 
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{Vector, all_finite, twice_summed_rounding};

@@ -27,10 +27,7 @@ impl<T: Number> Run<'_, T> {
         let mode = self.graph.node(self.node).mode;
         self.events_in_instant = if firing.at_entry { self.events_in_instant + 1 } else { 1 };
         let mut state = before;
-        for (n, factors) in &solver.modes[mode].changes[firing.until] {
-            let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
-            state[*n] = terms.fold(T::zero(), |sum, term| sum + term);
-        }
+        solver.reset(mode, firing.until, &mut state);
         let limit = firing.until.checked_sub(solver.system.modes[mode].until.len());
         let exact = match limit {
             Some(_) => self.exact_at_limit(),

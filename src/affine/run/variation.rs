@@ -41,19 +41,6 @@ impl<T: Number> Variation<T> {
         Self::at_fixed_time((0..solver.system().states.len()).map(unit).collect())
     }
 
-    /// Carries the changes from one event of a run to the next one, or to the horizon.
-    pub fn pass(&mut self, solver: &Solver<T>, from: &Event<T>, to: &Event<T>) {
-        if is_at_once(from, to) {
-            return self.reset(solver, to);
-        }
-        let state = solver.complete(&from.state, &from.time);
-        self.settle_at(solver, from, &state);
-        let elapsed = to.time.since(&from.time).value();
-        let motion = solver.modes[from.mode].flow.propagator(elapsed);
-        self.flow(&motion);
-        self.arrive(solver, to, || motion.after(&state));
-    }
-
     /// Takes the changes to the fixed time of the event at which they are.
     pub fn settle(&mut self, solver: &Solver<T>, at: &Event<T>) {
         if self.delays.is_some() {
@@ -89,7 +76,6 @@ impl<T: Number> Variation<T> {
         let (mode, guard) = match to.what {
             What::Until(mode, index) => (mode, index),
             What::Watch(mode, index) => (mode, solver.system.modes[mode].until.len() + index),
-            // Whoever carries changes refuses a limit, or leaves it to others to refuse.
             What::Start | What::Limit(..) | What::End(_) => return,
         };
         self.delay(solver, mode, guard, &before());
@@ -113,14 +99,14 @@ impl<T: Number> Variation<T> {
 
     /// Resets changes as an `until` resets the state.
     pub fn reset(&mut self, solver: &Solver<T>, event: &Event<T>) {
-        let What::Until(mode, until) = event.what else { return };
-        for column in &mut self.columns {
-            let before = *column;
-            for (n, factors) in &solver.modes[mode].changes[until] {
-                let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
-                column[*n] = terms.fold(T::zero(), |sum, term| sum + term);
-            }
+        if let What::Until(mode, until) = event.what {
+            self.reset_by(solver, mode, until);
         }
+    }
+
+    /// Resets changes as the reset of this number of a mode resets the state.
+    pub(super) fn reset_by(&mut self, solver: &Solver<T>, mode: usize, number: usize) {
+        self.columns.iter_mut().for_each(|it| solver.reset(mode, number, it));
     }
 }
 
@@ -153,7 +139,7 @@ impl<T: Number> Solver<T> {
     }
 
     /// The rates M z.
-    fn rates_of(&self, mode: usize, z: &Vector<T>) -> Vector<T> {
+    pub(super) fn rates_of(&self, mode: usize, z: &Vector<T>) -> Vector<T> {
         let own = &self.modes[mode];
         let mut rates = [T::zero(); LARGEST_DIMENSION];
         for (rate, row) in rates.iter_mut().zip(&own.matrix) {

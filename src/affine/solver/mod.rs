@@ -17,7 +17,9 @@ use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::guards::row::ModalRow;
 use crate::affine::modal;
 use crate::affine::model::error::SystemError;
-use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, System, is_unit};
+use crate::affine::model::system::{
+    LARGEST_DIMENSION, Mode, Row, Successor, System, Until, is_unit,
+};
 use crate::affine::zeros::exact_mode::ExactMode;
 use crate::affine::zeros::graph::ZeroGraph;
 use crate::numeric::number::{Bound, Number};
@@ -49,6 +51,8 @@ pub(super) struct SolverMode<T: Number> {
     pub resets: Vec<Vec<Vector<T>>>,
     /// For each reset, the entries of z that it changes, with their rows.
     pub changes: Vec<Vec<Change<T>>>,
+    /// For each `until`, whether it may accumulate and its guard stays zero across its reset.
+    pub stays_zero: Vec<bool>,
     /// The conditions of the successors of each reset, in the co-ordinates of their modes.
     pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
     /// The mode's rows in exact arithmetic, once a run asks for them.
@@ -104,6 +108,7 @@ impl<T: Number> Solver<T> {
                 next.iter().map(condition).collect()
             });
             let resets = mode.exits().map(|(reset, _)| reset.iter().map(numbers).collect());
+            let stays_zero = |it: &Until| it.accumulates_to.is_some() && it.keeps_guard_zero();
             SolverMode {
                 flow: flows[n].clone(),
                 matrix: mode.matrix.iter().map(numbers).collect(),
@@ -111,6 +116,7 @@ impl<T: Number> Solver<T> {
                 rows: guards.iter().map(|it| numbers(it)).collect(),
                 resets: resets.collect(),
                 changes: mode.exits().map(|(reset, _)| changes(reset)).collect(),
+                stays_zero: mode.until.iter().map(stays_zero).collect(),
                 conditions: conditions.collect(),
                 exact: OnceLock::new(),
             }
@@ -118,6 +124,17 @@ impl<T: Number> Solver<T> {
         let modes = system.modes.iter().enumerate().map(mode).collect();
         let clock = system.forcing.as_ref().map(Clock::new);
         Ok(Self { modes, clock, pool: CachePool::new(graph), backward, system })
+    }
+
+    /// Resets entries of z, or changes of them, as the reset of this number of a mode does: those
+    /// of `until` come first, then those of their limits.
+    #[inline]
+    pub(super) fn reset(&self, mode: usize, number: usize, z: &mut Vector<T>) {
+        let before = *z;
+        for (n, factors) in &self.modes[mode].changes[number] {
+            let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
+            z[*n] = terms.fold(T::zero(), |sum, term| sum + term);
+        }
     }
 
     /// The state at a time in the segment that an event of a run of this solver begins.
