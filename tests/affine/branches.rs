@@ -129,6 +129,57 @@ fn a_spring_is_touched_where_the_free_motion_is_as_large_as_the_gap() {
     assert_value(only_bifurcation(&back, BifurcationKind::Grazing), 0.6 * amplitude(0.8, 0.05));
 }
 
+/// The orbit that strikes a rigid stop has a derivative that grows as one over the speed of its
+/// impact: the touch is that of the free motion, on the way there and on the way back, at a strobe
+/// where the touch itself lies, too.
+#[test]
+fn a_rigid_stop_is_touched_where_the_free_motion_is() {
+    let touch = 1.2 * amplitude(2.75, 0.05);
+    for angle in [0.0, 1.0, 3.0] {
+        let section = Section::strobe(angle);
+        let varied = Varied::new(system!("rigid-impact-oscillator"), section, "d", &[("A", 1.2)]);
+        for [from, to] in [[0.1, 0.3], [0.3, 0.1]] {
+            let branch = varied.follow(&varied.settled_return(from, 501), 1, [from, to]);
+            assert!(branch.is_complete(), "{angle} {from}: {}", branch.ending);
+            let graze = only_bifurcation(&branch, BifurcationKind::Grazing);
+            assert_value(graze, touch);
+            assert!(!graze.turns, "{angle} {from}");
+            assert_eq!(branch.bifurcations.len(), 1, "{:?}", bifurcation_rows(&branch));
+            let ends = [&branch.points[0], &branch.points[branch.points.len() - 1]];
+            let impacts = ends.map(|(value, orbit)| (*value < touch, orbit.events.len()));
+            assert!(impacts.iter().all(|(strikes, count)| *count == usize::from(*strikes)));
+        }
+    }
+}
+
+/// Next to a strobe at which the graze lies the map has two corners more, and had a fold.
+#[test]
+fn a_graze_at_the_strobe_is_that_of_other_strobes() {
+    let text = include_str!("../../benches/bilinear.system.toml");
+    for angle in [0.0, 2.9, 3.0] {
+        let varied = Varied::new(text, Section::strobe(angle), "frequency", &[]);
+        let branch = varied.follow(&varied.settled_return(1.1, 500), 1, [1.1, 2.5]);
+        assert!(branch.is_complete(), "{angle}: {}", branch.ending);
+        assert_eq!(branch.bifurcations.len(), 2, "{:?}", bifurcation_rows(&branch));
+        assert_value(only_bifurcation(&branch, BifurcationKind::Grazing), 1.252_884_567_093_854_4);
+        let fold = only_bifurcation(&branch, BifurcationKind::Fold).value;
+        assert!((fold - 1.548_088_891_779_077).abs() < 1e-13, "{angle}: {fold}");
+        // The points are those of the strobe that was asked for.
+        let (value, orbit) = &branch.points[branch.points.len() - 1];
+        let shown = varied.map(*value, |map| {
+            let mut returns = map.returns(map.system().start().unwrap()).unwrap();
+            returns.by_ref().take(600).for_each(|it| drop(it.unwrap()));
+            map.orbit(&returns.place().unwrap(), 1).unwrap()
+        });
+        let pairs = shown.points[0].state.iter().zip(&orbit.points[0].state);
+        assert!(
+            pairs.clone().all(|(a, b)| (a - b).abs() < 1e-10),
+            "{:?}",
+            pairs.collect::<Vec<_>>()
+        );
+    }
+}
+
 /// The touch passes the strobe at a gap of 1.5506, where the orbit's point changes its mode.
 #[test]
 fn an_event_that_passes_the_strobe_is_no_bifurcation() {

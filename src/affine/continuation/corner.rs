@@ -30,6 +30,11 @@ const SIDE_STEPS: [f64; 2] = [8.0, -8.0];
 /// Times that a direction beyond a corner is taken again from a place nearer to it.
 const REFINEMENTS: usize = 4;
 
+/// What rounding leaves uncertain of an orbit is comparable to the distance to where a multiplier
+/// would be 1 within this factor: then it decides on which side of a corner an orbit is found, or
+/// whether it is.
+const MAX_BLURS: f64 = 10.0;
+
 /// A piece of a curve followed as far as it goes.
 struct Approach {
     /// The last orbit of the piece.
@@ -52,6 +57,12 @@ impl Curve<'_> {
         if let Some(beyond) = self.past_strobe(&before) {
             return Corner { before, beyond: Some(beyond), error: own.max(least) };
         }
+        // A piece that is left for want of orbits, rather than of steps, ends in roundings.
+        if own > RELATIVE_ERROR_TOLERANCE * before.value.abs()
+            && let Some(touch) = self.touch_from_beyond(base, &before)
+        {
+            return touch;
+        }
         let mut best = Corner { before, beyond: None, error: f64::INFINITY };
         for step in PROBE_DISTANCES {
             let before = &best.before;
@@ -69,6 +80,9 @@ impl Curve<'_> {
             }
         }
         let error = if best.beyond.is_none() { own } else { best.error };
+        if best.beyond.is_none() {
+            best.beyond = self.striking(&best.before);
+        }
         best.error = error.max(least);
         best
     }
@@ -82,16 +96,18 @@ impl Curve<'_> {
 
     /// The last orbit of the piece along the curve from a point, and what the halving leaves
     /// uncertain of the parameter's value at the piece's end.
-    fn end(&self, base: &CurvePoint, distance: f64) -> (CurvePoint, f64) {
+    pub(super) fn end(&self, base: &CurvePoint, distance: f64) -> (CurvePoint, f64) {
         let Approach { last, rest, .. } = self.approach(base, distance);
         let own = rest * last.tangent.rate.abs();
         (last, own)
     }
 
     /// The least error that is said of a corner which was reached from a base.
-    fn least_error(&self, base: &CurvePoint, before: &CurvePoint) -> f64 {
+    pub(super) fn least_error(&self, base: &CurvePoint, before: &CurvePoint) -> f64 {
         let blur = self.blur(before, &base.tangent);
-        RELATIVE_ERROR_TOLERANCE * before.value.abs() + self.uncertainty(before) + blur
+        let left = distance_to_unit_multiplier(base, before);
+        let doubt = if left <= MAX_BLURS * blur { left } else { 0.0 };
+        RELATIVE_ERROR_TOLERANCE * before.value.abs() + self.uncertainty(before) + blur + doubt
     }
 
     /// The distance in the parameter between the corner and where it is found from beyond; none
@@ -252,4 +268,16 @@ impl Curve<'_> {
         });
         distance.is_some_and(|it| it <= MAX_ROOT_MULTIPLE * libm::sqrt(step))
     }
+}
+
+/// The distance in the parameter from the last orbit of a piece to where a multiplier would be 1;
+/// infinite where none comes nearer to that.
+fn distance_to_unit_multiplier(base: &CurvePoint, last: &CurvePoint) -> f64 {
+    let nearest = |it: &CurvePoint| {
+        let apart = it.orbit.multipliers.iter().map(|[re, im]| libm::hypot(re - 1.0, *im));
+        apart.fold(f64::INFINITY, f64::min)
+    };
+    let (from, to) = (nearest(base), nearest(last));
+    let comes_nearer = to < from && from.is_finite();
+    if comes_nearer { (last.value - base.value).abs() * to / (from - to) } else { f64::INFINITY }
 }

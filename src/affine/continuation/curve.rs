@@ -13,9 +13,24 @@ use crate::dynamics::linear::{apply, product, solve};
 pub(super) struct Curve<'a> {
     pub family: &'a ReturnFamily<'a>,
     pub unit: f64,
+    /// The curve by whose points those of this one are shown, if not by their own.
+    pub shown: Option<&'a Curve<'a>>,
     scales: Change,
     /// The number of entries of z.
     dimension: usize,
+}
+
+/// A change of one image that an event makes in proportion to its rate, of which the square is a
+/// smooth function of the point and of the parameter.
+pub(super) struct Jump {
+    /// The number of the image.
+    pub number: usize,
+    /// The change, in units of the rate.
+    pub change: Change,
+    /// The derivative of the rate's square by the point.
+    pub by_place: Change,
+    /// Its derivative by the parameter.
+    pub by_value: f64,
 }
 
 /// Newton's iterations of a corrector: more, and the step was too long.
@@ -77,7 +92,12 @@ impl<'a> Curve<'a> {
             scales.iter_mut().zip(own).for_each(|(it, own)| *it = *own);
             Some((scales, system.dimension()))
         })?;
-        Some(Self { family, unit, scales, dimension })
+        Some(Self { family, unit, shown: None, scales, dimension })
+    }
+
+    /// The curve, whose points are shown by those of another one.
+    pub fn shown_by(self, shown: &'a Curve<'a>) -> Self {
+        Self { shown: Some(shown), ..self }
     }
 
     /// The first point of a branch, from an orbit's places, with the parameter's way.
@@ -220,6 +240,54 @@ impl<'a> Curve<'a> {
         tangent
     }
 
+    /// The direction of the curve on which an event's rate grows from zero, and that growth.
+    pub fn direction_with_jump(
+        &self,
+        shots: &OrbitShots,
+        slopes: &[Change],
+        jump: &Jump,
+    ) -> Option<(Direction, f64)> {
+        let mut jumps = vec![[0.0; MAX_COORDINATES]; shots.images.len()];
+        jumps[jump.number] = jump.change;
+        let Around { matrix: own, offset: by_jump } = recurrence(shots, &jumps);
+        let Around { offset: by_value, .. } = recurrence(shots, slopes);
+        // The changes of the place that has the event, by those of the first and of the parameter.
+        let mut to_place = Around { matrix: identity(), offset: [0.0; MAX_COORDINATES] };
+        for (image, slope) in shots.images.iter().zip(slopes).take(jump.number) {
+            to_place.matrix = product(&image.derivative, &to_place.matrix);
+            to_place.offset = sum(&apply(&image.derivative, &to_place.offset), slope, 1.0);
+        }
+        let scales = &self.scales;
+        let mut matrix = [[0.0; BORDERED_DIMENSION]; BORDERED_DIMENSION];
+        let mut right = [0.0; BORDERED_DIMENSION];
+        for (i, row) in self.less_identity(&own).iter().enumerate() {
+            matrix[i][..MAX_COORDINATES].copy_from_slice(row);
+            matrix[i][MAX_COORDINATES] = by_value[i] * self.unit / scales[i];
+            right[i] = -by_jump[i] / scales[i];
+            let by_first = (0..MAX_COORDINATES).map(|k| jump.by_place[k] * to_place.matrix[k][i]);
+            matrix[MAX_COORDINATES][i] = by_first.sum::<f64>() * scales[i];
+        }
+        let by_value: f64 =
+            jump.by_place.iter().zip(&to_place.offset).map(|(a, b)| a * b).sum::<f64>();
+        matrix[MAX_COORDINATES][MAX_COORDINATES] = (jump.by_value + by_value) * self.unit;
+        let (first, rate) = self.unscaled(&solve(matrix, right));
+        let added: Vec<Change> =
+            slopes.iter().zip(&jumps).map(|(slope, jump)| sum(jump, slope, rate)).collect();
+        let mut along = Direction { points: spread_changes(shots, first, &added), rate };
+        let length = self.product(&along, &along, shots).sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return None;
+        }
+        along.rate /= length;
+        along.points.iter_mut().flatten().for_each(|x| *x /= length);
+        Some((along, 1.0 / length))
+    }
+
+    /// The units of a point's co-ordinates.
+    pub fn scales(&self) -> &Change {
+        &self.scales
+    }
+
     /// A solution of the bordered system as a change of the first point and of the parameter.
     fn unscaled(&self, solution: &[f64; BORDERED_DIMENSION]) -> (Change, f64) {
         let first = std::array::from_fn(|n| solution[n] * self.scales[n]);
@@ -301,7 +369,8 @@ impl<'a> Curve<'a> {
     ///
     /// A corner is where the orbit touches another piece of the map, so that the corner is found
     /// where an uncertain orbit touches it. The orbit is uncertain where a multiplier is near 1,
-    /// and so is the curve's direction there: it is taken from where it is known better.
+    /// and so is the curve's direction there: it is taken from where it is known better. An orbit
+    /// counts as closed with any residual that rounding may leave.
     pub fn blur(&self, point: &CurvePoint, along: &Direction) -> f64 {
         let Around { matrix, .. } = recurrence(&point.shots, &point.shots.defects);
         let apart = self.less_identity(&matrix);
@@ -313,7 +382,9 @@ impl<'a> Curve<'a> {
         let Direction { points, rate } = along;
         let by_state = points[0].iter().zip(&self.scales).map(|(it, scale)| (it / scale).powi(2));
         let length = (by_state.sum::<f64>() + (rate / self.unit).powi(2)).sqrt();
-        by_row.sum::<f64>() * self.rounding(&point.shots) * rate.abs() / length
+        let sizes = point.shots.points.iter().map(|it| 1.0 + self.size(it));
+        let residual = point.shots.rounding() * sizes.fold(1.0, f64::max);
+        by_row.sum::<f64>() * residual * rate.abs() / length
     }
 
     /// The rounding of the points' images, in units of the states: each segment rounds as many

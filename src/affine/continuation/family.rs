@@ -42,6 +42,11 @@ impl<'a> ReturnFamily<'a> {
         Self { section, longest, system, prepared: RefCell::default() }
     }
 
+    /// The family of the strobe of an angle that is larger by this.
+    pub(super) fn turned(&self, by: f64) -> Option<Self> {
+        Some(Self::new(self.section.turned(by)?, self.longest, self.system))
+    }
+
     pub(super) fn section(&self) -> &Section {
         &self.section
     }

@@ -88,21 +88,24 @@ impl OrbitCurve for Curve<'_> {
         corner: &Corner<CurvePoint>,
     ) -> Option<ReturnBifurcation> {
         let Meaning { kind, event } = self.meaning(base, corner)?;
+        let phase = self.phase(base, corner, event);
         let Corner { before, beyond, error } = corner;
-        let (value, orbit, error) = (before.value, before.orbit.clone(), *error);
-        let (point, is_lost, turns) = (before.clone(), beyond.is_none(), corner.turns());
+        let (point, is_lost, turns) = (self.shown_point(before), beyond.is_none(), corner.turns());
+        let (value, orbit, error) = (before.value, point.orbit.clone(), *error);
         let event = Some(event);
-        Some(ReturnBifurcation { kind, value, error, event, turns, orbit, point, is_lost })
+        Some(ReturnBifurcation { kind, value, error, event, turns, orbit, point, phase, is_lost })
     }
 
     fn bifurcation(&self, noted: Noted<CurvePoint>) -> ReturnBifurcation {
         let Noted { kind, point, error, turns } = noted;
+        let point = self.shown_point(&point);
         let (value, orbit) = (point.value, point.orbit.clone());
-        ReturnBifurcation { kind, value, error, event: None, turns, orbit, point, is_lost: false }
+        let (event, phase, is_lost) = (None, None, false);
+        ReturnBifurcation { kind, value, error, event, turns, orbit, point, phase, is_lost }
     }
 
     fn kept_point(&self, point: &CurvePoint) -> (f64, Orbit) {
-        (point.value, point.orbit.clone())
+        (point.value, self.shown_point(point).orbit)
     }
 
     fn is_back(&self, [point, next]: [&CurvePoint; 2], start: &CurvePoint) -> bool {

@@ -5,7 +5,9 @@
 //! map is smooth as long as each return has the same events; where these change the curve has a
 //! corner, which is found by halving, and at which it is taken up again with the derivative of the
 //! other side. [`words`] says what has happened there. [`passing`] takes the curve past a corner
-//! that only the section makes.
+//! that only the section makes, [`touch`] finds the one where an impact becomes a touch, and
+//! [`impact`] the orbit that strikes beyond a touch. [`strobe`] chooses another
+//! angle where an event comes near the strobe.
 //!
 //! [`family`] has the maps at the parameter's values, [`point`] the points of the curve, [`curve`]
 //! its tangent and the corrector, [`corner`] the ends of its pieces, [`halving`] those of a doubled
@@ -20,9 +22,12 @@ mod curve;
 mod family;
 mod follow;
 mod halving;
+mod impact;
 mod passing;
 mod plane;
 mod point;
+mod strobe;
+mod touch;
 mod traced;
 mod words;
 
@@ -66,6 +71,8 @@ pub struct ReturnBifurcation {
     pub orbit: Orbit,
     /// The bifurcation's orbit as a point of the curve that the branch is.
     point: CurvePoint,
+    /// The time of the event since the strobe before it, in forcing periods.
+    phase: Option<f64>,
     /// Whether no orbit was found beyond a corner.
     is_lost: bool,
 }
@@ -87,10 +94,28 @@ impl ReturnBranch {
         let (_, places) = found.ok_or(NoOrbit::Stalled(f64::NAN))??;
         let none = NoOrbit::NoDerivative(f64::NAN);
         let curve = Curve::new(family, [from, to]).ok_or(none.clone())?;
-        let first = curve.first(from, places, (to - from).signum()).ok_or(none)?;
-        let FollowedCurve { points, bifurcations, ending } =
-            follow(&curve, [from, to], first, progress);
-        Ok(Self { points, bifurcations, ending })
+        let way = (to - from).signum();
+        let first = curve.first(from, places, way).ok_or(none)?;
+        let branch = Self::of_curve(&curve, [from, to], first.clone(), progress);
+        let phases: Vec<f64> = branch.bifurcations.iter().filter_map(|it| it.phase).collect();
+        let beside = strobe::angle_beside(&phases).and_then(|angle| {
+            let family = family.turned(angle)?;
+            let beside = Curve::new(&family, [from, to])?;
+            let first = curve.seen_on(&beside, &first)?;
+            Some(Self::of_curve(&beside.shown_by(&curve), [from, to], first, progress))
+        });
+        Ok(beside.unwrap_or(branch))
+    }
+
+    /// The branch that a curve has from a point on.
+    fn of_curve(
+        curve: &Curve<'_>,
+        ends: [f64; 2],
+        first: CurvePoint,
+        progress: &mut dyn FnMut(f64),
+    ) -> Self {
+        let FollowedCurve { points, bifurcations, ending } = follow(curve, ends, first, progress);
+        Self { points, bifurcations, ending }
     }
 
     /// Whether the branch was followed to the value that was asked for.

@@ -20,7 +20,7 @@ pub(super) struct Meaning {
 }
 
 /// The crossings of one side of a corner, near to it and far from it.
-type Sides = (Vec<Crossing>, Vec<Crossing>);
+pub(super) type Sides = (Vec<Crossing>, Vec<Crossing>);
 
 /// Distances from a corner at which its events are looked at; the first that serve do.
 const PROBE_DISTANCES: [[f64; 2]; 3] = [[1e-6, 1.6e-5], [1e-8, 1.6e-7], [1e-4, 1.6e-3]];
@@ -49,6 +49,12 @@ impl Curve<'_> {
         let Corner { before, beyond, .. } = corner;
         let beyond = beyond.as_ref();
         let is_another = |it: &CurvePoint| cyclic(&it.orbit.events) != cyclic(&before.orbit.events);
+        if is_another(base) {
+            // The corner is that of the orbit beyond, which touches what it has not as an event.
+            let [lost, _] = differing_parts(&base.orbit.events, &before.orbit.events);
+            let event = *lost.first()?;
+            return Some(Meaning { kind: BifurcationKind::Grazing, event });
+        }
         match beyond {
             None => {
                 self.touch_before(base, before).or_else(|| self.change_of_events(before, beyond))
@@ -134,7 +140,7 @@ impl Curve<'_> {
         self.crossings(point.value, &point.shots)
     }
 
-    fn crossings(&self, value: f64, shots: &OrbitShots) -> Option<Vec<Crossing>> {
+    pub(super) fn crossings(&self, value: f64, shots: &OrbitShots) -> Option<Vec<Crossing>> {
         self.family.at(value, |map| {
             let all: Option<Vec<_>> =
                 shots.points.iter().map(|it| map.crossings(it).ok()).collect();
@@ -144,7 +150,7 @@ impl Curve<'_> {
 }
 
 /// The crossings near to a corner and far from it, if they are of the same events.
-fn same_events(near: Vec<Crossing>, far: Vec<Crossing>) -> Option<Sides> {
+pub(super) fn same_events(near: Vec<Crossing>, far: Vec<Crossing>) -> Option<Sides> {
     let guards = |side: &[Crossing]| side.iter().map(|it| it.guard).collect::<Vec<_>>();
     (guards(&near) == guards(&far)).then_some((near, far))
 }

@@ -1,0 +1,71 @@
+//! A branch at a strobe at which none of its grazes lies.
+//!
+//! At a graze that lies at the strobe, an event passes the strobe where it begins to be one: the
+//! map has two or three corners next to each other. No orbit, multiplier or bifurcation hangs on
+//! its angle. So a branch on which an event that is touched, gained or lost comes near to the
+//! strobe is followed at another angle, and its orbits are shown at the one that was asked for.
+
+use super::super::returns::section::Guard;
+use super::super::returns::shooting::{ReturnMap, Shots};
+use super::curve::Curve;
+use super::point::{CurvePoint, Direction};
+use crate::dynamics::continuation::steps::Corner;
+use crate::dynamics::linear::apply;
+use core::f64::consts::TAU;
+
+/// The shares of the forcing period between an event and the strobe of which it is near.
+const NEAR: f64 = 0.02;
+/// The number of angles that are looked at, half a step from the first.
+const ANGLES: usize = 32;
+
+/// The angle beside a strobe which is farthest from the phases of all these events, radians, if one
+/// of them is near the strobe itself.
+pub(super) fn angle_beside(phases: &[f64]) -> Option<f64> {
+    let distance = |at: f64| {
+        let apart = phases.iter().map(|it| (it - at).rem_euclid(1.0));
+        apart.map(|it| it.min(1.0 - it)).fold(f64::INFINITY, f64::min)
+    };
+    let angles = (0..ANGLES).map(|n| (n as f64 + 0.5) / ANGLES as f64);
+    let farthest = angles.max_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
+    (distance(0.0) < NEAR && distance(farthest) > NEAR).then_some(farthest * TAU)
+}
+
+impl Curve<'_> {
+    /// The time of a corner's event since the strobe before it, in forcing periods from 0 to 1.
+    pub(super) fn phase(
+        &self,
+        base: &CurvePoint,
+        corner: &Corner<CurvePoint>,
+        event: Guard,
+    ) -> Option<f64> {
+        let sides = [corner.beyond.as_ref(), Some(&corner.before), Some(base)];
+        sides.into_iter().flatten().find_map(|side| {
+            let period = self.family.at(side.value, |map| map.forcing_period())?;
+            let crossings = self.crossings(side.value, &side.shots)?;
+            let slowest = crossings.iter().filter(|it| it.guard == event);
+            let slowest = slowest.min_by(|a, b| a.rate.abs().total_cmp(&b.rate.abs()))?;
+            Some((slowest.time / period).rem_euclid(1.0))
+        })
+    }
+
+    /// A point of this curve as one of that by which it is shown; itself where there is none.
+    pub(super) fn shown_point(&self, point: &CurvePoint) -> CurvePoint {
+        self.shown.and_then(|it| self.seen_on(it, point)).unwrap_or_else(|| point.clone())
+    }
+
+    /// A point of this curve as one of another, at the strobes that come after its points.
+    pub(super) fn seen_on(&self, shown: &Curve<'_>, point: &CurvePoint) -> Option<CurvePoint> {
+        let strobe = shown.family.section().clone().every(1);
+        let pairs = point.shots.points.iter().zip(&point.tangent.points);
+        let (places, points) = self.family.at_section(point.value, &strobe, |map| {
+            pairs
+                .map(|(place, change)| {
+                    let image = map.image(place).ok()?;
+                    Some((map.rebased(&image.point), apply(&image.derivative, change)))
+                })
+                .collect::<Option<(Vec<_>, Vec<_>)>>()
+        })?;
+        let shots = shown.family.at(point.value, |map| Shots::new(map, places))?;
+        shown.point(point.value, shots, &Direction { points, rate: point.tangent.rate })
+    }
+}

@@ -1,0 +1,118 @@
+//! An orbit whose event is lost in a touch, where its map has no bounded derivative.
+//!
+//! The orbit that touches is that of two pieces: of the one that has the event, whose impact is the
+//! slower the nearer the touch is, and whose derivative grows as one over its speed; and of the one
+//! that has not, whose derivative is bounded. The first is a smooth curve in the speed of the
+//! impact, so that two of its points tell roughly where the touch is. The orbit without the event
+//! is looked for there, and followed back to where it touches.
+
+use super::super::returns::section::Guard;
+use super::super::returns::shooting::{MAX_COORDINATES, ReturnMap, Shots};
+use super::curve::Curve;
+use super::family::OrbitShots;
+use super::point::{CurvePoint, Direction};
+use super::words::same_events;
+use crate::dynamics::continuation::steps::Corner;
+use crate::dynamics::orbit::newton::solve;
+
+/// Distances from where a touch is held to be at which the orbit without the event is looked for,
+/// as multiples of the distance to the last orbit with it: it may be on either side.
+const DISTANCES: [f64; 8] = [1.0, -1.0, 4.0, -4.0, 16.0, -16.0, 64.0, -64.0];
+/// The derivative of a map that is large for a touch to be looked for: the orbit is found to its
+/// last digits otherwise, until it touches.
+const MIN_DERIVATIVE: f64 = 100.0;
+/// Steps of the curve beyond a touch at which the event has to be there.
+const STEPS_TO_TOUCH: [f64; 3] = [1e-10, 1e-8, 1e-6];
+
+/// A touch as two orbits with the event tell it.
+struct Expected {
+    /// The parameter's value.
+    value: f64,
+    /// The distance in the parameter from the last orbit with the event, signed.
+    rest: f64,
+    /// The touch lies as many times further along than these orbits are apart.
+    share: f64,
+    /// The event.
+    event: Guard,
+}
+
+impl Curve<'_> {
+    /// The corner at which the curve from `base` to the last orbit of its piece loses an event in a
+    /// touch, as the orbit without the event has it.
+    pub(super) fn touch_from_beyond(
+        &self,
+        base: &CurvePoint,
+        last: &CurvePoint,
+    ) -> Option<Corner<CurvePoint>> {
+        if last.shots.largest_derivative() < MIN_DERIVATIVE {
+            return None;
+        }
+        let expected = self.expected_touch(base, last)?;
+        DISTANCES.iter().find_map(|distance| {
+            let value = expected.value + distance * expected.rest.abs();
+            let shots = self.without_event(base, last, &expected, value)?;
+            let points = vec![[0.0; MAX_COORDINATES]; shots.points.len()];
+            let back = Direction { points, rate: self.unit * (expected.value - value).signum() };
+            let point = self.point(value, shots, &back)?;
+            let length = (expected.value - value) / point.tangent.rate;
+            let (touch, own) = self.end(&point, length.abs());
+            let is_there = (touch.value - expected.value).abs() <= expected.rest.abs()
+                && self.has_event_beyond(&touch, expected.event);
+            if !is_there {
+                return None;
+            }
+            let error = own.max(self.least_error(&point, &touch));
+            let is_forward = touch.tangent.rate * last.tangent.rate >= 0.0;
+            let before = if is_forward { touch } else { touch.turned() };
+            Some(Corner { before, beyond: Some(point.turned()), error })
+        })
+    }
+
+    /// The touch to which the event comes that has become slowest beside what it was.
+    fn expected_touch(&self, base: &CurvePoint, last: &CurvePoint) -> Option<Expected> {
+        let [from, to] = [base, last].map(|it| self.crossings(it.value, &it.shots));
+        let (to, from) = same_events(to?, from?)?;
+        let slowed = from.iter().zip(&to).map(|(from, to)| (from.rate, to.rate, to.guard));
+        let slowed = slowed.filter(|(from, to, _)| *to > 0.0 && to < from && from.is_finite());
+        let (from, to, event) = slowed.min_by(|a, b| (a.1 / a.0).total_cmp(&(b.1 / b.0)))?;
+        let share = to / (from - to);
+        let rest = share * (last.value - base.value);
+        Some(Expected { value: last.value + rest, rest, share, event })
+    }
+
+    /// The orbit at a value next to a touch that has not the event.
+    fn without_event(
+        &self,
+        base: &CurvePoint,
+        last: &CurvePoint,
+        expected: &Expected,
+        value: f64,
+    ) -> Option<OrbitShots> {
+        let found = self.family.at(value, |map| {
+            let pairs = base.carried.iter().zip(&last.carried);
+            let places = pairs.map(|(base, last)| {
+                let [base, last] = [base, last].map(|it| map.take_up(it));
+                let change = map.change_between(&base, &last);
+                map.moved(&last, &change.map(|it| expected.share * it), &last)
+            });
+            solve(map, Shots::new(map, places.collect())?).ok()
+        })?;
+        let count = |shots: &OrbitShots| count_events(shots, expected.event);
+        let is_other = count(&found) < count(&last.shots);
+        (is_other && self.is_near(value, &found, last, (value - last.value).abs() / self.unit))
+            .then_some(found)
+    }
+
+    /// Whether an orbit has an event more a step further along its curve.
+    fn has_event_beyond(&self, orbit: &CurvePoint, event: Guard) -> bool {
+        let count = |shots: &OrbitShots| count_events(shots, event);
+        STEPS_TO_TOUCH.iter().any(|step| {
+            let further = self.shifted(orbit, &orbit.tangent, *step);
+            further.is_some_and(|it| count(&it) > count(&orbit.shots))
+        })
+    }
+}
+
+fn count_events(shots: &OrbitShots, event: Guard) -> usize {
+    shots.images.iter().flat_map(|it| &it.way.events).filter(|it| **it == event).count()
+}
