@@ -72,7 +72,7 @@ impl Curve<'_> {
         let mut others = pairs().enumerate().filter(|(_, (a, b))| a.way.events != b.way.events);
         let (number, (with, without)) = others.next().filter(|_| others.next().is_none())?;
         let value = touching.value + step * along.rate;
-        let images = self.family.carry(touching.value, &[without.point.clone()])?;
+        let images = self.family.carry(touching.value, std::slice::from_ref(&without.point))?;
         let (change, crossings) = self.family.at(value, |map| {
             let change = map.change_between(&map.take_up(&images[0]), &with.point);
             Some((change, map.crossings(&probe.points[number]).ok()?))
