@@ -32,7 +32,7 @@ const MAX_IMPACTS: usize = 1_000_000;
 
 /// A guard of a mode whose impacts follow one another.
 #[derive(Clone, Copy)]
-pub(super) struct Impacts {
+struct Impacts {
     mode: usize,
     until: usize,
 }
@@ -40,7 +40,7 @@ pub(super) struct Impacts {
 impl Impacts {
     /// Those of which an event is one, if they go on in its mode, may accumulate and leave their
     /// guard at zero.
-    pub(super) fn of<T: Number>(solver: &Solver<T>, event: &Event<T>) -> Option<Self> {
+    fn of<T: Number>(solver: &Solver<T>, event: &Event<T>) -> Option<Self> {
         match event.what {
             What::Until(mode, until) if mode == event.mode => {
                 solver.modes[mode].stays_zero[until].then_some(Self { mode, until })
@@ -50,7 +50,7 @@ impl Impacts {
     }
 
     /// Whether an event is the next one of these.
-    pub(super) fn goes_on<T: Number>(self, to: &Event<T>) -> bool {
+    fn goes_on<T: Number>(self, to: &Event<T>) -> bool {
         to.what == What::Until(self.mode, self.until)
     }
 }
@@ -86,13 +86,7 @@ impl<T: Number> Variation<T> {
 
     /// Carries changes that are at an impact to the next one, and across it, where that is near.
     /// Says whether it is.
-    pub(super) fn hop(
-        &mut self,
-        solver: &Solver<T>,
-        impacts: Impacts,
-        state: &Vector<T>,
-        elapsed: T,
-    ) -> bool {
+    fn hop(&mut self, solver: &Solver<T>, impacts: Impacts, state: &Vector<T>, elapsed: T) -> bool {
         let speed = solver.modes[impacts.mode].flow.speed;
         let is_near = self.delays.is_some() && speed * elapsed.to_f64() <= MAX_SERIES_ARGUMENT;
         if is_near {
@@ -101,6 +95,7 @@ impl<T: Number> Variation<T> {
         is_near
     }
 
+    /// Carries changes to the next impact by series, and across it.
     fn hop_near(
         &mut self,
         solver: &Solver<T>,
@@ -128,7 +123,7 @@ impl<T: Number> Variation<T> {
 
     /// Carries changes from the last impact of a run before a limit to that, and across it. Where
     /// they cannot be they are NaN.
-    pub(super) fn pass_limit(&mut self, solver: &Solver<T>, from: &Event<T>, to: &Event<T>) {
+    fn pass_limit(&mut self, solver: &Solver<T>, from: &Event<T>, to: &Event<T>) {
         let What::Limit(mode, until) = to.what else { return };
         let exit = solver.system.modes[mode].until.len() + until;
         let is_at_once = to.time.since(&from.time).value() == T::zero();
@@ -140,6 +135,7 @@ impl<T: Number> Variation<T> {
         if !is_carried {
             let none = T::zero() / T::zero();
             self.columns.iter_mut().for_each(|it| *it = [none; LARGEST_DIMENSION]);
+            self.delays = Some(vec![none; self.columns.len()]);
         }
         self.reset_by(solver, mode, exit);
     }
