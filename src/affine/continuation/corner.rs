@@ -30,10 +30,9 @@ const SIDE_STEPS: [f64; 2] = [8.0, -8.0];
 /// Times that a direction beyond a corner is taken again from a place nearer to it.
 const REFINEMENTS: usize = 4;
 
-/// What rounding leaves uncertain of an orbit is comparable to the distance to where a multiplier
-/// would be 1 within this factor: then it decides on which side of a corner an orbit is found, or
-/// whether it is.
-const MAX_BLURS: f64 = 10.0;
+/// As many times what rounding leaves uncertain of an orbit may the distance be to where a
+/// multiplier is 1 that it decides on which side of a corner an orbit is found, or whether it is.
+const MAX_BLURS: f64 = 100.0;
 
 /// A piece of a curve followed as far as it goes.
 struct Approach {

@@ -369,8 +369,7 @@ impl<'a> Curve<'a> {
     ///
     /// A corner is where the orbit touches another piece of the map, so that the corner is found
     /// where an uncertain orbit touches it. The orbit is uncertain where a multiplier is near 1,
-    /// and so is the curve's direction there: it is taken from where it is known better. An orbit
-    /// counts as closed with any residual that rounding may leave.
+    /// and so is the curve's direction there: it is taken from where it is known better.
     pub fn blur(&self, point: &CurvePoint, along: &Direction) -> f64 {
         let Around { matrix, .. } = recurrence(&point.shots, &point.shots.defects);
         let apart = self.less_identity(&matrix);
@@ -382,9 +381,7 @@ impl<'a> Curve<'a> {
         let Direction { points, rate } = along;
         let by_state = points[0].iter().zip(&self.scales).map(|(it, scale)| (it / scale).powi(2));
         let length = (by_state.sum::<f64>() + (rate / self.unit).powi(2)).sqrt();
-        let sizes = point.shots.points.iter().map(|it| 1.0 + self.size(it));
-        let residual = point.shots.rounding() * sizes.fold(1.0, f64::max);
-        by_row.sum::<f64>() * residual * rate.abs() / length
+        by_row.sum::<f64>() * self.rounding(&point.shots) * rate.abs() / length
     }
 
     /// The rounding of the points' images, in units of the states: each segment rounds as many

@@ -125,11 +125,6 @@ impl<P: Clone, W: Clone> Shots<P, W> {
 
     /// Whether the points close to the last digits.
     pub fn is_closed(&self) -> bool {
-        self.is_joined && self.residual <= self.rounding()
-    }
-
-    /// The residual that rounding may leave of an orbit.
-    pub fn rounding(&self) -> f64 {
         let count = self.images.len();
         let carried = self.images.iter().enumerate().map(|(k, it)| {
             // The roundings of a point lie along the changes that the return to it leaves.
@@ -144,7 +139,8 @@ impl<P: Clone, W: Clone> Shots<P, W> {
             });
             it.segments as f64 * grown.fold(1.0, f64::max)
         });
-        ROUNDINGS * f64::EPSILON * carried.fold(1.0, f64::max)
+        let rounding = ROUNDINGS * f64::EPSILON * carried.fold(1.0, f64::max);
+        self.is_joined && self.residual <= rounding
     }
 
     /// The largest entry of the derivatives of the images, in their units.
