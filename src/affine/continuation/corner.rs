@@ -30,8 +30,8 @@ const SIDE_STEPS: [f64; 2] = [8.0, -8.0];
 /// Times that a direction beyond a corner is taken again from a place nearer to it.
 const REFINEMENTS: usize = 4;
 
-/// As many times what rounding leaves uncertain of an orbit may the distance be to where a
-/// multiplier is 1 that it decides on which side of a corner an orbit is found, or whether it is.
+/// The distance to where a multiplier would be 1 is part of a corner's error up to this multiple of
+/// what rounding leaves uncertain of the orbit: rounding then decides where the piece seems to end.
 const MAX_BLURS: f64 = 100.0;
 
 /// A piece of a curve followed as far as it goes.
@@ -56,7 +56,7 @@ impl Curve<'_> {
         if let Some(beyond) = self.past_strobe(&before) {
             return Corner { before, beyond: Some(beyond), error: own.max(least) };
         }
-        // A piece that is left for want of orbits, rather than of steps, ends in roundings.
+        // Where another piece follows, the end is found to roundings; more is left where no orbit is.
         if own > RELATIVE_ERROR_TOLERANCE * before.value.abs()
             && let Some(touch) = self.touch_from_beyond(base, &before)
         {
