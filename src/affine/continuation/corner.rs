@@ -56,7 +56,7 @@ impl Curve<'_> {
         if let Some(beyond) = self.past_strobe(&before) {
             return Corner { before, beyond: Some(beyond), error: own.max(least) };
         }
-        // Where another piece follows, the end is found to roundings; more is left where no orbit is.
+        // Where another piece follows, the end is found to roundings; else more is left.
         if own > RELATIVE_ERROR_TOLERANCE * before.value.abs()
             && let Some(touch) = self.touch_from_beyond(base, &before)
         {

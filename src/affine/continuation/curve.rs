@@ -232,12 +232,19 @@ impl<'a> Curve<'a> {
         let (first, rate) = self.unscaled(&solve(bordered.matrix, right));
         let added: Vec<Change> = slopes.iter().map(|it| it.map(|by| by * rate)).collect();
         let mut tangent = Direction { points: spread_changes(shots, first, &added), rate };
-        let length = self.product(&tangent, &tangent, shots).sqrt();
-        if length > 0.0 && length.is_finite() {
-            tangent.rate /= length;
-            tangent.points.iter_mut().flatten().for_each(|x| *x /= length);
-        }
+        self.normalise(&mut tangent, shots);
         tangent
+    }
+
+    /// Makes a direction one of length 1, and gives the length that it had, if it had one.
+    fn normalise(&self, along: &mut Direction, at: &OrbitShots) -> Option<f64> {
+        let length = self.product(along, along, at).sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return None;
+        }
+        along.rate /= length;
+        along.points.iter_mut().flatten().for_each(|x| *x /= length);
+        Some(length)
     }
 
     /// The direction of the curve on which an event's rate grows from zero, and that growth.
@@ -274,12 +281,7 @@ impl<'a> Curve<'a> {
         let added: Vec<Change> =
             slopes.iter().zip(&jumps).map(|(slope, jump)| sum(jump, slope, rate)).collect();
         let mut along = Direction { points: spread_changes(shots, first, &added), rate };
-        let length = self.product(&along, &along, shots).sqrt();
-        if !(length > 0.0 && length.is_finite()) {
-            return None;
-        }
-        along.rate /= length;
-        along.points.iter_mut().flatten().for_each(|x| *x /= length);
+        let length = self.normalise(&mut along, shots)?;
         Some((along, 1.0 / length))
     }
 

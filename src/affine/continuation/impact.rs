@@ -12,6 +12,7 @@
 //! r^2 itself is of second order: a point beside it is looked for that strikes at the rate of the
 //! first order, and from there Newton's method goes on.
 
+use super::super::returns::map::SectionMap;
 use super::super::returns::section::Guard;
 use super::super::returns::shooting::{Change, MAX_COORDINATES, ReturnMap, Shots};
 use super::super::run::place::Place;
@@ -43,6 +44,15 @@ struct Strike {
     /// The derivatives of the square of the rate by the place and by the parameter.
     by_place: Change,
     by_value: f64,
+}
+
+impl Strike {
+    /// The least rate at which a motion from a place has the event, if it has.
+    fn rate_from(&self, map: &SectionMap<'_, f64>, place: &Place<f64>) -> Option<f64> {
+        let all = map.crossings(place).ok()?;
+        let rates = all.iter().filter(|it| it.guard == self.event).map(|it| it.rate);
+        rates.min_by(f64::total_cmp)
+    }
 }
 
 impl Curve<'_> {
@@ -114,12 +124,7 @@ impl Curve<'_> {
                 map.moved(&place, &change.map(|it| it * length), &place)
             });
             let mut places: Vec<Place<f64>> = moved.collect();
-            let squared = |place: &Place<f64>| -> f64 {
-                let found = map.crossings(place).unwrap_or_default();
-                let rates = found.iter().filter(|it| it.guard == strike.event).map(|it| it.rate);
-                let least = rates.fold(f64::INFINITY, f64::min);
-                if least.is_finite() { least * least } else { 0.0 }
-            };
+            let squared = |place: &Place<f64>| strike.rate_from(map, place).unwrap_or(0.0).powi(2);
             let beside = |from: &Place<f64>, by: f64| {
                 let change = self.change_of_square(strike, by);
                 map.moved(from, &change, from)
@@ -129,11 +134,8 @@ impl Curve<'_> {
             places[strike.number] = beside(&from, by);
             solve(map, Shots::new(map, places)?).ok()
         })?;
-        let found = self.family.at(value, |map| {
-            let all = map.crossings(&shots.points[strike.number]).ok()?;
-            let rates = all.iter().filter(|it| it.guard == strike.event).map(|it| it.rate);
-            Some(rates.fold(f64::INFINITY, f64::min))
-        })?;
+        let found =
+            self.family.at(value, |map| strike.rate_from(map, &shots.points[strike.number]))?;
         let is_there = RATES[0] * rate <= found && found <= RATES[1] * rate;
         if !is_there || !self.is_near(value, &shots, touching, length) {
             return None;
