@@ -42,6 +42,7 @@ mod past_accumulations;
 mod pictures;
 mod power;
 mod project;
+mod proposals;
 mod readme;
 mod records;
 mod replay;

@@ -17,6 +17,7 @@ mod man;
 mod new;
 mod orbits;
 mod poincare;
+mod proposals;
 mod reproduce;
 mod score;
 mod shared;
@@ -113,7 +114,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             terminal::configure(arguments.quiet, arguments.color);
             dispatch(&arguments)
         }
-        Err(error) => usage(&error),
+        Err(error) => usage(&error, &words),
     };
     ExitCode::from(code)
 }
@@ -166,7 +167,7 @@ fn verbs() -> String {
 }
 
 /// What clap objects to, in one line; help and version are no objections.
-fn usage(error: &clap::Error) -> u8 {
+fn usage(error: &clap::Error, words: &[OsString]) -> u8 {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
             let _ = error.print();
@@ -180,6 +181,12 @@ fn usage(error: &clap::Error) -> u8 {
             let verb = error.get(ContextKind::InvalidSubcommand);
             let verb = verb.map_or_else(String::new, |verb| format!("'{verb}' "));
             say(&format!("{verb}is no verb: accepted are {} (see percuss --help)", verbs()));
+            REFUSED
+        }
+        ErrorKind::MissingRequiredArgument => {
+            let tried = proposals::proposal(error, words);
+            let tried = tried.map_or_else(String::new, |words| format!("; try {words}"));
+            say(&format!("{}{tried}", objection(error)));
             REFUSED
         }
         _ => {
