@@ -6,7 +6,7 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from crossing import Undecided
 from modal import identity
-from structural import Space
+from structural import Space, multiplicity
 
 WORTH_PROVING = 4  # times the limit: an estimate above it is not worth a proof
 ENLARGEMENTS = 40
@@ -21,6 +21,28 @@ class Remaining(NamedTuple):
     state: arb_mat  # at that instant, before a reset there
 
 
+class Leg(NamedTuple):
+    """A mode between two impacts, with what is structurally zero at its entry."""
+
+    mode: object
+    matrix: fmpq_mat
+    space: Space
+
+
+class Impact(NamedTuple):
+    """An impact just passed.
+
+    `space` is what was structurally zero before its reset. The motion goes `back` from the gap at
+    zero and then `on` to the next impact: in one mode, or by a `turn` from one to the other.
+    """
+
+    event: object
+    space: Space
+    back: Leg
+    on: Leg
+    turn: object | None = None
+
+
 def proportion(row: fmpq_mat, unit: fmpq_mat, space: Space) -> fmpq | None:
     """The c for which `row` = c `unit` up to the space, if there is one."""
     row, unit = space.rest(row), space.rest(unit)
@@ -31,24 +53,44 @@ def proportion(row: fmpq_mat, unit: fmpq_mat, space: Space) -> fmpq | None:
     return factor if row == unit * factor else None
 
 
-def restitution(event, matrix: fmpq_mat, space: Space) -> fmpq | None:
-    """e, if the event is an impact: its guard stays zero and its rate turns to -e times itself.
-
-    `space` is what is structurally zero at the event, before its reset.
-    """
+def restitution(impact: Impact) -> fmpq | None:
+    """e, if the event is an impact: its guard stays zero and its rate turns to -e times itself."""
+    event, space = impact.event, impact.space
     if not space.holds(event.guard * event.reset):
         return None
-    factor = proportion(event.guard * matrix * event.reset, event.guard * matrix, space)
+    before = event.guard * impact.on.matrix
+    factor = proportion(event.guard * impact.back.matrix * event.reset, before, space)
     return -factor if factor is not None and -1 < factor < 0 else None
+
+
+def turns_back(impact: Impact) -> bool:
+    """Does the turn, if there is one, end the way back, where the gap's rate is zero in both modes?
+
+    A turn has no reset.
+    """
+    event, turn, back, on = impact.event, impact.turn, impact.back, impact.on
+    if turn is None:
+        return True
+    rates = [event.guard * leg.matrix for leg in (back, on)]
+    lasting = back.space.carried(back.matrix)
+    return (
+        turn.reset == identity(turn.reset.nrows())
+        and back.space.holds(rates[0] - rates[1])
+        and on.space.holds(rates[1])
+        and proportion(turn.guard, rates[0], lasting) is not None
+    )
 
 
 class Tube:
     """A box of states about `z` that holds the motion during all impacts still to come."""
 
-    def __init__(self, event, e: fmpq, matrix: fmpq_mat, z: arb_mat, jumps: list):
-        self.e, self.z, self.jumps, self.matrix = arb(e), z, jumps, arb_mat(matrix)
-        self.acceleration = arb_mat(event.guard * matrix * matrix)
-        self.speed = -(arb_mat(event.guard * matrix) * z)[0, 0]
+    def __init__(self, impact: Impact, e: fmpq, z: arb_mat, jumps: list):
+        guard, self.legs = impact.event.guard, [impact.back, impact.on]
+        self.e, self.z, self.jumps = arb(e), z, jumps
+        self.matrices = [arb_mat(leg.matrix) for leg in self.legs]
+        self.accelerations = [arb_mat(guard * leg.matrix * leg.matrix) for leg in self.legs]
+        self.speed = -(arb_mat(guard * impact.back.matrix) * z)[0, 0]
+        self.turns = impact.turn is not None
         self.box = z
 
     def widened(self, radii: list) -> arb_mat:
@@ -56,25 +98,29 @@ class Tube:
         return arb_mat([[self.z[i, 0] + arb(0, radii[i])] for i in range(size)])
 
     def remaining(self):
-        """(bounds of the time left and of the speeds of arrival), if the box holds the rest."""
-        acceleration = (self.acceleration * self.box)[0, 0]
-        if not acceleration > 0:
+        """(bounds of the time left on the way back and on the way on, of the speeds of arrival).
+
+        None if the box does not hold infinitely many impacts.
+        """
+        back, on = [(row * self.box)[0, 0] for row in self.accelerations]
+        if not (back > 0 and on > 0):
             return None
-        least, most = acceleration.lower(), acceleration.upper()
-        spread = (most / least).sqrt()
-        ratio = self.e * spread
-        if not ratio < 1:
+        (b1, b2), (a1, a2) = [(it.lower(), it.upper()) for it in (back, on)]
+        slowest, fastest = (a1 / b2).sqrt(), (a2 / b1).sqrt()
+        if not self.e * fastest < 1:
             return None
-        shortest = 2 * self.speed / (most * (1 - self.e / spread))
-        longest = 2 * self.speed / (least * (1 - ratio))
-        fewest = self.speed / (spread - self.e)
-        return [shortest, longest], [fewest, self.speed * spread / (1 - ratio)]
+        fewest, most = self.speed / (1 - self.e * slowest), self.speed / (1 - self.e * fastest)
+        ways = [[fewest / b2, most / b1], [fewest / (a2 * b2).sqrt(), most / (a1 * b1).sqrt()]]
+        return ways, [slowest * fewest, fastest * most]
 
     def reach(self, time: arb, speeds: arb) -> list:
         """How far each entry can go in `time`, with jumps of so much speed in all."""
-        rates = self.matrix * self.box
+        rates = [matrix * self.box for matrix in self.matrices]
         return [
-            (abs(rates[i, 0]).upper() * time + abs(arb(self.jumps[i])) * speeds).upper()
+            (
+                max(abs(rate[i, 0]).upper() for rate in rates) * time
+                + abs(arb(self.jumps[i])) * speeds
+            ).upper()
             for i in range(self.z.nrows())
         ]
 
@@ -86,39 +132,42 @@ class Tube:
             found = self.remaining()
             if found is None:
                 return None
-            times, speeds = found
-            reach = self.reach(times[1], speeds[1])
+            ways, speeds = found
+            least, most = [ways[0][n] + ways[1][n] for n in (0, 1)]
+            reach = self.reach(most, speeds[1])
             if all(r <= allowed for r, allowed in zip(reach, radii, strict=True)):
-                return Remaining(*times, self.limit(times, speeds))
+                return Remaining(least, most, self.limit(ways, least.union(most), speeds))
             radii = [2 * r for r in reach]
         return None
 
-    def limit(self, times: list, speeds: list) -> arb_mat:
+    def limit(self, ways: list, time: arb, speeds: list) -> arb_mat:
         """The state where the impacts end: by rates in the box, and jumps of all speeds left."""
-        time, speed = times[0].union(times[1]), speeds[0].union(speeds[1])
-        rates = self.matrix * self.box
-        moved = [rates[i, 0] * time + arb(jump) * speed for i, jump in enumerate(self.jumps)]
+        speed, rates = speeds[0].union(speeds[1]), [matrix * self.box for matrix in self.matrices]
+        back, on = [way[0].union(way[1]) for way in ways]
+        moved = []
+        for i, jump in enumerate(self.jumps):
+            along = rates[0][i, 0] * back + rates[1][i, 0] * on if self.turns else rates[0][i, 0] * time
+            moved.append(along + arb(jump) * speed)
         return arb_mat([[self.z[i, 0] + moved[i]] for i in range(self.z.nrows())])
 
 
-def accumulation(event, mode, matrix: fmpq_mat, space: Space, z: arb_mat, unit: arb, stays):
-    """`Remaining` after an impact into state `z`, if it is proved and short enough, else None.
-
-    `space` is what was structurally zero at the impact. `stays(event)` tells whether another
-    guard of the mode stays structurally zero, and so cannot fire.
-    """
-    e = restitution(event, matrix, space)
-    if e is None:
+def accumulation(impact: Impact, z: arb_mat, unit: arb) -> Remaining | None:
+    """`Remaining` after an impact into state `z`, if it is proved and short enough, else None."""
+    e = restitution(impact)
+    if e is None or not turns_back(impact):
         return None
-    size = matrix.nrows()
+    event = impact.event
+    size = impact.on.matrix.nrows()
     change = event.reset - identity(size)
-    rate, rows = event.guard * matrix, [row_of(change, i) for i in range(size)]
-    jumps = [proportion(row, rate, space) for row in rows]
-    tube = Tube(event, e, matrix, z, jumps)
-    if None in jumps or not worth_proving(tube, unit):
+    rate, rows = event.guard * impact.on.matrix, [row_of(change, i) for i in range(size)]
+    jumps = [proportion(row, rate, impact.space) for row in rows]
+    if None in jumps:
+        return None
+    tube = Tube(impact, e, z, jumps)
+    if not worth_proving(tube, unit):
         return None
     remaining = tube.settle()
-    if remaining is None or not nothing_else_fires(event, mode, tube.box, stays):
+    if remaining is None or not nothing_else_happens(impact, tube.box):
         return None
     if remaining.most > LIMIT * unit:
         return None
@@ -129,14 +178,44 @@ def accumulation(event, mode, matrix: fmpq_mat, space: Space, z: arb_mat, unit: 
 
 def worth_proving(tube: Tube, unit: arb) -> bool:
     found = tube.remaining()
-    return found is not None and bool(found[0][1] < WORTH_PROVING * LIMIT * unit)
-
-
-def nothing_else_fires(event, mode, box: arb_mat, stays) -> bool:
-    """Over the box: all other guards of `until` negative, and every successor the same mode."""
-    others = [other for other in mode.until if other is not event and not stays(other)]
-    if not all((arb_mat(other.guard) * box)[0, 0] < 0 for other in others):
+    if found is None:
         return False
+    return bool(found[0][0][1] + found[0][1][1] < WORTH_PROVING * LIMIT * unit)
+
+
+def nothing_else_happens(impact: Impact, box: arb_mat) -> bool:
+    """Over the box: all other guards of `until` negative, and every successor as it was."""
+    event, turn, back, on = impact.event, impact.turn, impact.back, impact.on
+    if turn is None:
+        return stay_inside(event, back, [], box) and leads(event, on.mode, box)
+    rates = [event.guard * leg.matrix for leg in (back, on)]
+    return (
+        stay_inside(event, back, [rates[0], event.guard], box)
+        and stay_inside(event, on, [rates[1]], box)
+        and leads(event, back.mode, box)
+        and leads(turn, on.mode, box)
+    )
+
+
+def stay_inside(event, leg: Leg, kept: list, box: arb_mat) -> bool:
+    """Are the guards of a mode's `until` negative, but for those that cannot fire?
+
+    Those are the impact's own, those that stay zero, and multiples of `kept` rows: the impact and
+    the turn give these a sign that they keep.
+    """
+    lasting = leg.space.carried(leg.matrix)
+    for other in leg.mode.until:
+        if other is event or multiplicity(other.guard, leg.matrix, leg.space) is None:
+            continue
+        if any(proportion(other.guard, row, lasting) is not None for row in kept):
+            continue
+        if not (arb_mat(other.guard) * box)[0, 0] < 0:
+            return False
+    return True
+
+
+def leads(event, mode, box: arb_mat) -> bool:
+    """Does an event lead into the mode from all states of the box?"""
     for row, name in event.successors:
         holds = None if row is None else (arb_mat(row) * box)[0, 0]
         if row is None or holds > 0:

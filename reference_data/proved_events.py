@@ -13,8 +13,10 @@ from types import SimpleNamespace
 
 from flint import arb, arb_mat, ctx, fmpq_mat
 
+from accumulation import Impact
 from affine_expression import number
 from crossing import Undecided, refine
+from modal import identity
 from spread import Spread
 from system_case import SystemCase
 from system_crossing import Crossing, Time, crossings
@@ -126,23 +128,24 @@ class EventRun(Run):
     def leave_by(self, events: list) -> None:
         """Ends a segment by the first of `events`; what else fires in the same instant follows."""
         before = self.state
-        if self.fire(events) != 1 or self.state.mode != before.mode:
+        impact = self.possible_impact(events[0], before, self.fire(events))
+        if impact is None:
             return
-        if events[0].limit is None:
-            self.end_if_accumulating(events[0], before)
+        if impact.event.limit is None:
+            self.end_if_accumulating(impact)
         else:
-            self.approach(events[0], before)
+            self.approach(impact)
 
-    def approach(self, event: Event, before: HybridState) -> None:
+    def approach(self, impact: Impact) -> None:
         """Goes on without rows from an impact next to the limit, or to the limit."""
-        remaining = self.accumulating(event, before)
+        event, remaining = impact.event, self.accumulating(impact)
         if remaining is None:
             if self.silent:
                 raise Undecided("an accumulation")
             return
         self.silent = True
         near = arb(2) ** -(ctx.prec // LIMIT_SHARE) * arb(self.system.time_scale)
-        speed = (arb_mat(event.guard * self.matrices[before.mode]) * self.state.z)[0, 0]
+        speed = (arb_mat(event.guard * impact.back.matrix) * self.state.z)[0, 0]
         vaguest = max(entry.rad() for entry in self.state.z.entries())
         is_vague = not vaguest < abs(speed) * remaining.most * VAGUE
         left = self.left().ball
@@ -151,7 +154,8 @@ class EventRun(Run):
         if not left > remaining.most:
             raise Undecided("a horizon at an accumulation")
         self.elapsed = Time(self.elapsed.ball + remaining.least.union(remaining.most), None)
-        self.state.z, self.state.exact = remaining.state, None
+        # The limit is in the mode of the impact, with what is zero where that is entered.
+        self.state = HybridState(impact.on.mode.name, remaining.state, None, impact.on.space)
         self.pass_limit(event)
 
     def pass_limit(self, event: Event, count: int = 0) -> None:
@@ -174,6 +178,7 @@ class EventRun(Run):
 
         The result is the number of events in the instant, of which `count` came before.
         """
+        rested = None
         while events:
             if count == MOST_IN_AN_INSTANT:
                 raise Ended("no-progress")
@@ -181,14 +186,18 @@ class EventRun(Run):
             self.reset(event)
             self.add(event.name, self.state)
             count, events = count + 1, self.entering(self.state)
-            if events and event is events[0] and self.state.mode == mode and self.rests(event):
-                self.pass_limit(event, count)
-                return count + 1
+            turns = event.reset == identity(self.system.size)
+            if rested is None or not (turns and self.state.mode == rested[1]):
+                rested = (event, mode) if self.rests(event, mode) else None
+            if events and rested is not None:
+                if events[0] is rested[0] and self.state.mode == rested[1]:
+                    self.pass_limit(events[0], count)
+                    return count + 1
         return count
 
-    def rests(self, event: Event) -> bool:
-        """Is the limit at this instant: are the guard and its rate zero after an impact?"""
-        rows = [event.guard, event.guard * self.matrices[self.state.mode]]
+    def rests(self, event: Event, mode: str) -> bool:
+        """May the limit be at this instant: are the guard and its rate in a mode zero after it?"""
+        rows = [event.guard, event.guard * self.matrices[mode]]
         return event.limit is not None and all(self.state.space.holds(row) for row in rows)
 
     def reset(self, event: Event) -> None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from flint import arb, arb_mat, fmpq, fmpq_mat
 
 import modal
-from accumulation import Remaining, accumulation
+from accumulation import Impact, Leg, Remaining, accumulation
 from affine_expression import Refused
 from crossing import Undecided
 from harmonic import Harmonic, of_forcing, since_entry, structural_value
@@ -51,6 +51,40 @@ class Segment(NamedTuple):
     sensitivities: list
 
 
+class Turn(NamedTuple):
+    """An event that has led from the mode after an impact back to that before it."""
+
+    event: Event
+    impact: Event
+    back: Leg
+    on: Leg
+
+
+class Cycle:
+    """The last two events of a run, where an impact leads into another mode, and a turn back."""
+
+    def __init__(self):
+        self.impact, self.turn = None, None
+
+    def passed(self, event: Event, before: HybridState, after: HybridState, legs) -> Turn | None:
+        """Remembers an event that was alone in its instant: the turn before it, if it closes a cycle.
+
+        `legs` makes the leg of a mode from its space at entry.
+        """
+        impact, turn = self.impact, self.turn
+        self.impact, self.turn = None, None
+        if impact is not None and (impact[1], impact[2].mode) == (after.mode, before.mode):
+            if event.reset == modal.identity(event.reset.nrows()):
+                self.turn = Turn(event, impact[0], legs(impact[2]), legs(after))
+                return None
+        if after.mode == before.mode:
+            return None
+        self.impact = (event, before.mode, after)
+        if turn is None or turn.impact is not event or turn.back.mode.name != after.mode:
+            return None
+        return turn
+
+
 class BeyondGuard(Exception):
     """A mode is entered where one of its guards is positive already."""
 
@@ -74,6 +108,7 @@ class Run:
         self.sensitivities = [self.growth.identity]
         self.elapsed, self.span = Time.of(fmpq(0)), Time.of(case.span())
         self.remaining: Remaining | None = None
+        self.cycle = Cycle()
         self.state = self.start()
 
     def start(self) -> HybridState:
@@ -294,23 +329,35 @@ class Run:
         self.state, self.sensitivities = simultaneous.fired[-1][1], simultaneous.sensitivities
         if simultaneous.ending:
             raise Ended(simultaneous.ending)
-        if len(simultaneous.fired) == 1 and self.state.mode == state.mode:
-            self.end_if_accumulating(events[0], state)
+        impact = self.possible_impact(events[0], state, len(simultaneous.fired))
+        if impact is not None:
+            self.end_if_accumulating(impact)
 
-    def end_if_accumulating(self, event: Event, before: HybridState) -> None:
-        if event.limit is not None:
+    def possible_impact(self, event: Event, before: HybridState, count: int) -> Impact | None:
+        """The impact that an event, just passed with so many in its instant, may be."""
+        if count != 1:
+            self.cycle = Cycle()
+            return None
+        turn = self.cycle.passed(event, before, self.state, self.leg)
+        back, on = self.leg(self.state), self.leg(self.state)
+        if turn is not None:
+            return Impact(event, before.space, back, turn.on, turn.event)
+        return Impact(event, before.space, back, on) if before.mode == self.state.mode else None
+
+    def leg(self, entry: HybridState) -> Leg:
+        mode = self.system.modes[entry.mode]
+        return Leg(mode, self.matrices[entry.mode], entry.space)
+
+    def end_if_accumulating(self, impact: Impact) -> None:
+        if impact.event.limit is not None:
             raise Refused("tables do not go on after an accumulation")
-        self.remaining = self.accumulating(event, before)
+        self.remaining = self.accumulating(impact)
         if self.remaining is not None:
             raise Ended("accumulation")
 
-    def accumulating(self, event: Event, before: HybridState) -> Remaining | None:
+    def accumulating(self, impact: Impact) -> Remaining | None:
         """What remains up to the limit of impacts, after one of them, if that is near."""
-        matrix, mode = self.matrices[before.mode], self.system.modes[before.mode]
-        return accumulation(
-            event, mode, matrix, before.space, self.state.z, arb(self.system.time_scale),
-            lambda other: multiplicity(other.guard, matrix, self.state.space) is None,
-        )  # fmt: skip
+        return accumulation(impact, self.state.z, arb(self.system.time_scale))
 
     def fired(self, event: Event, state: HybridState) -> HybridState:
         """The state after the reset of an event, in the mode that follows."""

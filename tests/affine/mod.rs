@@ -39,6 +39,7 @@ mod still;
 mod tables;
 mod together;
 mod touches;
+mod turns;
 mod wide;
 
 use percuss::affine::DoubleDouble;

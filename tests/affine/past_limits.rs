@@ -63,13 +63,14 @@ fn closed_form<T: Number>([u, g, e, tau]: [f64; 4], n: f64) -> [T; 3] {
     [n * bounces + (n - one) * tau, n * area, n * kicks]
 }
 
-/// Compares all limits with the closed form, within the errors that the run has or these shares.
-fn judge<T: Number>(events: &[Event<T>], numbers: [f64; 4], shares: [f64; 2]) {
+/// Compares the time, s and m at all limits with known ones, within the errors that the run has or
+/// these shares.
+pub fn judge<T: Number>(events: &[Event<T>], known: impl Fn(f64) -> [T; 3], shares: [f64; 2]) {
     let [share, most] = shares;
     let all = limits(events);
     assert_eq!(all.len(), 3);
     for (n, it) in (1..).zip(all) {
-        let known: [T; 3] = closed_form(numbers, f64::from(n));
+        let known = known(f64::from(n));
         let found = [it.time.value(), it.state[2], it.state[3]];
         let errors = it.errors.as_ref().map(|it| [it.time, it.state[2], it.state[3]]);
         for (k, (known, found)) in known.into_iter().zip(found).enumerate() {
@@ -97,12 +98,13 @@ proptest! {
         let ball = ball(&format!("u = {u:?}, g = {g:?}, e = {e:?}, tau = {tau:?}"));
         let numbers = [u, g, e, tau];
         let end = closed_form::<f64>(numbers, 3.0)[0] + 1.0;
-        judge(&events::<f64>(&ball, end), numbers, [1e-12, 1e-12]);
+        judge(&events::<f64>(&ball, end), |n| closed_form(numbers, n), [1e-12, 1e-12]);
         let most = |bits: f64| 39_f64.powi(2) * (-2.0 * bits / 3.0).exp2();
-        judge(&enclosed_events::<DoubleDouble>(&ball, end), numbers, [1e-29, most(106.0)]);
-        judge(&enclosed_events::<Bits212>(&ball, end), numbers, [1e-60, most(212.0)]);
-        let [f64s, wide] = [names(&ball, &events::<f64>(&ball, end)),
-            names(&ball, &enclosed_events::<Bits212>(&ball, end))];
+        let narrow = enclosed_events::<DoubleDouble>(&ball, end);
+        judge(&narrow, |n| closed_form(numbers, n), [1e-29, most(106.0)]);
+        let wide = enclosed_events::<Bits212>(&ball, end);
+        judge(&wide, |n| closed_form(numbers, n), [1e-60, most(212.0)]);
+        let [f64s, wide] = [names(&ball, &events::<f64>(&ball, end)), names(&ball, &wide)];
         prop_assert_eq!(&f64s, &wide);
         prop_assert_eq!(f64s.last().map(String::as_str), Some("end"));
     }
@@ -371,21 +373,26 @@ proptest! {
         kick in 0.0_f64..0.5,
     ) {
         let masses = System::from_toml(&two_masses([k, c, load, r, kick])).unwrap();
-        let [narrow, wide] = [
-            enclosed_events::<DoubleDouble>(&masses, 25.0).iter().map(row).collect::<Vec<_>>(),
-            enclosed_events::<Bits212>(&masses, 25.0).iter().map(row).collect::<Vec<_>>(),
-        ];
-        for (narrow, wide) in narrow.iter().zip(&wide) {
-            if narrow.0 == "undecided" || wide.0 == "undecided" {
-                break;
-            }
-            prop_assert_eq!(&narrow.0, &wide.0);
-            for (a, b) in narrow.1.iter().zip(&wide.1) {
-                let apart = (a.0 - b.0).to_f64().abs();
-                // The comparison itself is made in 106 bits.
-                let rounding = 1e-31 * a.0.to_f64().abs();
-                prop_assert!(apart <= a.1 + b.1 + rounding, "{} {apart:e} {:e}", narrow.0, a.1);
-            }
+        overlap(&masses, 25.0);
+    }
+}
+
+/// Compares the events of a system in 106 and in 212 bits, up to the first that is not decided.
+pub fn overlap(system: &System, until: f64) {
+    let [narrow, wide] = [
+        enclosed_events::<DoubleDouble>(system, until).iter().map(row).collect::<Vec<_>>(),
+        enclosed_events::<Bits212>(system, until).iter().map(row).collect::<Vec<_>>(),
+    ];
+    for (narrow, wide) in narrow.iter().zip(&wide) {
+        if narrow.0 == "undecided" || wide.0 == "undecided" {
+            break;
+        }
+        assert_eq!(narrow.0, wide.0);
+        for (a, b) in narrow.1.iter().zip(&wide.1) {
+            let apart = (a.0 - b.0).to_f64().abs();
+            // The comparison itself is made in 106 bits.
+            let rounding = 1e-31 * a.0.to_f64().abs();
+            assert!(apart <= a.1 + b.1 + rounding, "{} {apart:e} {:e}", narrow.0, a.1);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Return maps: their derivatives beside differences in 212 bits, and returns that are known.
 
 use super::past_limits::two_masses;
+use super::turns::friction;
 use percuss::affine::{Bits212, Passage, Place, SectionMap, Solver, System, Time};
 use percuss::gallery;
 use percuss::number::Number;
@@ -148,6 +149,18 @@ fn derivatives_past_accumulations_are_those_of_differences() {
         let masses = two_masses([0.7, 0.1, load, r, kick]);
         check(&masses, &Section::strobe(0.0), &[1, 4]);
         check(&masses, &Section::event("detach"), &[0, 2]);
+    }
+}
+
+#[test]
+fn derivatives_past_turns_that_accumulate_are_those_of_differences() {
+    for [omega, r] in [[0.15, 0.6], [0.2, 0.3], [0.1, 0.9], [0.15, 0.0]] {
+        let rig = friction([omega, 2.0, 0.3, 0.1, r]);
+        check(&rig, &Section::strobe(0.0), &[1, 3]);
+        check(&rig, &Section::event("leave"), &[0, 2]);
+        if r > 0.0 {
+            check(&rig, &Section::event("impact"), &[3, 8]);
+        }
     }
 }
 

@@ -146,8 +146,9 @@ impl Guard {
         }
     }
 
-    /// Takes away the impacts that have accumulated but for the first of them, where an event of a
-    /// run is their limit, from the events before it: their number changes with every digit.
+    /// Takes away the impacts that have accumulated but for the first of them, with the turns after
+    /// it, where an event of a run is their limit, from the events before it: their number changes
+    /// with every digit.
     pub(super) fn join_accumulated<T, E>(
         what: &What<T>,
         events: &mut Vec<E>,
@@ -155,8 +156,15 @@ impl Guard {
     ) {
         let What::Limit(mode, index) = *what else { return };
         let own = Self { mode, index, is_watched: false };
-        let before = events.iter().rposition(|it| guard(it) != own).map_or(0, |n| n + 1);
-        events.truncate(before + 1);
+        let other = events.iter().rev().map(&guard).nth(1).filter(|it| *it != own);
+        let is_of_cycle = |(n, it): (usize, &E)| match other {
+            Some(turn) if n % 2 == 1 => guard(it) == turn,
+            _ => guard(it) == own,
+        };
+        let count = events.iter().rev().enumerate().take_while(|it| is_of_cycle(*it)).count();
+        let begin = events.len() - count;
+        let first = events[begin..].iter().position(|it| guard(it) == own).unwrap_or(0);
+        events.truncate(begin + first + 1);
     }
 
     /// The index among all guards of its mode: those of `until`, then those of `watch`.

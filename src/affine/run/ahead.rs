@@ -47,7 +47,7 @@ impl<T: Number> Run<'_, T> {
     /// Searches up to a time after the entry, at which the left end is then where no guard crosses
     /// before.
     #[inline]
-    fn search_to(&mut self, mode: usize, limit: T) -> SearchOutcome {
+    pub(super) fn search_to(&mut self, mode: usize, limit: T) -> SearchOutcome {
         let (segment, ends, work) = (&self.segment, &mut self.ends, &mut self.work);
         let failed_attempts = &mut self.failed_attempts[mode];
         let from = ends.left.time;

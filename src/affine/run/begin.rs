@@ -3,6 +3,7 @@
 use super::Run;
 use super::enclosure::Enclosure;
 use super::origins::ExactRun;
+use super::turn::LastOfCycle;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::real::{BigReal, bits_for};
 use crate::affine::arithmetic::vector::{Vector, rounded};
@@ -93,6 +94,8 @@ impl<T: Number> Solver<T> {
             failed_attempts: vec![FailedAttempts::default(); self.modes.len()],
             restitution: None,
             limit_ahead: None,
+            last_of_cycle: LastOfCycle::default(),
+            flight: None,
             is_silent: false,
             at_entry: 0,
             returning: 0,

@@ -126,6 +126,13 @@ impl<B: Bound> Enclosure<B> {
         self.sum(|column| dot(&row, &flow.modal_rounded(&column.state), flow.dimension)) + lost
     }
 
+    /// A bound of the error of a row in the entries of z.
+    pub fn of_plain_row<T: Number<Bound = B>>(&self, row: &Vector<T>) -> B {
+        let lost = row_size(row, &self.state()) * COLUMN_ROUNDING;
+        let row = row.map(Number::bound);
+        self.sum(|column| dot(&row, &column.state, LARGEST_DIMENSION)) + lost
+    }
+
     /// Bounds of the error of a row at any time after the entry.
     pub fn error_along<T: Number<Bound = B>>(
         &self,

@@ -6,6 +6,7 @@
 
 use super::Run;
 use super::crossed::low_bits;
+use super::turn::LastOfCycle;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::error::SystemError;
@@ -152,6 +153,7 @@ impl<T: Number> Follower<'_, T> {
         let until_guards = low_bits(solver.system.modes[self.mode].until.len());
         (run.is_lenient, run.returning) = (true, late & until_guards);
         (run.limit_ahead, run.is_silent) = (None, false);
+        (run.last_of_cycle, run.flight) = (LastOfCycle::default(), None);
         run.last = run.event(What::Start, run.entered, &run.state);
         self.record.clone_from(&run.last);
         run.enter();

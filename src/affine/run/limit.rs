@@ -8,10 +8,10 @@
 //! unit; the depth of a flight, of the order of T^2, is then still told from rounding.
 
 use super::Run;
-use super::accumulation::Remaining;
+use super::accumulation::{Impact, Remaining};
 use super::enclosure::{Enclosure, ErrorColumn, rates};
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::arithmetic::vector::Vector;
+use crate::affine::arithmetic::vector::{Vector, add_product};
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::graph::{Firing, ZeroGuards};
@@ -31,21 +31,26 @@ const MAX_BITS: u32 = 848;
 /// limit is told no more from one behind it.
 const UNDECIDED_F64_BITS: u32 = 44;
 
-/// The largest number of times that a tube is widened until it holds the motion.
-const MAX_WIDENINGS: u32 = 8;
+/// Errors that may come within this factor of what the first order leaves out are vague.
+const VAGUE: f64 = 256.0;
+/// The factor by which the error of the time grows from turn to turn where the time left halves.
+const LEAST_GROWTH: f64 = 4.0;
+/// The roundings of bounds, for their sums of products at a crossing.
+const ROUNDING_OF_BOUNDS: f64 = 1e-12;
 
 /// The event just passed: an `until`, the state before its reset, and bounds of the errors of that.
 pub(super) struct Jump<'a, T: Number> {
     pub until: usize,
     pub before: &'a Vector<T>,
-    pub errors: Option<Vector<T::Bound>>,
+    pub errors: Vector<T::Bound>,
 }
 
 /// A limit that lies ahead of the impact just passed.
 #[derive(Clone, Debug)]
 pub(super) struct LimitAhead<T: Number> {
-    /// The `until` that accumulates.
+    /// The `until` that accumulates, and the node from which the run passes its limit.
     pub until: usize,
+    pub node: usize,
     /// The change of the state by the impact just passed, and bounds of its errors.
     pub jump: Vector<T>,
     pub jump_errors: Vector<T::Bound>,
@@ -73,13 +78,13 @@ impl<T: Number> Run<'_, T> {
     /// Ends the run where impacts accumulate, or remembers that it passes their limit next.
     pub(super) fn accumulate(
         &mut self,
-        mode: usize,
+        impact: &Impact<'_, T>,
         jump: &Jump<'_, T>,
         remaining: Option<Remaining<T>>,
     ) {
         match remaining {
-            Some(remaining) if self.goes_on_after(mode, jump.until) => {
-                self.approach(jump, Some(remaining));
+            Some(remaining) if self.goes_on_after(impact.mode, jump.until) => {
+                self.approach(impact.from, jump, Some(remaining));
             }
             Some(Remaining { earliest, latest, .. }) => {
                 self.end(Ending::Accumulation(earliest, latest));
@@ -94,7 +99,7 @@ impl<T: Number> Run<'_, T> {
     pub(super) fn remember_rest(&mut self, mode: usize, jump: &Jump<'_, T>) {
         let is_next = self.at_entry != 0 && self.at_entry.trailing_zeros() as usize == jump.until;
         if is_next && self.goes_on_after(mode, jump.until) {
-            self.approach(jump, None);
+            self.approach(self.node, jump, None);
         }
     }
 
@@ -103,13 +108,13 @@ impl<T: Number> Run<'_, T> {
         self.solver.system.modes[mode].until[until].accumulates_to.is_some()
     }
 
-    fn approach(&mut self, jump: &Jump<'_, T>, remaining: Option<Remaining<T>>) {
+    fn approach(&mut self, node: usize, jump: &Jump<'_, T>, remaining: Option<Remaining<T>>) {
         let Jump { until, before, errors } = jump;
         let none = [T::Bound::ZERO; LARGEST_DIMENSION];
         let after = self.enclosure.as_ref().map_or(none, Enclosure::state);
-        let errors = errors.unwrap_or(none);
         let limit = LimitAhead {
             until: *until,
+            node,
             jump: std::array::from_fn(|n| self.state[n] - before[n]),
             jump_errors: std::array::from_fn(|n| errors[n] + after[n]),
             remaining,
@@ -126,7 +131,7 @@ impl<T: Number> Run<'_, T> {
             return true;
         };
         let last = if T::WORDS == 1 { UNDECIDED_F64_BITS } else { share::<T>(UNDECIDED_SHARE) };
-        let is_last = self.is_within(remaining, last);
+        let is_last = self.is_within(remaining, last) || self.is_vague(remaining);
         let there = self.limit_state(&limit, remaining);
         let left = self.time_left().value();
         let doubt = T::of_bound(self.enclosure.as_ref().map_or(T::Bound::ZERO, Enclosure::time));
@@ -156,8 +161,24 @@ impl<T: Number> Run<'_, T> {
         remaining.latest.bound() <= scale.scaled(-i64::from(bits))
     }
 
+    /// Whether the error of the time, which is followed, may by the next turn come near the square
+    /// of the time left, in units of time: the first order of the limit leaves out as much.
+    ///
+    /// After a turn the gap is not zero by the model, and its error moves an impact of the speed u
+    /// by as much over u. That error has at least the roundings of bounds beside the error of u.
+    fn is_vague(&self, remaining: &Remaining<T>) -> bool {
+        let Some(enclosure) = self.enclosure.as_ref().filter(|_| remaining.has_turns()) else {
+            return false;
+        };
+        let scale = self.solver.system.time_scale;
+        let left = remaining.latest.bound() / scale;
+        let growth =
+            T::Bound::from_f64(LEAST_GROWTH) + T::Bound::from_f64(ROUNDING_OF_BOUNDS) / left;
+        enclosure.time() / scale * growth * VAGUE >= left * left
+    }
+
     fn pass_near_limit(&mut self, limit: &LimitAhead<T>, there: &LimitState<T>) {
-        let mode = self.graph.node(self.node).mode;
+        let mode = self.graph.node(limit.node).mode;
         let solver = self.solver;
         if let Some(errors) = &mut self.enclosure {
             let own = &solver.modes[mode];
@@ -175,6 +196,7 @@ impl<T: Number> Run<'_, T> {
 
     /// Resets the limit of the state and enters the mode that follows.
     fn fire_limit(&mut self, limit: &LimitAhead<T>, time: Time<T>, mut state: Vector<T>) {
+        self.node = limit.node;
         let mode = self.graph.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len() + limit.until;
         let zero = ZeroGuards { guards: 1 << limit.until, point: None };
@@ -192,32 +214,35 @@ impl<T: Number> Run<'_, T> {
 
     /// The state at a limit; none where that is too far for the first order.
     fn limit_state(&self, limit: &LimitAhead<T>, left: &Remaining<T>) -> Option<LimitState<T>> {
-        if T::WORDS > 1 && !self.is_within(left, share::<T>(FIRST_ORDER_SHARE)) {
+        let is_near = self.is_within(left, share::<T>(FIRST_ORDER_SHARE)) || self.is_vague(left);
+        if T::WORDS > 1 && !is_near {
             return None;
         }
-        let mode = self.graph.node(self.node).mode;
-        let own = &self.solver.modes[mode];
+        let solver = self.solver;
         let (half, one) = (T::exact(0.5), T::one());
         let elapsed = (left.earliest + left.latest) * half;
-        let jumps = left.restitution / (one - left.restitution);
+        let parts = left.parts(elapsed);
+        let jumps = left.quotient / (one - left.quotient);
         let time = self.entered.after(elapsed);
         let mut state = self.state;
         if self.enclosure.is_none() {
             // Without bounds the flow itself serves fast motion of other states.
-            state = own.flow.state(&own.flow.at(&self.segment.entry, elapsed).y);
-        }
-        for (n, row) in own.matrix.iter().enumerate() {
-            if self.enclosure.is_some() {
-                let rate = row.iter().zip(&self.state).fold(T::zero(), |sum, (a, b)| sum + *a * *b);
-                state[n] = self.state[n] + rate * elapsed;
+            for (mode, part) in &parts {
+                let flow = &solver.modes[*mode].flow;
+                state = flow.state(&flow.at(&flow.modal(&state), *part).y);
             }
-            state[n] = state[n] + limit.jump[n] * jumps;
+        } else {
+            for (mode, part) in &parts {
+                let rates = solver.rates_of(*mode, &self.state);
+                add_product(&mut state, &rates, *part);
+            }
         }
-        let (sin, cos) = self.solver.sin_cos(&time);
-        self.solver.append(&mut state, sin, cos);
+        add_product(&mut state, &limit.jump, jumps);
+        let (sin, cos) = solver.sin_cos(&time);
+        solver.append(&mut state, sin, cos);
         let late = ((left.latest - left.earliest) * half).bound() + left.unknown;
         let errors = match &self.enclosure {
-            Some(enclosure) => self.limit_errors(limit, left, &enclosure.state())?,
+            Some(enclosure) => self.limit_errors(limit, left, &enclosure.state()),
             None => [T::Bound::ZERO; LARGEST_DIMENSION],
         };
         Some(LimitState { time, state, late, errors })
@@ -229,57 +254,75 @@ impl<T: Number> Run<'_, T> {
         limit: &LimitAhead<T>,
         left: &Remaining<T>,
         off: &Vector<T::Bound>,
-    ) -> Option<Vector<T::Bound>> {
-        let mode = self.graph.node(self.node).mode;
-        let dimension = self.solver.system.dimension();
-        let matrix = &self.solver.modes[mode].matrix;
+    ) -> Vector<T::Bound> {
+        let solver = self.solver;
+        let dimension = solver.system.dimension();
         let mut all = [T::Bound::ZERO; LARGEST_DIMENSION];
         let time = left.latest.bound() + left.unknown;
         // The sum of the jumps that follow, in jumps of the impact just passed.
-        let sum = |e: T| e / (T::one() - e);
-        let (e, s) = (left.restitution, left.spread);
-        let (jumps, most_jumps) = (sum(e).bound(), sum(e * s).bound());
-        let unknown = most_jumps * left.restitution_error / (T::one() - e * s).bound();
-        let apart = (sum(e * s) - sum(e / s)).bound() + unknown;
+        let sum = |q: T| q / (T::one() - q);
+        let (q, s) = (left.quotient, left.spread);
+        let (jumps, most_jumps) = (sum(q).bound(), sum(q * s).bound());
+        let unknown = most_jumps * left.quotient_error / (T::one() - q * s).bound();
+        let apart = (sum(q * s) - sum(q / s)).bound() + unknown;
         let jump = |n: usize| limit.jump[n].bound().abs() + limit.jump_errors[n];
-        let rate = |n: usize, wide: &Vector<T::Bound>| {
-            let terms = matrix[n].iter().zip(self.state.iter().zip(wide));
-            terms.map(|(a, (z, it))| a.bound().abs() * (z.bound().abs() + *it)).sum::<T::Bound>()
+        let matrices = left.modes.map(|mode| &solver.modes[mode].matrix);
+        let size = |row: &Vector<T>, of: &dyn Fn(usize) -> T::Bound| -> T::Bound {
+            row.iter().enumerate().map(|(k, a)| a.bound().abs() * of(k)).sum()
         };
-        let reach = |wide: &Vector<T::Bound>| -> Vector<T::Bound> {
-            std::array::from_fn(|n| {
-                if n >= dimension {
-                    return T::Bound::ZERO;
-                }
-                rate(n, wide) * time + jump(n) * most_jumps + off[n]
-            })
-        };
-        let mut tube = reach(off);
-        let mut is_held = false;
-        for _ in 0..MAX_WIDENINGS {
-            let wider = tube.map(|it| it * 2.0);
-            tube = reach(&wider);
-            is_held = tube.iter().zip(&wider).all(|(it, wider)| *it <= *wider);
-            if is_held {
-                tube = wider;
-                break;
-            }
-        }
+        // Half of what is not known of the part before turns; the rest of the time has its own.
+        let open_part = left.open_part();
         for (n, error) in all.iter_mut().enumerate().take(dimension) {
-            let second: T::Bound =
-                matrix[n].iter().zip(&tube).map(|(a, it)| a.bound().abs() * *it).sum();
-            let size = self.state[n].bound().abs() + rate(n, off) * time + jump(n) * jumps;
-            let rounding = T::unit() * 2.0 * (dimension + 4) as f64 * size;
+            let [before, after] = matrices.map(|matrix| &matrix[n]);
+            let of_both = |of: &dyn Fn(usize) -> T::Bound| size(before, of).max(size(after, of));
+            let rate = of_both(&|k| self.state[k].bound().abs() + off[k]);
+            let second = of_both(&|k| left.tube[k]);
+            let size = self.state[n].bound().abs() + rate * time + jump(n) * jumps;
+            let rounding = T::unit() * 2.0 * (2 * dimension + 4) as f64 * size;
             *error = second * time
                 + jump(n) * apart
                 + limit.jump_errors[n] * jumps
                 + rounding
                 + T::Bound::LAST_WORD_UNDERFLOW * f64::from(u8::from(size > 0.0));
+            if open_part > 0.0 {
+                let apart = |k: usize| (before[k] - after[k]).bound();
+                let terms = (0..dimension).map(|k| apart(k) * self.state[k].bound());
+                let off = (0..dimension).map(|k| apart(k).abs() * off[k]);
+                let apart = terms.sum::<T::Bound>().abs() + off.sum::<T::Bound>();
+                *error += (apart + T::unit() * 2.0 * dimension as f64 * rate) * open_part;
+            }
         }
         // The forcing's phase is computed from the time, and the entry that is 1 has no error.
-        let computed = self.solver.phase().unwrap_or(dimension - 1)..dimension;
+        let computed = solver.phase().unwrap_or(dimension - 1)..dimension;
         all[computed].fill(T::Bound::ZERO);
-        is_held.then_some(all)
+        all
+    }
+}
+
+impl<T: Number> Remaining<T> {
+    /// Whether turns lead from one mode to another on the way.
+    fn has_turns(&self) -> bool {
+        self.modes[0] != self.modes[1]
+    }
+
+    /// The parts of the time left, with their modes, one after the other.
+    fn parts(&self, elapsed: T) -> Vec<(usize, T)> {
+        let [before, after] = self.modes;
+        if !self.has_turns() {
+            return vec![(before, elapsed)];
+        }
+        let [least, most] = self.before_turns;
+        let part = (least + most) * T::exact(0.5);
+        vec![(before, part), (after, elapsed - part)]
+    }
+
+    /// Half the width of the enclosure of the time before turns, where there are any.
+    fn open_part(&self) -> T::Bound {
+        if !self.has_turns() {
+            return T::Bound::ZERO;
+        }
+        let [least, most] = self.before_turns;
+        ((most - least) * T::exact(0.5)).bound() + self.unknown
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! [`begin`] makes a run of a start. This file enters each segment and asks for its first crossing;
 //! [`crossed`] says which events the crossed guards are, and [`transition`] resets the state and
-//! picks the successor. [`accumulation`] encloses where impacts accumulate, [`limit`] goes on from
-//! there, and [`enclosure`] carries the errors along in a run that follows them. [`horizon`] has
+//! picks the successor. [`accumulation`] encloses where impacts accumulate, with [`turn`]s or not, [`limit`] goes on from
+//! there, [`flight`] finds the impacts on the way in f64, and [`enclosure`] carries the errors along in a run that follows them. [`horizon`] has
 //! the errors at a time that is given, and [`given_up`] the motion that is known where such a run
 //! is not decided. [`follow`] continues the records of a run that someone else has made, [`place`]
 //! is where a run may be cut and go on with another state, [`variation`] carries small changes of
@@ -16,6 +16,7 @@ mod begin;
 mod crossed;
 mod enclosure;
 mod exact;
+mod flight;
 pub mod follow;
 mod given_up;
 mod horizon;
@@ -23,7 +24,10 @@ mod limit;
 mod origins;
 pub mod place;
 mod reduction;
+mod repeated;
+mod series;
 mod transition;
+mod turn;
 mod undecided;
 pub mod variation;
 mod variation_at_limit;
@@ -41,9 +45,11 @@ use crate::affine::zeros::graph::{Firing, ZeroGuards};
 use crate::numeric::number::{Bound, Number};
 use ahead::SearchAhead;
 use enclosure::Enclosure;
+use flight::Flight;
 use limit::LimitAhead;
 use origins::ExactRun;
 use std::collections::VecDeque;
+use turn::LastOfCycle;
 
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
 pub struct Run<'a, T: Number> {
@@ -67,6 +73,10 @@ pub struct Run<'a, T: Number> {
     restitution: Option<Restitution<T>>,
     /// The limit of the impact just passed, where it accumulates and the run goes on after it.
     limit_ahead: Option<Box<LimitAhead<T>>>,
+    /// The last `until`, where a cycle of impacts and turns may go on from it.
+    last_of_cycle: LastOfCycle,
+    /// The flight to the next impact, where the gap is too small for the state's digits.
+    flight: Option<Flight<T>>,
     /// Whether impacts go on without events up to a limit.
     is_silent: bool,
     /// The guards that fire at the instant of entry, as bits.
@@ -184,7 +194,8 @@ impl<'a, T: Number> Run<'a, T> {
         for (n, (row, order)) in guards.iter().zip(node.multiplicities.iter()).enumerate() {
             let fate = self.exact.as_ref().and_then(|it| it.fate(n));
             let order = fate.map_or(*order, |it| it.begin.map(|(order, _)| order));
-            let order = order.filter(|_| !self.never_crosses(mode, n));
+            let is_flying = self.flight.is_some_and(|it| it.guards >> n & 1 == 1);
+            let order = order.filter(|_| !is_flying && !self.never_crosses(mode, n));
             let Some(order) = order else {
                 self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
                 continue;
@@ -289,9 +300,18 @@ impl<'a, T: Number> Run<'a, T> {
         }
         let mode = self.graph.node(self.node).mode;
         let left = self.time_left();
-        let outcome = self.search(mode, left.high);
+        let flight = self.flight.filter(|it| it.elapsed <= left.high);
+        let outcome = match self.flight {
+            // Beyond the impact the segment means nothing.
+            Some(_) => self.search_to(mode, flight.map_or(left.high, |it| it.elapsed)),
+            None => self.search(mode, left.high),
+        };
         if self.is_open() {
             return;
+        }
+        if let Some(flight) = flight.filter(|_| outcome == SearchOutcome::NoCrossing) {
+            self.segment.complete(&mut self.ends.left);
+            return self.pass_crossing(flight.guards);
         }
         match outcome {
             SearchOutcome::GivenUp => self.end(Ending::Undecided),

@@ -2,9 +2,11 @@
 //! a run there.
 
 use super::Run;
+use super::accumulation::Impact;
 use super::limit::Jump;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{Vector, twice_summed_rounding};
+use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::exact::Entries;
 use crate::affine::zeros::graph::Firing;
@@ -43,9 +45,13 @@ impl<T: Number> Run<'_, T> {
         let zero_entries = arrival.zero_entries;
         self.returning = 0;
         let from = self.node;
+        let discards = self.graph.discards;
         let next = self.graph.enter(from, firing, successor);
+        let is_known = self.graph.discards == discards;
+        self.flight = if is_known { self.flight(firing, next, time) } else { None };
         self.node = next;
         (self.entered, self.state) = (time, state);
+        let cycle = self.place_in_cycle((from, mode), firing, successor, [impact, rests]);
         self.pass_exactly(mode, firing.until, exact);
         let what = limit.map_or(What::Until(mode, firing.until), |it| What::Limit(mode, it));
         let mut event = self.event(what, time, &self.state);
@@ -70,12 +76,18 @@ impl<T: Number> Run<'_, T> {
             self.decided = self.queue.len();
         }
         self.enter();
+        let errors_before = errors_before.unwrap_or([T::Bound::ZERO; LARGEST_DIMENSION]);
         let jump = Jump { until: firing.until, before: &before, errors: errors_before };
-        if impact && next == from {
-            let below = solver.modes[mode].flow.co_ordinates(&before);
-            let remaining = self.accumulation(mode, firing, &below, successor);
-            self.accumulate(mode, &jump, remaining);
-        } else if self.is_silent {
+        let turn = cycle.closing;
+        if impact && next == from || turn.is_some() {
+            let (before, errors_before) = (&before, &jump.errors);
+            let own = Impact { mode, firing, successor, from, before, errors_before, turn };
+            let remaining = self.accumulation(&own);
+            self.accumulate(&own, &jump, remaining);
+        } else if let Some(until) = cycle.rested {
+            let mode = self.graph.node(next).mode;
+            self.remember_rest(mode, &Jump { until, ..jump });
+        } else if self.is_silent && !cycle.is_turn {
             // Up to a limit there is no other event; rounding has made one.
             self.end(Ending::Undecided);
         } else if rests && self.graph.node(next).mode == mode {

@@ -10,8 +10,9 @@
 //! The forcing angle has no change of its own at a fixed time, and so the entries of cos theta, sin
 //! theta and 1 stay zero there.
 
+use super::repeated::SinceImpact;
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::arithmetic::vector::{Vector, dot};
+use crate::affine::arithmetic::vector::{Vector, add_product, dot};
 use crate::affine::closed_form::propagator::Propagator;
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::Solver;
@@ -25,13 +26,15 @@ pub struct Variation<T> {
     pub columns: Vec<Vector<T>>,
     /// The delays of the event at which the columns are; none where they are at a fixed time.
     pub delays: Option<Vec<T>>,
+    /// What the changes have gained since an impact, where they are at a turn after it.
+    pub(super) since_impact: Option<SinceImpact<T>>,
 }
 
 impl<T: Number> Variation<T> {
     /// Changes at a fixed time.
     #[must_use]
     pub fn at_fixed_time(columns: Vec<Vector<T>>) -> Self {
-        Self { columns, delays: None }
+        Self { columns, delays: None, since_impact: None }
     }
 
     /// A change of each state alone.
@@ -136,6 +139,15 @@ impl<T: Number> Solver<T> {
             z.iter().fold(T::zero(), |most, it| if it.abs() > most { it.abs() } else { most });
         let size = own.rows[guard].iter().fold(T::zero(), |sum, it| sum + it.abs() * largest);
         [along(&z), along(&self.rates_of(mode, &z)), size]
+    }
+
+    /// The row of the rate of a row's value in a mode.
+    pub(super) fn rate_row(&self, mode: usize, row: &Vector<T>) -> Vector<T> {
+        let mut product = [T::zero(); LARGEST_DIMENSION];
+        for (factor, own) in row.iter().zip(&self.modes[mode].matrix) {
+            add_product(&mut product, own, *factor);
+        }
+        product
     }
 
     /// The rates M z.

@@ -4,16 +4,19 @@
 //! The time between two impacts is proportional to the speed u of the first, and so is the change
 //! of a guard between them: what rounding leaves of its change divided by u is lost as u falls.
 //! From one impact to the next the changes are therefore carried at the moved times, at which the
-//! guard stays zero, by the series of the flow less what it begins with.
+//! guard stays zero, by the series of the flow less what it begins with. Where a turn leads from
+//! the mode after an impact to that of the next, the changes since the impact are kept at it.
 //!
-//! Towards the limit u/b becomes small beside the unit of time, where b is the bend of the guard.
-//! Of first order, with the coefficient of restitution e, the limit comes 2 u/(b (1 - e)) after an
-//! impact, and the speeds of all arrivals from there on sum up to u/(1 - e). So a change du of the
-//! speed alone delays the limit by 2 du/(b (1 - e)), and the state there changes by its rate times
-//! that delay, and by the jump of an impact of unit speed times du/(1 - e). What is left out is of
-//! the order of the time to the limit, beside the unit of time: impacts go on until that is a
-//! rounding.
+//! Towards the limit u/b becomes small beside the unit of time, where b is the bend of the guard
+//! after an impact, and a that before one. With s = sqrt(a/b) and the coefficient of restitution e
+//! the limit comes (u/b + u/sqrt(a b))/(1 - e s) after an impact, of first order, and the speeds of
+//! all arrivals from there on sum up to u s/(1 - e s). So the change of the speed alone delays the
+//! limit in proportion, and the state there changes by its rates times that delay, and by the jump
+//! of an impact of unit speed times the change of that sum. What is left out is of the order of the
+//! time to the limit, beside the unit of time: impacts go on until that is a rounding.
 
+use super::repeated::{RepeatedImpact, SinceImpact};
+use super::series::{MAX_SERIES_ARGUMENT, gain, landing, short_root, sum};
 use super::variation::{Variation, is_at_once};
 use crate::affine::arithmetic::vector::{Vector, dot};
 use crate::affine::model::system::LARGEST_DIMENSION;
@@ -21,39 +24,10 @@ use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Event, What};
 use crate::numeric::number::{Bound, Number};
 
-/// The longest time from an impact to the next, times the fastest rate, for the series.
-const MAX_SERIES_ARGUMENT: f64 = 0.25;
 /// The time to a limit at which the first order is taken, in roundings of the unit of time.
 const ROUNDINGS_LEFT: f64 = 256.0;
-/// Newton's steps for the time of an impact: each doubles the digits, and the first guess has some.
-const NEWTON_STEPS: usize = 8;
 /// The most impacts that are followed to a limit.
 const MAX_IMPACTS: usize = 1_000_000;
-
-/// A guard of a mode whose impacts follow one another.
-#[derive(Clone, Copy)]
-struct Impacts {
-    mode: usize,
-    until: usize,
-}
-
-impl Impacts {
-    /// Those of which an event is one, if they go on in its mode, may accumulate and leave their
-    /// guard at zero.
-    fn of<T: Number>(solver: &Solver<T>, event: &Event<T>) -> Option<Self> {
-        match event.what {
-            What::Until(mode, until) if mode == event.mode => {
-                solver.modes[mode].stays_zero[until].then_some(Self { mode, until })
-            }
-            _ => None,
-        }
-    }
-
-    /// Whether an event is the next one of these.
-    fn goes_on<T: Number>(self, to: &Event<T>) -> bool {
-        to.what == What::Until(self.mode, self.until)
-    }
-}
 
 /// An impact of a run: the state just after it, and the speed of its arrival.
 struct Impact<T> {
@@ -74,8 +48,7 @@ impl<T: Number> Variation<T> {
         }
         let state = solver.complete(&from.state, &from.time);
         let elapsed = to.time.since(&from.time).value();
-        let impacts = Impacts::of(solver, from).filter(|it| it.goes_on(to));
-        if impacts.is_some_and(|it| self.hop(solver, it, &state, elapsed)) {
+        if self.pass_short(solver, from, to, &state, elapsed) {
             return;
         }
         self.settle_at(solver, from, &state);
@@ -84,41 +57,107 @@ impl<T: Number> Variation<T> {
         self.arrive(solver, to, || motion.after(&state));
     }
 
-    /// Carries changes that are at an impact to the next one, and across it, where that is near.
-    /// Says whether it is.
-    fn hop(&mut self, solver: &Solver<T>, impacts: Impacts, state: &Vector<T>, elapsed: T) -> bool {
-        let speed = solver.modes[impacts.mode].flow.speed;
-        let is_near = self.delays.is_some() && speed * elapsed.to_f64() <= MAX_SERIES_ARGUMENT;
-        if is_near {
-            self.hop_near(solver, impacts, state, elapsed);
-        }
-        is_near
-    }
-
-    /// Carries changes to the next impact by series, and across it.
-    fn hop_near(
+    /// Carries changes that are at an impact, or at the turn after it, to the next turn or impact,
+    /// and across it, where that is near. Says whether it is.
+    fn pass_short(
         &mut self,
         solver: &Solver<T>,
-        impacts: Impacts,
+        from: &Event<T>,
+        to: &Event<T>,
         state: &Vector<T>,
         elapsed: T,
+    ) -> bool {
+        let since = self.since_impact.take();
+        let speed = solver.modes[from.mode].flow.speed;
+        if self.delays.is_none() || speed * elapsed.to_f64() > MAX_SERIES_ARGUMENT {
+            return false;
+        }
+        if let Some(SinceImpact { impacts, mut gained }) = since {
+            let is_next = to.what == What::Until(impacts.mode, impacts.until);
+            if is_next {
+                self.land(solver, impacts, state, elapsed, &mut gained);
+            }
+            return is_next;
+        }
+        let Some(impacts) = RepeatedImpact::of(solver, from) else { return false };
+        if impacts.go_on_by(to) {
+            self.land(solver, impacts, state, elapsed, &mut self.nothing_gained());
+            return true;
+        }
+        let Some(turn) = impacts.turn(solver, to) else { return false };
+        let (row, mut gained) = (&solver.modes[impacts.after].rows[turn], self.nothing_gained());
+        self.turn(solver, impacts, row, state, elapsed, &mut gained);
+        self.since_impact = Some(SinceImpact { impacts, gained });
+        true
+    }
+
+    fn nothing_gained(&self) -> Vec<Vector<T>> {
+        vec![[T::zero(); LARGEST_DIMENSION]; self.columns.len()]
+    }
+
+    /// Carries changes from an impact to the zero of a row, which turns the motion back; returns
+    /// what the state has gained.
+    fn turn(
+        &mut self,
+        solver: &Solver<T>,
+        impacts: RepeatedImpact,
+        row: &Vector<T>,
+        state: &Vector<T>,
+        elapsed: T,
+        gained: &mut [Vector<T>],
+    ) -> Vector<T> {
+        let dimension = solver.modes[impacts.after].flow.dimension;
+        let own = gain(solver, impacts.after, state, elapsed);
+        let rates = solver.rates_of(impacts.after, &sum(state, &own, T::one()));
+        let slope = dot(row, &rates, dimension);
+        self.leg(solver, impacts.after, elapsed, &rates, gained, |column, _| {
+            -dot(row, column, dimension) / slope
+        });
+        own
+    }
+
+    /// Carries changes along a mode to the next impact, and across it.
+    fn land(
+        &mut self,
+        solver: &Solver<T>,
+        impacts: RepeatedImpact,
+        state: &Vector<T>,
+        elapsed: T,
+        gained: &mut [Vector<T>],
     ) -> Impact<T> {
         let own = &solver.modes[impacts.mode];
         let (row, dimension) = (&own.rows[impacts.until], own.flow.dimension);
         let before = sum(state, &gain(solver, impacts.mode, state, elapsed), T::one());
         let rates = solver.rates_of(impacts.mode, &before);
         let arrival = dot(row, &rates, dimension);
-        let delays = self.delays.iter_mut().flatten();
-        for (column, delay) in self.columns.iter_mut().zip(delays) {
-            let gained = gain(solver, impacts.mode, column, elapsed);
-            let later = -dot(row, &gained, dimension) / arrival;
-            *column = sum(&sum(column, &gained, T::one()), &rates, later);
-            *delay = *delay + later;
-        }
+        self.leg(solver, impacts.mode, elapsed, &rates, gained, |_, gained| {
+            -dot(row, gained, dimension) / arrival
+        });
         self.reset_by(solver, impacts.mode, impacts.until);
         let mut after = before;
         solver.reset(impacts.mode, impacts.until, &mut after);
         Impact { state: after, jump: sum(&after, &before, -T::one()), arrival }
+    }
+
+    /// Carries changes along a mode to an event at which the state has these rates. Its delay
+    /// follows from a change there and from what that has gained since the impact.
+    fn leg(
+        &mut self,
+        solver: &Solver<T>,
+        mode: usize,
+        elapsed: T,
+        rates: &Vector<T>,
+        gained: &mut [Vector<T>],
+        delay: impl Fn(&Vector<T>, &Vector<T>) -> T,
+    ) {
+        let delays = self.delays.iter_mut().flatten();
+        for ((column, all), total) in self.columns.iter_mut().zip(gained).zip(delays) {
+            let own = gain(solver, mode, column, elapsed);
+            (*column, *all) = (sum(column, &own, T::one()), sum(all, &own, T::one()));
+            let later = delay(column, all);
+            (*column, *all) = (sum(column, rates, later), sum(all, rates, later));
+            *total = *total + later;
+        }
     }
 
     /// Carries changes from the last impact of a run before a limit to that, and across it. Where
@@ -127,11 +166,12 @@ impl<T: Number> Variation<T> {
         let What::Limit(mode, until) = to.what else { return };
         let exit = solver.system.modes[mode].until.len() + until;
         let is_at_once = to.time.since(&from.time).value() == T::zero();
-        let impacts = Impacts::of(solver, from).filter(|it| (it.mode, it.until) == (mode, until));
+        self.since_impact = None;
+        let impacts =
+            RepeatedImpact::of(solver, from).filter(|it| (it.mode, it.until) == (mode, until));
         let state = solver.complete(&from.state, &from.time);
-        let is_carried = impacts.is_some_and(|it| {
-            self.delays.is_some() && (is_at_once || self.approach(solver, it, state).is_some())
-        });
+        let is_carried = self.delays.is_some()
+            && (is_at_once || impacts.is_some_and(|it| self.approach(solver, it, state).is_some()));
         if !is_carried {
             let none = T::zero() / T::zero();
             self.columns.iter_mut().for_each(|it| *it = [none; LARGEST_DIMENSION]);
@@ -144,87 +184,94 @@ impl<T: Number> Variation<T> {
     fn approach(
         &mut self,
         solver: &Solver<T>,
-        impacts: Impacts,
+        impacts: RepeatedImpact,
         mut state: Vector<T>,
     ) -> Option<()> {
-        let own = &solver.modes[impacts.mode];
-        let (row, dimension) = (&own.rows[impacts.until], own.flow.dimension);
-        let (one, two) = (T::one(), T::exact(2.0));
+        let row = &solver.modes[impacts.mode].rows[impacts.until];
+        let along = |it: &Vector<T>| dot(row, it, solver.system.dimension());
+        let one = T::one();
         let scale = T::Bound::from_f64(solver.system.time_scale);
         let enough = T::unit() * ROUNDINGS_LEFT * scale.to_f64();
         for _ in 0..MAX_IMPACTS {
-            let elapsed = next_impact(solver, impacts, &state)?;
-            let Impact { state: after, jump, arrival } =
-                self.hop_near(solver, impacts, &state, elapsed);
+            let Impact { state: after, jump, arrival } = self.next(solver, impacts, &state)?;
             state = after;
-            let rates = solver.rates_of(impacts.mode, &state);
-            let speed = -dot(row, &rates, dimension);
-            let bend = dot(row, &solver.rates_of(impacts.mode, &rates), dimension);
-            let restitution = speed / arrival;
-            let is_sensible = speed > T::zero() && bend > T::zero() && restitution < one;
+            let [back, on] =
+                [impacts.after, impacts.mode].map(|mode| solver.rates_of(mode, &state));
+            let speed = -along(&back);
+            let bend_back = along(&solver.rates_of(impacts.after, &back));
+            let bend_on = along(&solver.rates_of(impacts.mode, &on));
+            let faster = (bend_on / bend_back).sqrt();
+            let quotient = speed / arrival * faster;
+            let zero = T::zero();
+            let is_sensible = speed > zero && bend_back > zero && bend_on > zero && quotient < one;
             if !is_sensible {
                 return None;
             }
-            let share = one / (one - restitution);
-            if (two * speed * share / bend).bound() > enough {
+            let share = one / (one - quotient);
+            let [way_back, way_on] = [share / bend_back, share / (bend_on * bend_back).sqrt()];
+            if (speed * (way_back + way_on)).bound() > enough {
                 continue;
             }
             let delays = self.delays.iter_mut().flatten();
             for (column, delay) in self.columns.iter_mut().zip(delays) {
-                let faster = -dot(row, &solver.rates_of(impacts.mode, column), dimension);
-                let later = two * faster * share / bend;
-                *column = sum(column, &rates, later);
-                *column = sum(column, &jump, faster * share / arrival);
-                *delay = *delay + later;
+                let more = -along(&solver.rates_of(impacts.after, column));
+                *column = sum(column, &back, more * way_back);
+                *column = sum(column, &on, more * way_on);
+                *column = sum(column, &jump, more * faster * share / arrival);
+                *delay = *delay + more * (way_back + way_on);
             }
             return Some(());
         }
         None
     }
+
+    /// Carries changes from an impact, at which the state is given, to the next one, and across it.
+    fn next(
+        &mut self,
+        solver: &Solver<T>,
+        impacts: RepeatedImpact,
+        state: &Vector<T>,
+    ) -> Option<Impact<T>> {
+        let row = &solver.modes[impacts.mode].rows[impacts.until];
+        let mut gained = self.nothing_gained();
+        if impacts.after == impacts.mode {
+            let elapsed = next_impact(solver, impacts, state)?;
+            return Some(self.land(solver, impacts, state, elapsed, &mut gained));
+        }
+        let rate = solver.rate_row(impacts.after, row);
+        let elapsed = time_to_turn(solver, impacts.after, row, state)?;
+        let own = self.turn(solver, impacts, &rate, state, elapsed, &mut gained);
+        let (gap, here) = (dot(row, &own, solver.system.dimension()), sum(state, &own, T::one()));
+        let elapsed = landing(solver, impacts.mode, row, gap, &here)?;
+        Some(self.land(solver, impacts, &here, elapsed, &mut gained))
+    }
 }
 
-/// The time from an impact to the next one.
-fn next_impact<T: Number>(solver: &Solver<T>, impacts: Impacts, state: &Vector<T>) -> Option<T> {
-    let own = &solver.modes[impacts.mode];
-    let (row, dimension) = (&own.rows[impacts.until], own.flow.dimension);
-    let along = |it: &Vector<T>| dot(row, it, dimension);
+/// The time from an impact to the next one in the same mode.
+fn next_impact<T: Number>(
+    solver: &Solver<T>,
+    impacts: RepeatedImpact,
+    state: &Vector<T>,
+) -> Option<T> {
+    let row = &solver.modes[impacts.mode].rows[impacts.until];
+    let along = |it: &Vector<T>| dot(row, it, solver.system.dimension());
     let rates = solver.rates_of(impacts.mode, state);
     let bend = along(&solver.rates_of(impacts.mode, &rates));
-    let mut elapsed = T::exact(-2.0) * along(&rates) / bend;
-    for _ in 0..NEWTON_STEPS {
-        let is_near =
-            elapsed > T::zero() && own.flow.speed * elapsed.to_f64() <= MAX_SERIES_ARGUMENT;
-        if !is_near {
-            return None;
-        }
-        let gained = gain(solver, impacts.mode, state, elapsed);
-        let rate = along(&solver.rates_of(impacts.mode, &sum(state, &gained, T::one())));
-        let step = along(&gained) / rate;
-        elapsed = elapsed - step;
-        if step.bound().abs() <= T::unit() * 4.0 * elapsed.bound().abs() {
-            break;
-        }
-    }
-    Some(elapsed)
+    let guess = T::exact(-2.0) * along(&rates) / bend;
+    short_root(solver, impacts.mode, state, guess, |gained, rates| [along(gained), along(rates)])
 }
 
-/// exp(M t) z - z, by its series.
-fn gain<T: Number>(solver: &Solver<T>, mode: usize, z: &Vector<T>, elapsed: T) -> Vector<T> {
-    let mut term = *z;
-    let mut all = [T::zero(); LARGEST_DIMENSION];
-    for n in 1..=2 * T::TERMS {
-        let factor = elapsed / T::exact(n as f64);
-        term = solver.rates_of(mode, &term).map(|it| it * factor);
-        all = sum(&all, &term, T::one());
-        let is_rounding =
-            |(term, all): (&T, &T)| term.bound().abs() <= all.bound().abs() * T::unit();
-        if term.iter().zip(&all).all(is_rounding) {
-            break;
-        }
-    }
-    all
-}
-
-fn sum<T: Number>(one: &Vector<T>, other: &Vector<T>, share: T) -> Vector<T> {
-    std::array::from_fn(|n| one[n] + share * other[n])
+/// The time from an impact to the zero of the gap's rate in the mode that follows.
+fn time_to_turn<T: Number>(
+    solver: &Solver<T>,
+    mode: usize,
+    row: &Vector<T>,
+    state: &Vector<T>,
+) -> Option<T> {
+    let along = |it: &Vector<T>| dot(row, it, solver.system.dimension());
+    let rates = solver.rates_of(mode, state);
+    let guess = -along(&rates) / along(&solver.rates_of(mode, &rates));
+    short_root(solver, mode, state, guess, |_, rates| {
+        [along(rates), along(&solver.rates_of(mode, rates))]
+    })
 }

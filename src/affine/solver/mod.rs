@@ -55,6 +55,8 @@ pub(super) struct SolverMode<T: Number> {
     pub stays_zero: Vec<bool>,
     /// The conditions of the successors of each reset, in the co-ordinates of their modes.
     pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
+    /// The same rows in the entries of z.
+    pub condition_rows: Vec<Vec<Option<Vector<T>>>>,
     /// The mode's rows in exact arithmetic, once a run asks for them.
     pub exact: OnceLock<ExactMode>,
 }
@@ -107,6 +109,8 @@ impl<T: Number> Solver<T> {
                 let condition = |it: &Successor| it.when.as_ref().map(|when| row(when, it.mode));
                 next.iter().map(condition).collect()
             });
+            let plain = |it: &Successor| it.when.as_ref().map(|when| numbers(when));
+            let condition_rows = mode.exits().map(|(_, next)| next.iter().map(plain).collect());
             let resets = mode.exits().map(|(reset, _)| reset.iter().map(numbers).collect());
             let stays_zero = |it: &Until| it.accumulates_to.is_some() && it.keeps_guard_zero();
             SolverMode {
@@ -118,6 +122,7 @@ impl<T: Number> Solver<T> {
                 changes: mode.exits().map(|(reset, _)| changes(reset)).collect(),
                 stays_zero: mode.until.iter().map(stays_zero).collect(),
                 conditions: conditions.collect(),
+                condition_rows: condition_rows.collect(),
                 exact: OnceLock::new(),
             }
         };

@@ -64,6 +64,17 @@ pub struct Node {
     arrivals: Vec<(Firing, Arrival)>,
     /// For instants that were asked for, the guards and the entries of z that are zero there.
     instants: Vec<(ZeroGuards, bool, [u64; 2])>,
+    /// What [`ZeroGraph::cycle`] has found, where the node's mode has the turn.
+    cycles: Vec<(Cycle, Option<[u64; 2]>)>,
+    /// What [`ZeroGraph::returning_guard`] has found, for an `until` and the node that follows it.
+    returning: Vec<(usize, usize, Option<usize>)>,
+}
+
+/// Impacts and turns that follow one another: each by the node before it and its `until`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cycle {
+    pub impact: (usize, usize),
+    pub turn: (usize, usize),
 }
 
 /// The consequences of an event for the structural zeros.
@@ -91,6 +102,8 @@ pub struct ZeroGraph {
     modes: Vec<ModeResidues>,
     nodes: Vec<Node>,
     known: HashMap<(usize, ZeroSpace), usize>,
+    /// The number of times that all nodes were discarded.
+    pub discards: u64,
 }
 
 impl ZeroGraph {
@@ -99,7 +112,7 @@ impl ZeroGraph {
         let states = system.states.len();
         let modes = system.modes.iter().map(|it| ModeResidues::new(it, states));
         let modes = modes.collect::<Option<_>>()?;
-        Some(Self { modes, nodes: Vec::new(), known: HashMap::new() })
+        Some(Self { modes, ..Self::default() })
     }
 
     #[inline]
@@ -169,6 +182,46 @@ impl ZeroGraph {
         &mut node.arrivals[at].1
     }
 
+    /// The guards that impacts and turns keep inside, as bits: those of the impact's mode, and those
+    /// of the turn's. None if the turn is none of the impact.
+    ///
+    /// With the guard h of the impact, a turn has no reset, its guard is a multiple of h' in its
+    /// mode, where h' begins as in the impact's, and h' is zero in the impact's mode, in whose node
+    /// it has arrived. Guards that are multiples of h', or in the turn's mode of h, keep the sign
+    /// that they have at first.
+    pub fn kept_inside(&mut self, cycle: Cycle) -> Option<[u64; 2]> {
+        let between = cycle.turn.0;
+        if let Some((_, found)) = self.nodes[between].cycles.iter().find(|it| it.0 == cycle) {
+            return *found;
+        }
+        let nodes = [cycle.impact.0, between].map(|node| &self.nodes[node]);
+        let found = kept_inside(&self.modes, nodes, [cycle.impact.1, cycle.turn.1]);
+        self.nodes[between].cycles.push((cycle, found));
+        found
+    }
+
+    /// A guard of an `until` of the node that follows an event without a reset: one that was zero at
+    /// the entry of the node before it, and whose rate is zero after the event.
+    #[inline]
+    pub fn returning_guard(&mut self, node: usize, until: usize, next: usize) -> Option<usize> {
+        let asked = |it: &&(usize, usize, Option<usize>)| (it.0, it.1) == (until, next);
+        if let Some((.., found)) = self.nodes[node].returning.iter().find(asked) {
+            return *found;
+        }
+        let (from, to) = (&self.nodes[node], &self.nodes[next]);
+        let own = &self.modes[to.mode];
+        let comes_back = |n: &usize| {
+            let guard = &own.guards[*n];
+            from.zeros.contains(guard)
+                && !to.zeros.contains(guard)
+                && to.zeros.contains(&row_times(guard, &own.matrix))
+        };
+        let has_reset = !is_identity(&self.modes[from.mode].resets[until]);
+        let found = (0..own.resets.len() / 2).find(comes_back).filter(|_| !has_reset);
+        self.nodes[node].returning.push((until, next, found));
+        found
+    }
+
     /// The node that follows an event by the successor of this index.
     #[inline]
     pub fn enter(&mut self, node: usize, firing: Firing, successor: usize) -> usize {
@@ -192,6 +245,7 @@ impl ZeroGraph {
         if is_full {
             self.nodes.clear();
             self.known.clear();
+            self.discards += 1;
         }
         is_full
     }
@@ -209,6 +263,8 @@ impl ZeroGraph {
             zeros: zeros.clone(),
             arrivals: Vec::new(),
             instants: Vec::new(),
+            cycles: Vec::new(),
+            returning: Vec::new(),
         };
         self.nodes.push(node);
         self.known.insert((mode, zeros), self.nodes.len() - 1);
@@ -260,6 +316,34 @@ fn with_rows(zeros: &ZeroSpace, mode: &ModeResidues, zero: ZeroGuards) -> ZeroSp
         mode.points[guard][point].iter().for_each(|row| zeros.insert(row));
     }
     zeros
+}
+
+fn kept_inside(
+    modes: &[ModeResidues],
+    [before, between]: [&Node; 2],
+    [impact, turn]: [usize; 2],
+) -> Option<[u64; 2]> {
+    let (own, other) = (&modes[before.mode], &modes[between.mode]);
+    let guard = &own.guards[impact];
+    let [rate, other_rate] = [own, other].map(|mode| row_times(guard, &mode.matrix));
+    let apart: Residues = rate.iter().zip(&other_rate).map(|(a, b)| a.minus(*b)).collect();
+    let kept = |node: &Node, mode: &ModeResidues, rows: &[&Residues]| {
+        let is_kept = |row: &Residues| rows.iter().any(|it| node.lasting.ratio(row, it).is_some());
+        let all = mode.guards.iter().enumerate().filter(|(_, row)| is_kept(row));
+        all.fold(0, |mask, (n, _)| mask | 1 << n)
+    };
+    let is_turn = is_identity(&other.resets[turn])
+        && between.zeros.contains(&apart)
+        && before.zeros.contains(&rate)
+        && between.lasting.ratio(&other.guards[turn], &other_rate).is_some();
+    is_turn.then(|| [kept(before, own, &[&rate]), kept(between, other, &[&other_rate, guard])])
+}
+
+fn is_identity(reset: &[Residues]) -> bool {
+    let unit = |n: usize, k: usize| if n == k { Residue::ONE } else { Residue::ZERO };
+    let is_unit =
+        |(n, row): (usize, &Residues)| row.iter().enumerate().all(|(k, it)| *it == unit(n, k));
+    reset.iter().enumerate().all(is_unit)
 }
 
 /// h+ = 0 and h'+ = 0 with the guard h.
