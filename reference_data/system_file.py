@@ -251,7 +251,7 @@ class Builder:
 
     def until(self, table: dict, mode: str) -> Event:
         only(table, "name guard reset next accumulates_to", f"until of {mode}")
-        successors = self.successors(table.get("next", [{"mode": mode}]))
+        successors = self.successors(table.get("next", mode))
         name, guard = event_name(table, f"until of {mode}"), self.guard(table["guard"])
         reset, limit = self.reset(table.get("reset", [])), self.limit(table, guard)
         return Event(name, guard, False, "rising", reset, successors, limit)
@@ -263,15 +263,11 @@ class Builder:
         given = table["accumulates_to"]
         given = {"next": given} if isinstance(given, str) else given
         only(given, "reset next", "accumulates_to")
-        following = given["next"]
-        successors = self.successors(
-            [{"mode": following}] if isinstance(following, str) else following
-        )
-        reset = self.reset(given.get("reset", []))
+        successors, reset = self.successors(given["next"]), self.reset(given.get("reset", []))
         return Event("accumulation", guard, False, "rising", reset, successors)
 
-    def successors(self, tables: list) -> list:
-        found = []
+    def successors(self, following: list | str) -> list:
+        tables, found = [{"mode": following}] if isinstance(following, str) else following, []
         for position, table in enumerate(tables):
             only(table, "when mode", "next")
             if ("when" in table) == (position == len(tables) - 1):

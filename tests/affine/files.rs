@@ -63,6 +63,26 @@ fn each_mistake_is_named_with_its_line() {
     }
 }
 
+/// A mode alone is short for a list of one.
+#[test]
+fn a_mode_that_follows_may_stand_alone() {
+    let reset = "reset = [\"x = 0\", \"v = -e*v\"]";
+    let next = |next: &str| {
+        let text = BALL.replace(reset, &format!("{reset}\nnext = {next}"));
+        System::parse("ball.system.toml", &text)
+    };
+    let [alone, list] = ["\"flight\"", "[{ mode = \"flight\" }]"].map(|it| next(it).unwrap());
+    let [alone, list] = [&alone, &list].map(|it| &it.modes[0].until[0].next);
+    assert_eq!((alone, alone.len()), (list, 1));
+    for (wrong, said) in [
+        ("\"fly\"", "there is no mode \"fly\": accepted is one of flight"),
+        ("1", "the name of a mode, or a list of { when, mode }"),
+    ] {
+        let message = next(wrong).unwrap_err().to_string();
+        assert!(message.contains(said), "{message}");
+    }
+}
+
 #[test]
 fn coefficients_are_exact() {
     let text = BALL.replace("v' = -g", "v' = -g^3/3 + (1/3 - 1/3)*x - 2*(v - x)/6");

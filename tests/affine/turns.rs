@@ -9,8 +9,8 @@ use percuss::{Ending, Proved, System};
 use proptest::prelude::*;
 
 /// A ball that falls at a rate a and rises against a rate b, until it is at rest; after the time
-/// tau it is thrown again, twice. The state s is the integral of x, m the sum of the changes of v at
-/// impacts, and n counts throws.
+/// tau it is thrown again, twice. The state s is the integral of x, m the sum of the changes of v
+/// at impacts, and n counts throws.
 fn ball(numbers: &str) -> System {
     let text = format!(
         r#"
@@ -78,8 +78,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
     /// After a turn the gap is known to the arithmetic's unit, beside 1, and an impact of the speed
-    /// u to that over u. Enclosed errors at a limit are those where they meet its second order: with
-    /// b bits 2^(-2 b/3), or where bounds round more than that, below 1e-14, 2^-90. A limit
+    /// u to that over u. Enclosed errors at a limit are those where they meet its second order:
+    /// with b bits 2^(-2 b/3), or where bounds round more than that, below 1e-14, 2^-90. A limit
     /// multiplies what it inherits by at most 1 + 2 q/(1 - q) <= 39.
     #[test]
     fn a_ball_comes_to_rest_where_the_series_says(
@@ -163,9 +163,9 @@ fn an_impact_without_restitution_rests_at_once() {
     assert_eq!(plain.iter().map(percuss::Event::name).collect::<Vec<_>>(), names);
 }
 
-/// A mass on a spring with dry friction and a stop, which a slow force presses to the stop and pulls
-/// away: it slips ahead and back, sticks, and is held at the stop. The state w remembers impacts and
-/// decays.
+/// A mass on a spring with dry friction and a stop, which a slow force presses to the stop and
+/// pulls away: it slips ahead and back, sticks, and is held at the stop. The state w remembers
+/// impacts and decays.
 pub fn friction([omega, force, friction, damping, r]: [f64; 5]) -> String {
     format!(
         r#"

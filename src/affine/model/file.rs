@@ -133,7 +133,7 @@ pub(super) struct UntilTable {
     pub guard: Spanned<Condition>,
     #[serde(default)]
     pub reset: Vec<Spanned<Assignment>>,
-    pub next: Option<Spanned<Vec<NextTable>>>,
+    pub next: Option<Spanned<NextEntry>>,
     pub accumulates_to: Option<Spanned<LimitEntry>>,
 }
 
@@ -171,7 +171,7 @@ pub(super) struct LimitTable {
     pub next: Spanned<NextEntry>,
 }
 
-/// The successors of a limit: the name of a mode, or a list of modes by conditions.
+/// The successors of an event or of a limit: the name of a mode, or a list of modes by conditions.
 #[derive(Clone, Debug)]
 pub(super) enum NextEntry {
     Mode(String),

@@ -26,8 +26,8 @@ pub(super) struct Flight<T> {
 }
 
 impl<T: Number> Run<'_, T> {
-    /// The flight from an `until` that is passed at this time into another node, if a guard was zero
-    /// by the model where the present segment was entered, and has turned back near it.
+    /// The flight from an `until` that is passed at this time into another node, if a guard was
+    /// zero by the model where the present segment was entered, and has turned back near it.
     pub(super) fn flight(&mut self, firing: Firing, next: usize, at: Time<T>) -> Option<Flight<T>> {
         let is_plain = is_f64::<T>() && self.enclosure.is_none() && !self.solver.backward;
         if !is_plain || firing.at_entry {

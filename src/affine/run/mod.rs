@@ -2,13 +2,14 @@
 //!
 //! [`begin`] makes a run of a start. This file enters each segment and asks for its first crossing;
 //! [`crossed`] says which events the crossed guards are, and [`transition`] resets the state and
-//! picks the successor. [`accumulation`] encloses where impacts accumulate, with [`turn`]s or not, [`limit`] goes on from
-//! there, [`flight`] finds the impacts on the way in f64, and [`enclosure`] carries the errors along in a run that follows them. [`horizon`] has
-//! the errors at a time that is given, and [`given_up`] the motion that is known where such a run
-//! is not decided. [`follow`] continues the records of a run that someone else has made, [`place`]
-//! is where a run may be cut and go on with another state, [`variation`] carries small changes of
-//! the state along, and [`variation_at_limit`] does so across limits. Read this file first, then
-//! `crossed` and `transition`.
+//! picks the successor. [`accumulation`] encloses where impacts accumulate, with [`turn`]s or not,
+//! [`limit`] goes on from there, [`flight`] finds the impacts on the way in f64, and [`enclosure`]
+//! carries the errors along in a run that follows them. [`horizon`] has the errors at a time that
+//! is given, and [`given_up`] the motion that is known where such a run is not decided. [`follow`]
+//! continues the records of a run that someone else has made, [`place`] is where a run may be cut
+//! and go on with another state, [`variation`] carries small changes of the state along, and
+//! [`variation_at_limit`] does so across limits. Read this file first, then `crossed` and
+//! `transition`.
 
 mod accumulation;
 mod ahead;

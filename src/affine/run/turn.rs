@@ -54,8 +54,8 @@ struct LastImpact {
 }
 
 impl<T: Number> Run<'_, T> {
-    /// Remembers an `until` that has led from a node to the present one; `is_impact` and `rests` are
-    /// those of its arrival.
+    /// Remembers an `until` that has led from a node to the present one; `is_impact` and `rests`
+    /// are those of its arrival.
     pub(super) fn place_in_cycle(
         &mut self,
         (from, mode): (usize, usize),
@@ -71,10 +71,10 @@ impl<T: Number> Run<'_, T> {
             !has_reset && (it.to, it.mode, it.discards) == (from, next, discards)
         };
         if let Some(impact) = impact.filter(leads_back) {
-            let impact_until = impact.until;
-            let turn = Turn { node: from, to, firing, successor, impact: impact_until, discards };
+            let LastImpact { until: impact, rests, .. } = impact;
+            let turn = Turn { node: from, to, firing, successor, impact, discards };
             self.last_of_cycle.turn = Some(turn);
-            let rested = (impact.rests && firing.at_entry).then_some(impact_until);
+            let rested = (rests && firing.at_entry).then_some(impact);
             return PlaceInCycle { closing: None, is_turn: true, rested };
         }
         if next == mode || !(is_impact || rests) {

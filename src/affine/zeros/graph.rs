@@ -182,8 +182,8 @@ impl ZeroGraph {
         &mut node.arrivals[at].1
     }
 
-    /// The guards that impacts and turns keep inside, as bits: those of the impact's mode, and those
-    /// of the turn's. None if the turn is none of the impact.
+    /// The guards that impacts and turns keep inside, as bits: those of the impact's mode, and
+    /// those of the turn's. None if the turn is none of the impact.
     ///
     /// With the guard h of the impact, a turn has no reset, its guard is a multiple of h' in its
     /// mode, where h' begins as in the impact's, and h' is zero in the impact's mode, in whose node
@@ -200,8 +200,8 @@ impl ZeroGraph {
         found
     }
 
-    /// A guard of an `until` of the node that follows an event without a reset: one that was zero at
-    /// the entry of the node before it, and whose rate is zero after the event.
+    /// A guard of an `until` of the node that follows an event without a reset: one that was zero
+    /// at the entry of the node before it, and whose rate is zero after the event.
     #[inline]
     pub fn returning_guard(&mut self, node: usize, until: usize, next: usize) -> Option<usize> {
         let asked = |it: &&(usize, usize, Option<usize>)| (it.0, it.1) == (until, next);

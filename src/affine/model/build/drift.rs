@@ -2,7 +2,7 @@
 
 use crate::affine::model::drift::Place;
 use crate::affine::model::error::SystemError;
-use crate::affine::model::file::SystemFile;
+use crate::affine::model::file::{NextEntry, SystemFile};
 use crate::affine::model::scalar::{Assignment, Condition, Scalar};
 use crate::affine::model::system::System;
 
@@ -58,8 +58,10 @@ fn written_text<'a>(file: &'a SystemFile, system: &System, place: Place) -> Opti
             all.find_map(|it| assigned(it.get_ref(), state))
         }
         Place::When { mode, until, successor } => {
-            let next = modes[mode].until[until].next.as_ref()?;
-            text(next.get_ref().get(successor)?.when.as_ref()?.get_ref())
+            let NextEntry::Modes(next) = modes[mode].until[until].next.as_ref()?.get_ref() else {
+                return None;
+            };
+            text(next.get(successor)?.when.as_ref()?.get_ref())
         }
         Place::Limit { .. } => None,
         Place::Start { choice } => text(&file.start.as_ref()?.modes.get(choice)?.when.as_ref()?.0),

@@ -150,7 +150,7 @@ impl ModeReader<'_> {
         let guard = self.guard(names, &table.guard)?;
         let reset = self.reset(names, &table.reset, guard.len())?;
         let next = match &table.next {
-            Some(next) => self.successors(names, next.get_ref(), &next.span())?,
+            Some(next) => self.next(names, next)?,
             None => vec![Successor { when: None, mode: here }],
         };
         let limit = table.accumulates_to.as_ref();
@@ -193,19 +193,9 @@ impl ModeReader<'_> {
         entry: &Spanned<LimitEntry>,
         dimension: usize,
     ) -> Result<Limit, SystemError> {
-        let alone = |mode: &str, span: &Range<usize>| {
-            Ok(vec![Successor { when: None, mode: self.place(mode, span)? }])
-        };
         let (assignments, next) = match entry.get_ref() {
-            LimitEntry::Mode(mode) => (&[][..], alone(mode, &entry.span())?),
-            LimitEntry::Table(LimitTable { reset, next }) => {
-                let span = next.span();
-                let next = match next.get_ref() {
-                    NextEntry::Mode(mode) => alone(mode, &span)?,
-                    NextEntry::Modes(list) => self.successors(names, list, &span)?,
-                };
-                (&reset[..], next)
-            }
+            LimitEntry::Mode(mode) => (&[][..], self.alone(mode, &entry.span())?),
+            LimitEntry::Table(LimitTable { reset, next }) => (&reset[..], self.next(names, next)?),
         };
         Ok(Limit { reset: self.reset(names, assignments, dimension)?, next })
     }
@@ -214,6 +204,22 @@ impl ModeReader<'_> {
     fn place(&self, mode: &str, span: &Range<usize>) -> Result<usize, SystemError> {
         let unknown = || unknown_mode(mode, self.places.keys().map(String::as_str));
         self.places.get(mode).copied().ok_or_else(|| self.file.error(span, &unknown()))
+    }
+
+    /// A mode that follows without a condition.
+    fn alone(&self, mode: &str, span: &Range<usize>) -> Result<Vec<Successor>, SystemError> {
+        Ok(vec![Successor { when: None, mode: self.place(mode, span)? }])
+    }
+
+    fn next(
+        &self,
+        names: &mut Names,
+        next: &Spanned<NextEntry>,
+    ) -> Result<Vec<Successor>, SystemError> {
+        match next.get_ref() {
+            NextEntry::Mode(mode) => self.alone(mode, &next.span()),
+            NextEntry::Modes(list) => self.successors(names, list, &next.span()),
+        }
     }
 
     fn successors(

@@ -169,7 +169,7 @@ impl Items {
         UntilTable {
             guard: self.at(&format!("{item}, guard"), until.guard),
             reset,
-            next: if next.is_empty() { None } else { Some(self.at(&item, next)) },
+            next: (!next.is_empty()).then(|| self.at(&item, NextEntry::Modes(next))),
             accumulates_to: limit,
             name: self.at(&item, until.name),
         }

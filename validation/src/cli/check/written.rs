@@ -27,12 +27,19 @@ pub(super) struct WrittenUntil {
     pub(super) guard: String,
     #[serde(default)]
     reset: Vec<String>,
-    #[serde(default)]
-    next: Vec<WrittenNext>,
+    next: Option<WrittenNext>,
+}
+
+/// The successors: a mode alone, or a list.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum WrittenNext {
+    Mode(#[expect(dead_code, reason = "it has no condition")] String),
+    Modes(Vec<WrittenSuccessor>),
 }
 
 #[derive(Deserialize)]
-struct WrittenNext {
+struct WrittenSuccessor {
     when: Option<String>,
 }
 
@@ -62,7 +69,10 @@ impl WrittenUntil {
 
     /// The condition of a successor by its number.
     pub(super) fn when(&self, n: usize) -> Option<&str> {
-        self.next.get(n)?.when.as_deref()
+        match self.next.as_ref()? {
+            WrittenNext::Mode(_) => None,
+            WrittenNext::Modes(list) => list.get(n)?.when.as_deref(),
+        }
     }
 }
 
