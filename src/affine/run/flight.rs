@@ -30,7 +30,8 @@ impl<T: Number> Run<'_, T> {
     /// zero by the model where the present segment was entered, and has turned back near it.
     pub(super) fn flight(&mut self, firing: Firing, next: usize, at: Time<T>) -> Option<Flight<T>> {
         let is_plain = is_f64::<T>() && self.enclosure.is_none() && !self.solver.backward;
-        if !is_plain || firing.at_entry {
+        // States that someone else has computed are not where the model has them.
+        if !is_plain || firing.at_entry || self.is_lenient {
             return None;
         }
         let until = self.graph.returning_guard(self.node, firing.until, next)?;

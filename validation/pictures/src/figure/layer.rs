@@ -1,10 +1,10 @@
 //! The layers of a figure's panel.
 
 use super::super::canvas::{At, Canvas, Stroke, TextSide};
-use super::super::colour::WHITE;
 use super::super::frame::Panel;
 use super::super::key::{KeyItem, KeyLayout, key};
-use super::super::{Colour, font, palette};
+use super::super::{Colour, palette};
+use super::names::NamedMark;
 
 /// Cells of equal size over a window, coloured by label.
 #[derive(Clone, Debug)]
@@ -76,8 +76,6 @@ pub struct KeyEntry {
 }
 
 const TEXT_SIZE: f64 = 18.0;
-/// Half the width of a mark that has a name.
-const HALF_NAMED_MARK: f64 = 4.5;
 
 impl Layer {
     /// Points as small as their number asks for: few are drawn so that they show.
@@ -114,6 +112,12 @@ impl Layer {
         }
     }
 
+    /// The mark with its name that the layer is, if the panel has its place.
+    pub(super) fn named(&self, panel: &Panel) -> Option<NamedMark<'_>> {
+        let Self::Named { at, name, colour } = self else { return None };
+        Some(NamedMark { at: panel.at((at[0], at[1]))?, name, colour: *colour })
+    }
+
     pub(super) fn draw(&self, canvas: &mut Canvas, panel: &Panel) {
         match self {
             Self::Line { points, colour, width, stroke } => {
@@ -144,31 +148,13 @@ impl Layer {
                     );
                 }
             }
-            Self::Named { at, name, colour } => {
-                if let Some(at) = panel.at((at[0], at[1])) {
-                    draw_named_mark(canvas, at, name, *colour, panel.to.0);
-                }
-            }
             Self::Key(entries) => {
                 KeyEntry::draw_row(entries, canvas, (panel.from.0, panel.from.1 - 18.0));
             }
+            // Names are drawn where others leave them room.
+            Self::Named { .. } => {}
         }
     }
-}
-
-/// Draws a mark and its name, on white, up to the right edge of the panel.
-fn draw_named_mark(canvas: &mut Canvas, (x, y): At, name: &str, colour: Colour, right: f64) {
-    canvas.fill(
-        (x - HALF_NAMED_MARK, y - HALF_NAMED_MARK),
-        (x + HALF_NAMED_MARK, y + HALF_NAMED_MARK),
-        colour,
-    );
-    let (width, up) = (font::width(name, TEXT_SIZE), y - 16.0);
-    let left = if x + 10.0 + width > right { x - 10.0 - width } else { x + 10.0 };
-    if !name.is_empty() {
-        canvas.fill((left - 2.0, up - 9.0), (left + width + 2.0, up + 9.0), WHITE);
-    }
-    canvas.text(name, (left, up), TEXT_SIZE, TextSide::Left, colour);
 }
 
 impl KeyEntry {

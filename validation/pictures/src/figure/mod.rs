@@ -2,6 +2,7 @@
 
 mod fitted;
 mod layer;
+mod names;
 mod plot;
 
 pub use super::canvas::Stroke;

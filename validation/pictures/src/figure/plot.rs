@@ -4,6 +4,7 @@ use super::super::canvas::{At, Canvas, TextSide};
 use super::super::frame::{AxisScale, Panel, Ruler};
 use super::super::{axes::around, palette};
 use super::layer::Layer;
+use super::names;
 
 /// The window of a panel; where an end is not finite the data decide.
 pub type PlotWindow = [(f64, f64); 2];
@@ -63,6 +64,13 @@ impl Plot {
             panel.grid(canvas);
         }
         frame(canvas);
-        above.iter().for_each(|layer| layer.draw(canvas, panel));
+        let named: Vec<_> = above.iter().filter_map(|layer| layer.named(panel)).collect();
+        let mut names = named.iter().zip(names::places(&named, panel));
+        for layer in above {
+            match layer.named(panel).and_then(|_| names.next()) {
+                Some((mark, place)) => mark.draw(canvas, place),
+                None => layer.draw(canvas, panel),
+            }
+        }
     }
 }
