@@ -255,3 +255,51 @@ fn a_rig_with_friction_and_a_stop_is_decided_in_f64_too() {
         assert!((plain.time() - proved.time().midpoint()).abs() < 1e-11, "{plain:?} {proved:?}");
     }
 }
+
+/// A gap that opens again before it closes, where the next pull comes late, and one that closes ever
+/// faster: a run in f64 takes no time of a series for a landing that is none, or another one.
+#[test]
+fn a_short_flight_need_not_land() {
+    for (speed, pull, landings) in [(0.000_042_7, "-b + c*y", 0), (0.000_04, "-b/2000 - c*y", 1)] {
+        let text = format!(
+            r#"
+            schema = 1
+            name = "landing"
+            states = ["x", "v", "y"]
+            parameters = {{ b = 0.0001, c = 0.04, e = 0.5 }}
+            [[mode]]
+            name = "up"
+            equations = ["x' = v", "v' = -1", "y' = 0"]
+            until = [{{ name = "turn", guard = "v < 0", next = "down" }}]
+            [[mode]]
+            name = "down"
+            equations = ["x' = v", "v' = {pull}", "y' = 1"]
+            [[mode.until]]
+            name = "impact"
+            guard = "x < 1"
+            reset = ["x = 1", "v = -e*v"]
+            next = "over"
+            [[mode]]
+            name = "over"
+            equations = ["x' = 0", "v' = 0", "y' = 0"]
+            [start]
+            mode = "up"
+            x = 1
+            v = {speed:?}
+            y = 0
+            "#
+        );
+        let system = System::from_toml(&text).unwrap();
+        let solver = system.solver::<Proved>().unwrap();
+        let proved: Vec<_> = solver.run().until(10.0).unwrap().collect();
+        let solver = system.solver::<f64>().unwrap();
+        let plain: Vec<_> = solver.run().until(10.0).unwrap().collect();
+        assert_eq!(plain.len(), 2 + landings);
+        assert_eq!(plain.len(), proved.len());
+        for (plain, proved) in plain.iter().zip(&proved) {
+            assert_eq!(plain.name(), proved.name());
+            // Without the series the gap of 1e-9 is known to 1e-7 of it.
+            assert!((plain.time() - proved.time().midpoint()).abs() < 1e-9, "{plain:?} {proved:?}");
+        }
+    }
+}
