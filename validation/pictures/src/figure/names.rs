@@ -117,11 +117,11 @@ pub(super) fn places(all: &[NamedMark<'_>], panel: &Panel) -> Vec<NamePlace> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::frame::{AxisScale, Ruler};
+    use super::super::super::frame::Ruler;
     use super::*;
 
     fn panel() -> Panel {
-        let ruler = || Ruler::over(AxisScale::Linear, [0.0, 1.0].into_iter()).unwrap();
+        let ruler = || Ruler::between(0.0, 1.0);
         Panel { from: (100.0, 50.0), to: (700.0, 500.0), x: ruler(), y: ruler() }
     }
 
