@@ -303,3 +303,226 @@ fn a_short_flight_need_not_land() {
         }
     }
 }
+
+/// A jump that sums up over some thousand impacts, whose quotient grows with the time to 1 - 1/128
+/// times as much: its sum is enclosed, or not known.
+const LONG_SUM: &str = r#"
+schema = 1
+name = "unsound"
+states = ["x", "v", "q", "s", "a", "p"]
+parameters = { K = 1.1444091796875e+23, r0 = 1.7066666666666667e-25, C = 1e+26, eps = 0.0078125, u = 1e-28 }
+[let]
+e = "1 - eps"
+[[mode]]
+name = "down"
+equations = ["x' = v", "v' = -1", "q' = 1", "s' = 1", "a' = r0 + s", "p' = 0"]
+[[mode.until]]
+name = "impact"
+guard = "q > x"
+reset = ["x = q", "v = 1 - e*(v - 1)", "p = p + C*(v - 1)"]
+next = [{ mode = "up" }]
+accumulates_to = { reset = ["x = 0", "v = 1", "q = 0", "s = 0", "a = 0"], next = "rest" }
+[[mode]]
+name = "up"
+equations = ["x' = v", "v' = -1 - K*s", "q' = 1", "s' = 1", "a' = r0 + s", "p' = 0"]
+[[mode.until]]
+name = "turn"
+guard = "v < 1"
+next = [{ mode = "down" }]
+[[mode]]
+name = "rest"
+equations = ["x' = 1", "v' = 0", "q' = 1", "s' = 0", "a' = 0", "p' = 0"]
+[start]
+mode = "up"
+t = 1
+x = 0
+v = "1 + u"
+q = 0
+s = 0
+a = 0
+p = 0
+"#;
+
+/// The sum by the recurrence of the impacts in 60 digits, from one to the next.
+#[test]
+fn a_sum_of_jumps_is_enclosed() {
+    let system = System::from_toml(LONG_SUM).unwrap();
+    let known = -1.178_620_630_136_569_8;
+    let solver = system.solver::<Proved>().unwrap();
+    for event in solver.run().until(3.0).unwrap() {
+        if event.name() == "accumulation" {
+            let sum = &event.state()[5];
+            assert!((sum.midpoint() - known).abs() <= sum.error() + 1e-15, "{sum:?}");
+        }
+    }
+}
+
+/// A guard that keeps its sign on the way up alone: it is passed on the way down, before the limit.
+const PASSED_ON_THE_WAY: &str = r#"
+schema = 1
+name = "dead-guard"
+states = ["x", "v", "y"]
+[parameters]
+y1 = 1.9999999999999
+[[mode]]
+name = "down"
+equations = ["x' = v", "v' = -1", "y' = 2"]
+[[mode.until]]
+name = "impact"
+guard = "x < 0"
+reset = ["x = 0", "v = -1/2*v"]
+next = [{ mode = "up" }]
+accumulates_to = "rest"
+[[mode]]
+name = "up"
+equations = ["x' = v", "v' = -1", "y' = -1"]
+[[mode.until]]
+name = "turn"
+guard = "v < 0"
+next = [{ mode = "down" }]
+[[mode.until]]
+name = "high"
+guard = "y > y1"
+next = [{ mode = "rest" }]
+[[mode]]
+name = "rest"
+equations = ["x' = 0", "v' = 0", "y' = 0"]
+[start]
+mode = "up"
+x = 0
+v = 1
+y = 0
+"#;
+
+/// One that keeps its sign but for jumps.
+const PASSED_BY_JUMPS: &str = r#"
+schema = 1
+name = "dead-one"
+states = ["x", "v", "y"]
+[parameters]
+y1 = 0.9999999999
+[[mode]]
+name = "down"
+equations = ["x' = v", "v' = -1", "y' = 0"]
+[[mode.until]]
+name = "impact"
+guard = "x < 0"
+reset = ["x = 0", "v = -1/2*v", "y = y - v"]
+[[mode.until]]
+name = "high"
+guard = "y > y1"
+next = "rest"
+[[mode]]
+name = "rest"
+equations = ["x' = 0", "v' = 0", "y' = 0"]
+[start]
+mode = "down"
+x = 0
+v = 1
+y = -1
+"#;
+
+#[test]
+fn no_accumulation_is_claimed_beyond_another_event() {
+    for text in [PASSED_ON_THE_WAY, PASSED_BY_JUMPS] {
+        let system = System::from_toml(text).unwrap();
+        let ends = |name: Option<Ending>| assert_eq!(name, Some(Ending::BeyondGuard), "{text}");
+        let solver = system.solver::<Proved>().unwrap();
+        let all: Vec<_> = solver.run().until(6.0).unwrap().collect();
+        assert!(all.iter().all(|it| it.name() != "accumulation"));
+        ends(all.last().unwrap().ending());
+        let solver = system.solver::<f64>().unwrap();
+        ends(solver.run().until(6.0).unwrap().last().unwrap().ending());
+    }
+}
+
+/// Watched multiples of the gap at a moving table, one of which falls at each impact.
+const WATCHED: &str = r#"
+schema = 1
+name = "ball-with-two-drags"
+states = ["x", "v"]
+forcing = { omega = 1.25, phi = 0.5 }
+parameters = { A = 0.75, g = 1, c = 0.5, d = 0.125, e = 0.625 }
+[[mode]]
+name = "falling"
+equations = ["x' = v", "v' = -g - d*v"]
+[[mode.until]]
+name = "impact"
+guard = "A*cos > x"
+reset = ["x = A*cos", "v = -(1 + e)*A*omega*sin - e*v"]
+next = [{ mode = "rising" }]
+accumulates_to = { next = [{ when = "A*omega^2*cos > g - c*A*omega*sin", mode = "rising" }, { mode = "stuck" }] }
+[[mode.watch]]
+name = "down"
+guard = "x > A*cos"
+direction = "falling"
+[[mode.watch]]
+name = "up"
+guard = "2*x > 2*A*cos"
+[[mode]]
+name = "rising"
+equations = ["x' = v", "v' = -g - c*v"]
+[[mode.until]]
+name = "turn"
+guard = "v < -A*omega*sin"
+next = [{ mode = "falling" }]
+[[mode]]
+name = "stuck"
+equations = ["x' = v", "v' = -A*omega^2*cos"]
+[[mode.until]]
+name = "detach"
+guard = "A*omega^2*cos - c*v > g"
+next = [{ mode = "rising" }]
+[start]
+mode = "falling"
+x = 1
+v = -0.5
+"#;
+
+/// A stop at zero, where the gap is its own size.
+const AT_THE_ORIGIN: &str = r#"
+schema = 1
+name = "origin"
+states = ["x", "v"]
+forcing = { omega = 0.9, phi = 0.4 }
+parameters = { k = 1, F = 0, mu = 0.25, g = 1, e = 0.6 }
+[[mode]]
+name = "down"
+equations = ["x' = v", "v' = -g - k*x + mu + F*cos"]
+[[mode.until]]
+name = "impact"
+guard = "x < 0"
+reset = ["x = 0", "v = -e*v"]
+next = [{ mode = "up" }]
+accumulates_to = { reset = ["x = 0", "v = 0"], next = "rest" }
+[[mode]]
+name = "up"
+equations = ["x' = v", "v' = -g - k*x - mu + F*cos"]
+[[mode.until]]
+name = "turn"
+guard = "v < 0"
+next = [{ mode = "down" }]
+[[mode]]
+name = "rest"
+equations = ["x' = 0", "v' = 0"]
+[start]
+mode = "down"
+x = 0.5
+v = 0
+"#;
+
+#[test]
+fn runs_in_f64_have_the_rows_of_proved_ones() {
+    for text in [WATCHED, AT_THE_ORIGIN] {
+        let system = System::from_toml(text).unwrap();
+        let solver = system.solver::<Proved>().unwrap();
+        let proved: Vec<_> = solver.run().until(7.0).unwrap().collect();
+        let solver = system.solver::<f64>().unwrap();
+        let plain: Vec<_> = solver.run().until(7.0).unwrap().collect();
+        assert_eq!(plain.len(), proved.len());
+        for (plain, proved) in plain.iter().zip(&proved) {
+            assert_eq!(plain.name(), proved.name(), "{plain:?} {proved:?}");
+            assert!((plain.time() - proved.time().midpoint()).abs() < 1e-12, "{plain:?}");
+        }
+    }
+}

@@ -50,8 +50,8 @@ pub(super) struct Remaining<T: Number> {
     /// relative error.
     pub quotient: T,
     pub quotient_error: T::Bound,
-    /// A factor up to which the quotient may change on the way to the limit, and one over it.
-    pub spread: T,
+    /// The least and the largest that the quotient may be on the way to the limit.
+    pub quotients: [T; 2],
     /// A bound of what errors of e and of the accelerations add to the time.
     pub unknown: T::Bound,
     /// For each entry of z, how far the rest of the motion goes from the state at most.
@@ -72,9 +72,8 @@ struct Bounds<T> {
     earliest: T,
     latest: T,
     before_turns: [T; 2],
-    spread: T,
-    /// The largest quotient of the rates of two impacts.
-    largest: T,
+    /// The least and the largest quotient of the rates of two impacts.
+    quotients: [T; 2],
 }
 
 impl<'a, T: Number> Leg<'a, T> {
@@ -151,7 +150,7 @@ impl<T: Number> Run<'_, T> {
             (z[n] - impact.before[n]).bound().abs() + off[n] + impact.errors_before[n]
         });
         let (bounds, tube) = settled(&legs, z, [e, departing], [&off, &jump])?;
-        if !self.nothing_else_happens(impact, modes, &tube) {
+        if !self.nothing_else_happens(impact, &tube) {
             return None;
         }
         self.remaining(&legs, e, modes, bounds, tube)
@@ -187,7 +186,7 @@ impl<T: Number> Run<'_, T> {
             before_turns: bounds.before_turns,
             quotient,
             quotient_error: rate_share + own_error + T::unit() * 8.0,
-            spread: bounds.spread,
+            quotients: bounds.quotients,
             unknown: if is_enclosed { rest * latest.bound() } else { T::Bound::ZERO },
             tube,
             modes,
@@ -195,12 +194,7 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// Whether, in a tube, no other `until` fires, and every successor is the one that followed.
-    fn nothing_else_happens(
-        &mut self,
-        impact: &Impact<'_, T>,
-        modes: [usize; 2],
-        tube: &Vector<T::Bound>,
-    ) -> bool {
+    fn nothing_else_happens(&mut self, impact: &Impact<'_, T>, tube: &Vector<T::Bound>) -> bool {
         let own = (impact.from, impact.firing);
         let until = impact.firing.until;
         let kept = match &impact.turn {
@@ -212,12 +206,9 @@ impl<T: Number> Run<'_, T> {
                 [kept[1], kept[0] | 1 << until]
             }
         };
-        // The tracks are those of the present mode.
-        let is_live = |n: usize| self.tracks_live(n);
-        let multiplicities = &self.graph.node(impact.from).multiplicities;
-        let may_leave = |n: usize| multiplicities[n].is_some();
-        let is_quiet = self.stays_inside(modes[0], kept[0], is_live, tube)
-            && (impact.turn.is_none() || self.stays_inside(modes[1], kept[1], may_leave, tube));
+        let nodes = [self.node, impact.from];
+        let legs = if impact.turn.is_some() { 2 } else { 1 };
+        let is_quiet = (0..legs).all(|n| self.stays_inside(nodes[n], kept[n], tube));
         is_quiet
             && self.is_followed_by(own, impact.successor, tube)
             && impact
@@ -225,22 +216,18 @@ impl<T: Number> Run<'_, T> {
                 .is_none_or(|it| self.is_followed_by((it.node, it.firing), it.successor, tube))
     }
 
-    /// Whether the guards of a mode's `until` stay negative in a tube: but for those that are kept
-    /// inside by the model, as bits, and those that cannot move.
-    fn stays_inside(
-        &self,
-        mode: usize,
-        kept: u64,
-        moves: impl Fn(usize) -> bool,
-        tube: &Vector<T::Bound>,
-    ) -> bool {
+    /// Whether the guards of `until` stay negative in a tube, in the mode of a node: but for those
+    /// that are kept inside by the model, as bits, and those that stay zero.
+    fn stays_inside(&self, node: usize, kept: u64, tube: &Vector<T::Bound>) -> bool {
+        let node = self.graph.node(node);
+        let (mode, stays_zero) = (node.mode, |n: usize| node.multiplicities[n].is_none());
         let own = &self.solver.modes[mode];
         let until = self.solver.system.modes[mode].until.len();
         let is_inside = |n: usize| {
             let row = &own.rows[n];
             dot(row, &self.state, own.flow.dimension).bound() + size_in(row, tube) < 0.0
         };
-        (0..until).all(|n| kept >> n & 1 == 1 || !moves(n) || is_inside(n))
+        (0..until).all(|n| kept >> n & 1 == 1 || stays_zero(n) || is_inside(n))
     }
 
     /// Whether an event of a node has the same successor wherever in a tube it happens.
@@ -298,7 +285,8 @@ fn settled<T: Number>(
     for _ in 0..MAX_WIDENINGS {
         let bounds = bounds_in(legs, z, [e, departing], &tube)?;
         let time = bounds.latest.bound();
-        let jumps = (bounds.largest / (T::one() - bounds.largest)).bound();
+        let [_, largest] = bounds.quotients;
+        let jumps = (largest / (T::one() - largest)).bound();
         let mut reach = [T::Bound::ZERO; LARGEST_DIMENSION];
         for (n, reach) in reach.iter_mut().enumerate().take(dimension) {
             let fastest = legs[0].fastest(n, z, &tube).max(legs[1].fastest(n, z, &tube));
@@ -327,14 +315,11 @@ fn bounds_in<T: Number>(
         return None;
     }
     let [early, late] = [departing / (one - least), departing / (one - largest)];
-    let spread = (a2 / a1).sqrt();
-    let is_cycle = !std::ptr::eq(legs[0].own, legs[1].own);
     Some(Bounds {
         earliest: early / b2 + early / (a2 * b2).sqrt(),
         latest: late / b1 + late / (a1 * b1).sqrt(),
         before_turns: [early / b2, late / b1],
-        spread: if is_cycle { spread * (b2 / b1).sqrt() } else { spread },
-        largest,
+        quotients: [least, largest],
     })
 }
 

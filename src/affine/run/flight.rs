@@ -10,7 +10,7 @@ use super::series::{MAX_SERIES_ARGUMENT, gain, landing, sum};
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{dot, is_f64};
 use crate::affine::zeros::graph::{Firing, ZeroGuards};
-use crate::numeric::number::{Bound, Number};
+use crate::numeric::number::Number;
 
 /// The share of the sizes of its terms below which a gap is followed from the last impact: the
 /// state has all but four bits of a larger one.
@@ -19,8 +19,9 @@ const SMALL_GAP: f64 = 1.0 / 16.0;
 /// The rest of a flight.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flight<T> {
-    /// The guards that cross zero at its end, as bits.
+    /// The guards that cross zero at its end, as bits, and those of them that fall.
     pub guards: u64,
+    pub falling: u64,
     /// The time from the entry of the segment to the impact.
     pub elapsed: T,
 }
@@ -45,13 +46,21 @@ impl<T: Number> Run<'_, T> {
         let gained = gain(solver, before, &start, elapsed);
         let gap = dot(row, &gained, solver.system.dimension());
         let here = sum(&start, &gained, T::one());
-        let size: T::Bound = row.iter().zip(&here).map(|(a, b)| (*a * *b).bound().abs()).sum();
+        // The state has come from modal co-ordinates, and has their roundings.
+        let own = &solver.modes[after];
+        let (_, size) = own.guards[until].order(0, &own.flow.modal(&here));
         let is_small = gap < T::zero() && -gap.bound() < size * SMALL_GAP;
         if !is_small {
             return None;
         }
         let elapsed = landing(solver, after, row, gap, &here)?;
         let zero = ZeroGuards { guards: 1 << until, point: None };
-        Some(Flight { guards: self.graph.tied_guards(next, zero, false), elapsed })
+        let guards = self.graph.tied_guards(next, zero, false);
+        let bends = solver.rates_of(after, &solver.rates_of(after, &here));
+        // A multiple of the gap bends as the gap does, times its factor.
+        let falls = |n: &usize| dot(&own.rows[*n], &bends, solver.system.dimension()) < T::zero();
+        let all = (0..own.rows.len()).filter(|n| guards >> n & 1 == 1);
+        let falling = all.filter(falls).fold(0, |mask, n| mask | 1 << n);
+        Some(Flight { guards, falling, elapsed })
     }
 }

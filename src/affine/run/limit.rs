@@ -177,6 +177,23 @@ impl<T: Number> Run<'_, T> {
         enclosure.time() / scale * growth * VAGUE >= left * left
     }
 
+    /// Whether the first order of a limit leaves out no more than roundings of the largest state, in
+    /// a run that follows no errors, or as much as can be told.
+    fn has_small_second_order(&self, left: &Remaining<T>) -> bool {
+        let (system, time) = (&self.solver.system, left.latest.bound());
+        let states = self.state.iter().zip(&system.scales);
+        let sizes = states.map(|(it, scale)| it.bound().abs() / *scale);
+        let largest = sizes.fold(T::Bound::from_f64(1.0), |most, it| most.max(it));
+        let is_small = |mode: usize| {
+            let rows = self.solver.modes[mode].matrix.iter().zip(&system.scales);
+            rows.into_iter().all(|(row, scale)| {
+                let terms = row.iter().zip(&left.tube).map(|(a, it)| a.bound().abs() * *it);
+                terms.sum::<T::Bound>() * time <= largest * *scale * T::unit()
+            })
+        };
+        left.modes.into_iter().all(is_small) || self.is_within(left, UNDECIDED_F64_BITS)
+    }
+
     fn pass_near_limit(&mut self, limit: &LimitAhead<T>, there: &LimitState<T>) {
         let mode = self.graph.node(limit.node).mode;
         let solver = self.solver;
@@ -214,8 +231,11 @@ impl<T: Number> Run<'_, T> {
 
     /// The state at a limit; none where that is too far for the first order.
     fn limit_state(&self, limit: &LimitAhead<T>, left: &Remaining<T>) -> Option<LimitState<T>> {
-        let is_near = self.is_within(left, share::<T>(FIRST_ORDER_SHARE)) || self.is_vague(left);
-        if T::WORDS > 1 && !is_near {
+        let is_near = match T::WORDS {
+            1 => self.has_small_second_order(left),
+            _ => self.is_within(left, share::<T>(FIRST_ORDER_SHARE)) || self.is_vague(left),
+        };
+        if !is_near {
             return None;
         }
         let solver = self.solver;
@@ -261,10 +281,10 @@ impl<T: Number> Run<'_, T> {
         let time = left.latest.bound() + left.unknown;
         // The sum of the jumps that follow, in jumps of the impact just passed.
         let sum = |q: T| q / (T::one() - q);
-        let (q, s) = (left.quotient, left.spread);
-        let (jumps, most_jumps) = (sum(q).bound(), sum(q * s).bound());
-        let unknown = most_jumps * left.quotient_error / (T::one() - q * s).bound();
-        let apart = (sum(q * s) - sum(q / s)).bound() + unknown;
+        let [least, largest] = left.quotients;
+        let (jumps, most_jumps) = (sum(left.quotient).bound(), sum(largest).bound());
+        let unknown = most_jumps * left.quotient_error / (T::one() - largest).bound();
+        let apart = (sum(largest) - sum(least)).bound() + unknown;
         let jump = |n: usize| limit.jump[n].bound().abs() + limit.jump_errors[n];
         let matrices = left.modes.map(|mode| &solver.modes[mode].matrix);
         let size = |row: &Vector<T>, of: &dyn Fn(usize) -> T::Bound| -> T::Bound {

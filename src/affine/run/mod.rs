@@ -155,10 +155,6 @@ impl<'a, T: Number> Run<'a, T> {
         }
     }
 
-    fn tracks_live(&self, guard: usize) -> bool {
-        self.tracks[guard].live
-    }
-
     /// Enters the mode of the present node with the present state.
     fn enter(&mut self) {
         let solver = self.solver;
@@ -198,7 +194,9 @@ impl<'a, T: Number> Run<'a, T> {
             let is_flying = self.flight.is_some_and(|it| it.guards >> n & 1 == 1);
             let order = order.filter(|_| !is_flying && !self.never_crosses(mode, n));
             let Some(order) = order else {
-                self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
+                let falls = self.flight.is_some_and(|it| it.falling >> n & 1 == 1);
+                let outward = if falls { -1.0 } else { 1.0 };
+                self.tracks.push(Track { outward, zeros: 0, live: false });
                 continue;
             };
             let (value, size) = row.order(order, &self.segment.entry);

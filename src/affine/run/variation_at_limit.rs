@@ -177,7 +177,29 @@ impl<T: Number> Variation<T> {
             self.columns.iter_mut().for_each(|it| *it = [none; LARGEST_DIMENSION]);
             self.delays = Some(vec![none; self.columns.len()]);
         }
+        self.keep_on_guard(solver, mode, until);
         self.reset_by(solver, mode, exit);
+    }
+
+    /// Takes away what rounding has made of the changes of a guard and of its rate, which are zero
+    /// at a limit: by the states alone, since the time has its own changes.
+    fn keep_on_guard(&mut self, solver: &Solver<T>, mode: usize, until: usize) {
+        let states = solver.system.states.len();
+        let guard = solver.modes[mode].rows[until];
+        let rate = solver.rate_row(mode, &guard);
+        let share = dot(&rate, &guard, states) / dot(&guard, &guard, states);
+        for row in [guard, sum(&rate, &guard, -share)] {
+            let square = dot(&row, &row, states);
+            // A guard of the forcing alone has no states; a comparison with NaN is false.
+            if square > T::zero() {
+                for column in &mut self.columns {
+                    let factor = dot(&row, column, solver.system.dimension()) / square;
+                    column[..states].iter_mut().zip(&row).for_each(|(it, own)| {
+                        *it = *it - factor * *own;
+                    });
+                }
+            }
+        }
     }
 
     /// Carries changes from an impact to the limit.
