@@ -304,8 +304,8 @@ fn a_short_flight_need_not_land() {
     }
 }
 
-/// A jump that sums up over some thousand impacts, whose quotient grows with the time to 1 - 1/128
-/// times as much: its sum is enclosed, or not known.
+/// Some thousand impacts whose jumps sum up in p. The bounds of the quotient of their rates are far
+/// apart: the sum is enclosed, or not known.
 const LONG_SUM: &str = r#"
 schema = 1
 name = "unsound"

@@ -177,8 +177,8 @@ impl<T: Number> Run<'_, T> {
         enclosure.time() / scale * growth * VAGUE >= left * left
     }
 
-    /// Whether the first order of a limit leaves out no more than roundings of the largest state, in
-    /// a run that follows no errors, or as much as can be told.
+    /// Whether the first order of a limit leaves out no more than a rounding of the largest state,
+    /// or no flight nearer to it can be told from rounding, in a run that follows no errors.
     fn has_small_second_order(&self, left: &Remaining<T>) -> bool {
         let (system, time) = (&self.solver.system, left.latest.bound());
         let states = self.state.iter().zip(&system.scales);
