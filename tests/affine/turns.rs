@@ -256,8 +256,8 @@ fn a_rig_with_friction_and_a_stop_is_decided_in_f64_too() {
     }
 }
 
-/// A gap that opens again before it closes, where the next pull comes late, and one that closes ever
-/// faster: a run in f64 takes no time of a series for a landing that is none, or another one.
+/// A gap that opens again before it closes, where the next pull comes late, and one that closes
+/// ever faster: a run in f64 takes no time of a series for a landing that is none, or another one.
 #[test]
 fn a_short_flight_need_not_land() {
     for (speed, pull, landings) in [(0.000_042_7, "-b + c*y", 0), (0.000_04, "-b/2000 - c*y", 1)] {

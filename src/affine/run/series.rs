@@ -18,7 +18,8 @@ const LAST_STEP: f64 = 1.0 / 64.0;
 const MAX_WIDENINGS: u32 = 8;
 
 /// The time from a turn, where a row is negative with this value and has no rate, to the row's
-/// first zero in a mode: its second derivative is proved to be positive up to there. None otherwise.
+/// first zero in a mode: its second derivative is proved to be positive up to there. None
+/// otherwise.
 pub(super) fn landing<T: Number>(
     solver: &Solver<T>,
     mode: usize,
