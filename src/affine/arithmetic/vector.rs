@@ -59,6 +59,12 @@ pub fn dot<E: Entry>(a: &[E], b: &[E], dimension: usize) -> E {
     sum
 }
 
+/// An upper bound of the size of a row's product with any vector whose entries have at most these
+/// sizes.
+pub fn row_size<T: Number>(row: &Vector<T>, sizes: &Vector<T::Bound>) -> T::Bound {
+    row.iter().zip(sizes).map(|(a, b)| a.bound().abs() * *b).sum()
+}
+
 /// Adds a multiple of a vector. It is indexed because zipped iterators are not always inlined.
 #[allow(clippy::needless_range_loop, reason = "an iterator costs a call")]
 #[inline(always)]

@@ -11,7 +11,7 @@
 use super::enclosure::Enclosure;
 use super::turn::Turn;
 use super::{Restitution, Run};
-use crate::affine::arithmetic::vector::{Vector, dot};
+use crate::affine::arithmetic::vector::{Vector, dot, row_size};
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::zeros::graph::{Cycle, Firing};
@@ -88,15 +88,15 @@ impl<'a, T: Number> Leg<'a, T> {
 
     /// The least and the largest bend in a tube.
     fn bends(&self, z: &Vector<T>, tube: &Vector<T::Bound>) -> [T; 2] {
-        let (bend, room) = (self.bend(z), T::of_bound(size_in(&self.orders[2], tube)));
+        let (bend, room) = (self.bend(z), T::of_bound(row_size(&self.orders[2], tube)));
         [bend - room, bend + room]
     }
 
     /// The size of the rate of an entry of z in a tube, at most.
     fn fastest(&self, n: usize, z: &Vector<T>, tube: &Vector<T::Bound>) -> T::Bound {
         let row = &self.own.matrix[n];
-        let rounding = size_in(row, &sizes(z)) * T::unit() * row.len() as f64;
-        dot(row, z, self.own.flow.dimension).bound().abs() + rounding + size_in(row, tube)
+        let rounding = row_size(row, &sizes(z)) * T::unit() * row.len() as f64;
+        dot(row, z, self.own.flow.dimension).bound().abs() + rounding + row_size(row, tube)
     }
 
     /// A bound of the relative error of a derivative of the gap.
@@ -108,10 +108,10 @@ impl<'a, T: Number> Leg<'a, T> {
     ) -> T::Bound {
         let row = &self.orders[order];
         let terms = (0..order).fold(sizes(z), |sizes, _| {
-            let entry = |n: usize| self.own.matrix.get(n).map(|row| size_in(row, &sizes));
+            let entry = |n: usize| self.own.matrix.get(n).map(|row| row_size(row, &sizes));
             std::array::from_fn(|n| entry(n).unwrap_or(T::Bound::ZERO))
         });
-        let rounding = T::unit() * 32.0 * size_in(&self.orders[0], &terms);
+        let rounding = T::unit() * 32.0 * row_size(&self.orders[0], &terms);
         let inherited = enclosure.map_or(T::Bound::ZERO, |it| it.of_plain_row(row));
         let value = dot(row, z, self.own.flow.dimension).bound().abs();
         (inherited + rounding) * 4.0 / value
@@ -225,7 +225,7 @@ impl<T: Number> Run<'_, T> {
         let until = self.solver.system.modes[mode].until.len();
         let is_inside = |n: usize| {
             let row = &own.rows[n];
-            dot(row, &self.state, own.flow.dimension).bound() + size_in(row, tube) < 0.0
+            dot(row, &self.state, own.flow.dimension).bound() + row_size(row, tube) < 0.0
         };
         (0..until).all(|n| kept >> n & 1 == 1 || stays_zero(n) || is_inside(n))
     }
@@ -250,7 +250,7 @@ impl<T: Number> Run<'_, T> {
             let row = (0..order).fold(*row, |row, _| solver.rate_row(mode, &row));
             let value = dot(&row, z, solver.system.dimension()).bound();
             let value = if n == successor { value } else { -value };
-            if value - size_in(&row, tube) <= 0.0 {
+            if value - row_size(&row, tube) <= 0.0 {
                 return false;
             }
         }
@@ -325,9 +325,4 @@ fn bounds_in<T: Number>(
 
 fn sizes<T: Number>(z: &Vector<T>) -> Vector<T::Bound> {
     z.map(|it| it.bound().abs())
-}
-
-/// The size of the product of a row and any vector whose entries have at most these sizes.
-fn size_in<T: Number>(row: &Vector<T>, sizes: &Vector<T::Bound>) -> T::Bound {
-    row.iter().zip(sizes).map(|(a, b)| a.bound().abs() * *b).sum()
 }

@@ -10,7 +10,7 @@
 //! that is 1. So the phase has the error of the time, in each column, and no errors of either are
 //! carried along.
 
-use crate::affine::arithmetic::vector::{Vector, dot, sum_rounding};
+use crate::affine::arithmetic::vector::{Vector, dot, row_size, sum_rounding};
 use crate::affine::closed_form::bound::ORDERS;
 use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::closed_form::modal_state::ModalState;
@@ -307,12 +307,6 @@ fn rate_roundings<T: Number>(
 /// The sum of the sizes of products.
 fn product_size<T: Number>(row: &Vector<T>, state: &Vector<T>) -> T::Bound {
     row.iter().zip(state).map(|(a, b)| (a.bound() * b.bound()).abs()).sum()
-}
-
-/// An upper bound of the size of a row's product with any vector whose entries have at most these
-/// sizes.
-fn row_size<T: Number>(row: &Vector<T>, sizes: &Vector<T::Bound>) -> T::Bound {
-    row.iter().zip(sizes).map(|(a, b)| a.bound().abs() * *b).sum()
 }
 
 /// Bounds of the rounding errors of columns' entries that are summed from these sizes and moved at

@@ -11,7 +11,7 @@ use super::Run;
 use super::accumulation::{Impact, Remaining};
 use super::enclosure::{Enclosure, ErrorColumn, rates};
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::arithmetic::vector::{Vector, add_product};
+use crate::affine::arithmetic::vector::{Vector, add_product, row_size};
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::graph::{Firing, ZeroGuards};
@@ -187,8 +187,7 @@ impl<T: Number> Run<'_, T> {
         let is_small = |mode: usize| {
             let rows = self.solver.modes[mode].matrix.iter().zip(&system.scales);
             rows.into_iter().all(|(row, scale)| {
-                let terms = row.iter().zip(&left.tube).map(|(a, it)| a.bound().abs() * *it);
-                terms.sum::<T::Bound>() * time <= largest * *scale * T::unit()
+                row_size(row, &left.tube) * time <= largest * *scale * T::unit()
             })
         };
         left.modes.into_iter().all(is_small) || self.is_within(left, UNDECIDED_F64_BITS)

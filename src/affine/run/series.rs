@@ -1,7 +1,7 @@
 //! Short motions by the series of the flow less what it begins with: what changes little keeps all
 //! of its digits.
 
-use crate::affine::arithmetic::vector::{Vector, dot};
+use crate::affine::arithmetic::vector::{Vector, dot, row_size};
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::Solver;
 use crate::numeric::number::{Bound, Number};
@@ -49,14 +49,11 @@ fn keeps_bend<T: Number>(
     elapsed: T,
 ) -> bool {
     let dimension = solver.system.dimension();
-    let size = |row: &Vector<T>, of: &Vector<T::Bound>| -> T::Bound {
-        row.iter().zip(of).map(|(a, b)| a.bound().abs() * *b).sum()
-    };
     let (matrix, time) = (&solver.modes[mode].matrix, elapsed.bound() * 2.0);
     let rates = solver.rates_of(mode, state).map(|it| it.bound().abs());
     let moved = |reach: &Vector<T::Bound>| -> Vector<T::Bound> {
         std::array::from_fn(|n| {
-            matrix.get(n).map_or(T::Bound::ZERO, |own| (rates[n] + size(own, reach)) * time)
+            matrix.get(n).map_or(T::Bound::ZERO, |own| (rates[n] + row_size(own, reach)) * time)
         })
     };
     let mut reach = rates.map(|it| it * time);
@@ -71,7 +68,7 @@ fn keeps_bend<T: Number>(
     let second = solver.rate_row(mode, &solver.rate_row(mode, row));
     let third = solver.rate_row(mode, &second);
     let bend = dot(&second, state, dimension).bound();
-    let change = dot(&third, state, dimension).bound().abs() + size(&third, &reach);
+    let change = dot(&third, state, dimension).bound().abs() + row_size(&third, &reach);
     is_held && change * time < bend * 0.5
 }
 
