@@ -53,6 +53,13 @@ def proportion(row: fmpq_mat, unit: fmpq_mat, space: Space) -> fmpq | None:
     return factor if row == unit * factor else None
 
 
+def changes_nothing(event) -> bool:
+    """Are all changes by the reset of an event multiples of its guard, which is zero there?"""
+    size = event.reset.nrows()
+    change, nothing = event.reset - identity(size), Space(fmpq_mat(0, size))
+    return all(proportion(row_of(change, i), event.guard, nothing) is not None for i in range(size))
+
+
 def restitution(impact: Impact) -> fmpq | None:
     """e, if the event is an impact: its guard stays zero and its rate turns to -e times itself."""
     event, space = impact.event, impact.space
@@ -66,7 +73,7 @@ def restitution(impact: Impact) -> fmpq | None:
 def turns_back(impact: Impact) -> bool:
     """Does the turn, if there is one, end the way back, where the gap's rate is zero in both modes?
 
-    A turn has no reset.
+    The reset of a turn changes nothing.
     """
     event, turn, back, on = impact.event, impact.turn, impact.back, impact.on
     if turn is None:
@@ -74,7 +81,7 @@ def turns_back(impact: Impact) -> bool:
     rates = [event.guard * leg.matrix for leg in (back, on)]
     lasting = back.space.carried(back.matrix)
     return (
-        turn.reset == identity(turn.reset.nrows())
+        changes_nothing(turn)
         and back.space.holds(rates[0] - rates[1])
         and on.space.holds(rates[1])
         and proportion(turn.guard, rates[0], lasting) is not None

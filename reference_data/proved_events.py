@@ -13,10 +13,9 @@ from types import SimpleNamespace
 
 from flint import arb, arb_mat, ctx, fmpq_mat
 
-from accumulation import Impact
+from accumulation import Impact, changes_nothing
 from affine_expression import number
 from crossing import Undecided, refine
-from modal import identity
 from spread import Spread
 from system_case import SystemCase
 from system_crossing import Crossing, Time, crossings
@@ -186,7 +185,7 @@ class EventRun(Run):
             self.reset(event)
             self.add(event.name, self.state)
             count, events = count + 1, self.entering(self.state)
-            turns = event.reset == identity(self.system.size)
+            turns = changes_nothing(event)
             if rested is None or not (turns and self.state.mode == rested[1]):
                 rested = (event, mode) if self.rests(event, mode) else None
             if events and rested is not None:

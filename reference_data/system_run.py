@@ -6,7 +6,7 @@ from typing import NamedTuple
 from flint import arb, arb_mat, fmpq, fmpq_mat
 
 import modal
-from accumulation import Impact, Leg, Remaining, accumulation
+from accumulation import Impact, Leg, Remaining, accumulation, changes_nothing
 from affine_expression import Refused
 from crossing import Undecided
 from harmonic import Harmonic, of_forcing, since_entry, structural_value
@@ -74,7 +74,7 @@ class Cycle:
         impact, turn = self.impact, self.turn
         self.impact, self.turn = None, None
         if impact is not None and (impact[1], impact[2].mode) == (after.mode, before.mode):
-            if event.reset == modal.identity(event.reset.nrows()):
+            if changes_nothing(event):
                 self.turn = Turn(event, impact[0], legs(impact[2]), legs(after))
                 return None
         if after.mode == before.mode:
@@ -339,10 +339,10 @@ class Run:
             self.cycle = Cycle()
             return None
         turn = self.cycle.passed(event, before, self.state, self.leg)
-        back, on = self.leg(self.state), self.leg(self.state)
+        back = self.leg(self.state)
         if turn is not None:
             return Impact(event, before.space, back, turn.on, turn.event)
-        return Impact(event, before.space, back, on) if before.mode == self.state.mode else None
+        return Impact(event, before.space, back, back) if before.mode == self.state.mode else None
 
     def leg(self, entry: HybridState) -> Leg:
         mode = self.system.modes[entry.mode]

@@ -43,7 +43,7 @@ pub use model::observable::Observable;
 pub use model::rational::{Rational, RationalError};
 pub use model::system::{
     Direction, Forcing, LARGEST_DIMENSION, Limit, Mode, Row, StartPoint, Successor, System,
-    TROUBLE, Until, Watch, is_unit,
+    TROUBLE, Until, Watch, is_multiple, is_unit,
 };
 pub use model::tangent::{Name, Tangent};
 pub use returns::diagram::{LeftOut, ReturnDiagram, ReturnDiagramStep, ValueError};

@@ -3,7 +3,7 @@
 
 use super::past_limits::{judge, overlap};
 use super::{enclosed_events, events, names};
-use percuss::affine::{Bits212, DoubleDouble};
+use percuss::affine::{Bits212, DoubleDouble, Ending as AffineEnding, What};
 use percuss::number::Number;
 use percuss::{Ending, Proved, System};
 use proptest::prelude::*;
@@ -12,6 +12,11 @@ use proptest::prelude::*;
 /// tau it is thrown again, twice. The state s is the integral of x, m the sum of the changes of v
 /// at impacts, and n counts throws.
 fn ball(numbers: &str) -> System {
+    ball_with_turn("", numbers)
+}
+
+/// The same ball, whose turn has these keys too.
+fn ball_with_turn(keys: &str, numbers: &str) -> System {
     let text = format!(
         r#"
         schema = 1
@@ -46,6 +51,7 @@ fn ball(numbers: &str) -> System {
         [[mode.until]]
         name = "turn"
         guard = "v < 0"
+        {keys}
         next = [{{ mode = "falling" }}]
         [start]
         mode = "rising"
@@ -103,6 +109,24 @@ proptest! {
 }
 
 /// Without the key the run ends at the accumulation, which is enclosed.
+/// A turn changes nothing by multiples of its guard; any other change is one, and impacts with it
+/// are not known to accumulate.
+#[test]
+fn the_reset_of_a_turn_may_add_multiples_of_its_guard_alone() {
+    let numbers = [3.0, 2.0, 5.0, 0.5, 1.0];
+    let with = |reset: &str| {
+        let keys = format!("reset = {reset}");
+        let ball = ball_with_turn(&keys, "u = 3, a = 2, b = 5, e = 0.5, tau = 1");
+        events::<f64>(&ball, 9.0)
+    };
+    let neutral = [r#"["v = 0"]"#, r#"["v = 0", "x = x - 2*v", "m = m + 3*v"]"#];
+    for reset in neutral {
+        judge(&with(reset), |n| closed_form(numbers, n), [1e-12, 1e-12]);
+    }
+    let changed = with(r#"["m = m + 1"]"#);
+    assert_eq!(changed.last().map(|it| it.what), Some(What::End(AffineEnding::Undecided)));
+}
+
 #[test]
 fn a_run_without_the_key_ends_with_the_time_enclosed() {
     let numbers = [3.0, 2.0, 5.0, 0.5, 1.0];

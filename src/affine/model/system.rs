@@ -34,6 +34,16 @@ pub fn is_unit(row: &Row, n: usize) -> bool {
     row.iter().enumerate().all(|(k, it)| if k == n { it.is_one() } else { it.is_zero() })
 }
 
+/// Whether a row is a multiple of another one.
+#[must_use]
+pub fn is_multiple(row: &Row, of: &Row) -> bool {
+    let Some(at) = of.iter().position(|it| !it.is_zero()) else {
+        return row.iter().all(Rational::is_zero);
+    };
+    let factor = &row[at] / &of[at];
+    row.iter().zip(of).all(|(a, b)| *a == b * &factor)
+}
+
 /// The largest number of entries of z.
 pub const LARGEST_DIMENSION: usize = 12;
 
@@ -183,6 +193,16 @@ impl Until {
     pub(in crate::affine) fn keeps_guard_zero(&self) -> bool {
         let after = row_times(&self.guard, &self.reset);
         after == self.guard || after.iter().all(Rational::is_zero)
+    }
+
+    /// Whether the reset changes nothing where the guard is zero: all that it adds to entries of z
+    /// are multiples of the guard.
+    pub(in crate::affine) fn changes_nothing(&self) -> bool {
+        self.reset.iter().enumerate().all(|(n, row)| {
+            let mut added = row.clone();
+            added[n] -= Rational::ONE;
+            is_multiple(&added, &self.guard)
+        })
     }
 }
 

@@ -31,7 +31,7 @@ impl RepeatedImpact {
     pub fn turn<T: Number>(self, solver: &Solver<T>, to: &Event<T>) -> Option<usize> {
         let What::Until(mode, turn) = to.what else { return None };
         let leads_back = mode == self.after && to.mode == self.mode && mode != to.mode;
-        (leads_back && solver.modes[mode].changes[turn].is_empty()).then_some(turn)
+        (leads_back && solver.modes[mode].changes_nothing[turn]).then_some(turn)
     }
 }
 

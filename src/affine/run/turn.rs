@@ -1,5 +1,5 @@
 //! Turns between impacts: an impact may lead into another mode, such as one of friction that acts
-//! the other way, which ends where the gap's rate is zero and leads back without a reset.
+//! the other way, which ends where the gap's rate is zero and leads back without a change.
 //!
 //! A run remembers its last impact and what has followed it. By the next impact from the same node,
 //! into the same one, the cycle is closed, and may accumulate.
@@ -67,8 +67,8 @@ impl<T: Number> Run<'_, T> {
         let (to, discards, until) = (self.node, self.graph.discards, firing.until);
         let next = self.graph.node(to).mode;
         let leads_back = |it: &LastImpact| {
-            let has_reset = !self.solver.modes[mode].changes[until].is_empty();
-            !has_reset && (it.to, it.mode, it.discards) == (from, next, discards)
+            let unchanged = self.solver.modes[mode].changes_nothing.get(until) == Some(&true);
+            unchanged && (it.to, it.mode, it.discards) == (from, next, discards)
         };
         if let Some(impact) = impact.filter(leads_back) {
             let LastImpact { until: impact, rests, .. } = impact;

@@ -53,9 +53,11 @@ pub(super) struct SolverMode<T: Number> {
     pub changes: Vec<Vec<Change<T>>>,
     /// For each `until`, whether it may accumulate and its guard stays zero across its reset.
     pub stays_zero: Vec<bool>,
+    /// For each `until`, whether its reset changes nothing where its guard is zero.
+    pub changes_nothing: Vec<bool>,
     /// The conditions of the successors of each reset, in the co-ordinates of their modes.
     pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
-    /// The same rows in the entries of z.
+    /// The rows of those conditions, in the entries of z.
     pub condition_rows: Vec<Vec<Option<Vector<T>>>>,
     /// The mode's rows in exact arithmetic, once a run asks for them.
     pub exact: OnceLock<ExactMode>,
@@ -120,6 +122,7 @@ impl<T: Number> Solver<T> {
                 rows: guards.iter().map(|it| numbers(it)).collect(),
                 resets: resets.collect(),
                 changes: mode.exits().map(|(reset, _)| changes(reset)).collect(),
+                changes_nothing: mode.until.iter().map(Until::changes_nothing).collect(),
                 stays_zero: mode.until.iter().map(stays_zero).collect(),
                 conditions: conditions.collect(),
                 condition_rows: condition_rows.collect(),

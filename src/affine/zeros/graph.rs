@@ -8,7 +8,7 @@ use super::circle::Circle;
 use super::residue::{Residue, Residues, residues, row_times};
 use super::space::ZeroSpace;
 use crate::affine::model::rational::Rational;
-use crate::affine::model::system::{Mode, Row, Successor, System};
+use crate::affine::model::system::{Mode, Row, Successor, System, Until};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -27,6 +27,8 @@ struct ModeResidues {
     points: Vec<[Vec<Residues>; 2]>,
     /// The resets of `until`, then those of their limits.
     resets: Vec<Vec<Residues>>,
+    /// For each `until`, whether its reset changes nothing.
+    unchanged: Vec<bool>,
     /// The conditions of each reset's successors, with their modes.
     next: Vec<Vec<(Option<Residues>, usize)>>,
 }
@@ -185,9 +187,9 @@ impl ZeroGraph {
     /// The guards that impacts and turns keep inside, as bits: those of the impact's mode, and
     /// those of the turn's. None if the turn is none of the impact.
     ///
-    /// With the guard h of the impact, a turn has no reset, its guard is a multiple of h' in its
-    /// mode, where h' begins as in the impact's, and h' is zero in the impact's mode, in whose node
-    /// it has arrived. Guards that are multiples of h', or in the turn's mode of h, keep the sign
+    /// With the guard h of the impact, the reset of a turn changes nothing, its guard is a multiple
+    /// of h' in its mode, where h' begins as in the impact's, and h' is zero in the impact's mode,
+    /// in whose node it has arrived. Guards that are multiples of h', or in the turn's mode of h, keep the sign
     /// that they have at first.
     pub fn kept_inside(&mut self, cycle: Cycle) -> Option<[u64; 2]> {
         let between = cycle.turn.0;
@@ -200,8 +202,8 @@ impl ZeroGraph {
         found
     }
 
-    /// A guard of an `until` of the node that follows an event without a reset: one that was zero
-    /// at the entry of the node before it, and whose rate is zero after the event.
+    /// A guard of an `until` of the node that follows an event whose reset changes nothing: one that
+    /// was zero at the entry of the node before it, and whose rate is zero after the event.
     #[inline]
     pub fn returning_guard(&mut self, node: usize, until: usize, next: usize) -> Option<usize> {
         let asked = |it: &&(usize, usize, Option<usize>)| (it.0, it.1) == (until, next);
@@ -216,8 +218,8 @@ impl ZeroGraph {
                 && !to.zeros.contains(guard)
                 && to.zeros.contains(&row_times(guard, &own.matrix))
         };
-        let has_reset = !is_identity(&self.modes[from.mode].resets[until]);
-        let found = (0..own.resets.len() / 2).find(comes_back).filter(|_| !has_reset);
+        let unchanged = self.modes[from.mode].unchanged.get(until) == Some(&true);
+        let found = (0..own.resets.len() / 2).find(comes_back).filter(|_| unchanged);
         self.nodes[node].returning.push((until, next, found));
         found
     }
@@ -332,18 +334,11 @@ fn kept_inside(
         let all = mode.guards.iter().enumerate().filter(|(_, row)| is_kept(row));
         all.fold(0, |mask, (n, _)| mask | 1 << n)
     };
-    let is_turn = is_identity(&other.resets[turn])
+    let is_turn = other.unchanged[turn]
         && between.zeros.contains(&apart)
         && before.zeros.contains(&rate)
         && between.lasting.ratio(&other.guards[turn], &other_rate).is_some();
     is_turn.then(|| [kept(before, own, &[&rate]), kept(between, other, &[&other_rate, guard])])
-}
-
-fn is_identity(reset: &[Residues]) -> bool {
-    let unit = |n: usize, k: usize| if n == k { Residue::ONE } else { Residue::ZERO };
-    let is_unit =
-        |(n, row): (usize, &Residues)| row.iter().enumerate().all(|(k, it)| *it == unit(n, k));
-    reset.iter().enumerate().all(is_unit)
 }
 
 /// h+ = 0 and h'+ = 0 with the guard h.
@@ -387,6 +382,7 @@ impl ModeResidues {
             matrix: matrix(&mode.matrix)?,
             guards: guards.collect::<Option<_>>()?,
             points: points.collect::<Option<_>>()?,
+            unchanged: mode.until.iter().map(Until::changes_nothing).collect(),
             resets: mode.exits().map(|(reset, _)| matrix(reset)).collect::<Option<_>>()?,
             next: mode.exits().map(|(_, successors)| next(successors)).collect::<Option<_>>()?,
         })

@@ -3,7 +3,7 @@
 
 use crate::cli::shared::no_progress::times;
 use percuss::System;
-use percuss::affine::{Rational, Row, StartPoint, Until};
+use percuss::affine::{Rational, Row, StartPoint, Until, is_multiple};
 
 /// The states and guards that are zero by the model.
 #[derive(Debug, Default, PartialEq)]
@@ -69,15 +69,6 @@ fn names(system: &System, modes: &[usize], is_zero: impl Fn(&Row) -> bool) -> Ze
         guards.extend(zero.map(|(name, _)| [name.clone(), mode.name.clone()]));
     }
     ZeroNames { states, guards }
-}
-
-/// Whether a row is a multiple of another, 0 included.
-fn is_multiple(row: &Row, of: &Row) -> bool {
-    let Some(at) = of.iter().position(|it| !it.is_zero()) else {
-        return row.iter().all(Rational::is_zero);
-    };
-    let factor = &row[at] / &of[at];
-    row.iter().zip(of).all(|(a, b)| *a == b * &factor)
 }
 
 #[cfg(test)]
