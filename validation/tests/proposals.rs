@@ -66,6 +66,8 @@ fn values_are_those_of_the_system() {
         "--period=1",
     ]);
     assert_eq!(varied, ["--from", "0.4", "--to", "0.6"]);
+    let varied = proposed(&["continue", "--parameter=xi", "--xi=0.1", "--period=1"]);
+    assert_eq!(varied, ["--from", "0.08", "--to", "0.12"]);
     let free = ["rigid-impact-oscillator", "--set=d=9", "--set=frequency=2", "--set=zeta=0.1"];
     let window = proposed(&[&["attractors", "--axes=v,x"], &free[..]].concat());
     let ends: Vec<f64> = window[3].split(',').map(|it| it.parse().expect("a number")).collect();

@@ -1,11 +1,12 @@
 //! Values to begin with for flags that a verb needs and that were not given.
 
 use super::command;
+use super::shared::model::ModelFlags;
 use super::shared::system_choice::SystemFlags;
 use crate::number::shortest;
 use clap::error::{ContextKind, ContextValue};
 use clap::{ArgMatches, FromArgMatches};
-use percuss::{Ending, System};
+use percuss::{Ending, Parameter, Parameters, System};
 use std::f64::consts::TAU;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -24,6 +25,8 @@ const MAX_POINTS: usize = 4000;
 struct Given {
     verb: String,
     system: Option<System>,
+    /// The impact oscillator's, which count without a system.
+    oscillator: Parameters,
     parameter: Option<String>,
     axes: Option<String>,
 }
@@ -57,7 +60,12 @@ impl Given {
             None => None,
         };
         let (parameter, axes) = (word("parameter"), word("axes"));
-        Some(Self { verb: verb.to_owned(), system, parameter, axes })
+        // Of a verb without these flags clap cannot be asked.
+        let has_model = matches.try_contains_id("problem").is_ok();
+        let model = has_model.then(|| ModelFlags::from_arg_matches(matches).ok()?.problem().ok());
+        let oscillator =
+            model.flatten().map_or_else(Parameters::default, |it| *it.model.parameters());
+        Some(Self { verb: verb.to_owned(), system, oscillator, parameter, axes })
     }
 
     /// A flag with a value, from the flag as clap writes it; of a group, the flag that serves.
@@ -89,10 +97,13 @@ impl Given {
     /// The parameter that is varied, or the first there is, with its value.
     fn varied(&self) -> Option<(String, f64)> {
         let Some(system) = &self.system else {
-            return match self.verb.as_str() {
-                "gradient" => Some(("e".to_owned(), 0.5)),
-                _ => Some((self.parameter.clone().unwrap_or_else(|| "omega".to_owned()), 1.4)),
-            };
+            if self.verb == "gradient" {
+                // A parameter of the system that is proposed with it.
+                return Some(("e".to_owned(), 0.5));
+            }
+            let name = self.parameter.as_deref().unwrap_or(Parameter::Omega.as_str());
+            let value = name.parse::<Parameter>().ok()?.of(&self.oscillator);
+            return Some((name.to_owned(), value));
         };
         let named = |it: &(&String, &f64)| self.parameter.as_ref().is_none_or(|name| name == it.0);
         let (name, value) = system.parameters.iter().find(named)?;
