@@ -1,8 +1,8 @@
 //! Eigenvalues that are close to each other, with couplings that are large beside their distance.
 
 use super::{enclosed_events, events, names, system};
-use percuss::affine::System;
-use percuss::affine::{Bits212, DoubleDouble};
+use percuss::affine::{Bits212, Bits1696, Bits3392, DoubleDouble, Ending, Event, System, What};
+use percuss::number::{Bound, Number};
 
 fn watched_system(
     states: &str,
@@ -132,4 +132,65 @@ fn what_does_not_depend_on_large_neighbours() {
     let own = [0, 1].map(|n| end.state[n].to_f64());
     assert!((own[1] / v - 1.0).abs() < 1e-12, "{:e} is not {v:e}", own[1]);
     assert!((own[0] / x - 1.0).abs() < 1e-12, "{:e} is not {x:e}", own[0]);
+}
+
+/// Two coupled masses are thrown apart, and by the symmetry of their motion w is 1 where they meet:
+/// after the hit w = -1 is a rest, away from which exp(100 t) drives any error.
+#[test]
+fn series_of_wide_numbers_have_terms_below_every_f64() {
+    let text = r#"
+        schema = 1
+        name = "apart"
+        states = ["a", "u", "b", "w"]
+        [[mode]]
+        name = "both"
+        equations = [
+            "a' = u", "u' = -4*a - (a - b)/2 + 1", "b' = w", "w' = -4*b - (b - a)/2 + 1",
+        ]
+        [[mode.until]]
+        name = "hit"
+        guard = "b > 1/2"
+        reset = ["w = -w"]
+        next = "after"
+        [[mode]]
+        name = "after"
+        equations = ["a' = u", "u' = 0", "b' = w", "w' = 100*w + 100"]
+        [start]
+        mode = "both"
+        a = 0.5
+        u = -1
+        b = 0
+        w = 1
+    "#;
+    let system = system(text);
+    rests_at_one(&enclosed_events::<Bits1696>(&system, 9.0), 1e-120);
+    rests_at_one(&enclosed_events::<Bits3392>(&system, 9.0), 1e-290);
+}
+
+fn rests_at_one<T: Number>(events: &[Event<T>], most: f64) {
+    let end = events.last().unwrap();
+    assert_eq!(end.what, What::End(Ending::Horizon));
+    let error = end.errors.as_ref().unwrap().state[3].to_f64();
+    let apart = (end.state[3] + T::one()).to_f64().abs();
+    assert!(apart <= error && error <= most, "{apart:e} {error:e}");
+}
+
+/// x comes to 1/2 earlier than y by 2 q^2, which is less than every f64.
+#[test]
+fn crossings_are_told_apart_below_every_f64() {
+    let text = |level: &str| {
+        let watch = |state: &str, level: &str| {
+            format!("[[mode.watch]]\nname = \"{state}\"\nguard = \"{state} < {level}\"\n")
+        };
+        let watches = watch("x", "1/2") + &watch("y", level);
+        format!(
+            "schema = 1\nname = \"two\"\nstates = [\"x\", \"y\"]\nparameters = {{ q = 1e-180 }}\n\
+             [[mode]]\nname = \"fall\"\nequations = [\"x' = -x\", \"y' = -y\"]\n{watches}\
+             [start]\nmode = \"fall\"\nx = 1\ny = 1\n"
+        )
+    };
+    for (level, order) in [("1/2 - q*q", ["x", "y", "end"]), ("1/2 + q*q", ["y", "x", "end"])] {
+        let two = system(&text(level));
+        assert_eq!(names(&two, &enclosed_events::<Bits3392>(&two, 1.0)), order, "{level}");
+    }
 }

@@ -223,7 +223,8 @@ impl<T: Number> ModeFlow<T> {
     #[inline]
     pub fn state_shortly_after(&self, mut modal: ModalState<T>, time: T) -> Vector<T> {
         for (n, block) in self.blocks.iter().enumerate() {
-            let turn = (block.speed * time.to_f64()).abs();
+            // The powers of a short turn may be less than any f64.
+            let turn = time.bound().abs() * block.speed;
             let derivatives = match [turn * turn, turn * turn * turn] {
                 [square, _] if T::unit() * 0.25 >= square => 1,
                 [_, cube] if T::unit() * 0.25 >= cube => 2,

@@ -381,8 +381,8 @@ impl<T: Number> PowerTables<T> {
         /// The size down to which terms are summed, in units of the last digit: couplings differ in
         /// size.
         const TERM_TOLERANCE_UNITS: f64 = 1.0 / 4096.0;
-        // |B rest| is at most 1/2 where the rest is a step.
-        let size = 0.5 * (rest / self.step).abs();
+        // |B rest| is at most 1/2 where the rest is a step. Terms may be less than any f64.
+        let size = T::Bound::from_f64(0.5 * (rest / self.step).abs());
         let (mut terms, mut next) = (0, size);
         while T::unit() * TERM_TOLERANCE_UNITS < next && terms < 2 * T::TERMS {
             terms += 1;

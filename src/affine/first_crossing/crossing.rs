@@ -19,13 +19,13 @@ struct GuardCrossing<T: Number> {
     /// The time from the point to the crossing, by a Taylor polynomial.
     after: T,
     /// The size of the last step towards the polynomial's root.
-    change: f64,
+    change: T::Bound,
     /// An upper bound of the time from the point to the crossing.
     within: f64,
     /// The guard's rate at the point; half of it is the least that it has before `within`.
     slope: T::Bound,
     /// A bound of the rounding error of the crossing's time.
-    error: f64,
+    error: T::Bound,
 }
 
 /// The first crossing of all guards.
@@ -73,7 +73,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             }
         }
         let lowest = all.iter().find(|it| guards & (1 << it.guard) != 0)?;
-        let earliest = at.time - T::exact(4.0 * lowest.error);
+        let earliest = at.time - T::of_bound(lowest.error * 4.0);
         let between = [earliest, at.time + T::exact(lowest.within)];
         Some(FirstCrossing { time: at.time + first.after, between, guards })
     }
@@ -90,7 +90,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         if first.guard == other.guard {
             return Some(true);
         }
-        let gap = (other.after - first.after).to_f64();
+        let gap = (other.after - first.after).bound();
         let error = first.error + other.error;
         let hidden = self.truncation(at, first) + self.truncation(at, other);
         if gap > error + hidden {
@@ -102,12 +102,12 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// A bound of the error of a crossing's time by the remainder of the guard's Taylor series and
     /// by Newton steps that were not taken.
     #[inline]
-    fn truncation(&self, at: &GuardedPoint<T>, it: &GuardCrossing<T>) -> f64 {
+    fn truncation(&self, at: &GuardedPoint<T>, it: &GuardCrossing<T>) -> T::Bound {
         let row = &self.rows[it.guard];
         let terms = terms(row);
         let next = row.bound(terms, &at.norms, it.within);
         let rest = (1..=terms).fold(next, |rest, k| rest * it.within / k as f64);
-        it.change + (rest * 2.0 / it.slope).to_f64()
+        it.change + rest * 2.0 / it.slope
     }
 
     /// Whether a guard rises through zero once, shortly after a point, and when.
@@ -136,14 +136,14 @@ impl<T: Number> GuardedSegment<'_, T> {
         let moved =
             (slope_rounding + (bend_rounding * 0.5 + third_rounding * exact / 6.0) * exact) * exact;
         let is_finite = after.to_f64().is_finite();
-        let error = ((slack + moved) * 2.0 / slope).to_f64();
+        let error = (slack + moved) * 2.0 / slope;
         is_finite.then_some(GuardCrossing { guard: n, after, change, within, slope, error })
     }
 
     /// The time to a root of a guard's Taylor polynomial that is near a point, and the last step
     /// towards it. Where the polynomial is not the guard's, it may be far from a crossing.
     #[inline]
-    pub(super) fn root(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> (T, f64) {
+    pub(super) fn root(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> (T, T::Bound) {
         let first = outward(&at.orders[n], track);
         let mut all = [T::zero(); TERMS];
         let last = terms(&self.rows[n]);
@@ -159,7 +159,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             }
             *term = orders[k] * T::inverse_factorial(k);
         }
-        let (mut step, mut change) = (T::of_bound(series_reversion(&first)), f64::INFINITY);
+        let (mut step, mut change) = (T::of_bound(series_reversion(&first)), T::Bound::INFINITY);
         for _ in 0..2 {
             let (mut value, mut slope) = (T::zero(), T::zero());
             for term in all[..last].iter().rev() {
@@ -167,7 +167,7 @@ impl<T: Number> GuardedSegment<'_, T> {
                 value = value * step + *term;
             }
             let by = value / slope;
-            (step, change) = (step - by, by.to_f64().abs());
+            (step, change) = (step - by, by.bound().abs());
         }
         (step, change)
     }

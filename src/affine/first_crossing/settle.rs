@@ -133,7 +133,8 @@ impl<T: Number> GuardedSegment<'_, T> {
     fn is_last(&self, orders: &[T; 4], step: T) -> bool {
         /// The largest relative change of the guard's slope over the step.
         const MAX_SLOPE_CHANGE: f64 = 1e-5;
-        let turn = (self.flow.speed * step.to_f64()).abs();
+        // The powers of a short turn may be less than any f64.
+        let turn = step.bound().abs() * self.flow.speed;
         let is_small = T::unit() * 0.25 >= turn * turn * turn;
         let rises = orders[1].bound() > 0.0;
         rises && is_small && is_straight(orders, step, MAX_SLOPE_CHANGE) && !self.follows_errors()
