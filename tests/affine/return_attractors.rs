@@ -115,6 +115,21 @@ fn census(omega: f64, attractors: usize) -> usize {
 
 /// Near the bottom of each well a motion stays in it: the force moves it by 0.05/|1 - 1 + i/2| =
 /// 0.1 at most, and both orbits have the multipliers exp(-pi/2 +- ...) of their mode alone.
+/// Stick-slip and a cycle that never sticks lie 0.03 apart on the section. Runs from all centres
+/// in f64, 800 units of time long, stick for ever from 28 of the 64.
+#[test]
+fn an_orbit_beyond_a_discontinuity_is_another_one() {
+    let system = System::from_toml(include_str!("drill_string.system.toml")).unwrap();
+    let plane = Plane { axes: [0, 2], window: [[-2.0, 3.0], [0.1, 4.0]], columns: 8, rows: 8 };
+    for section in ["slow", "fast"] {
+        let basins = basins(&system, &Section::event(section), &plane, 60);
+        assert_eq!(kinds(&basins), [(AttractorKind::Periodic, Some(1)); 2], "{section}");
+        let mut shares = [0, 1].map(|n| basins.fraction(Label::Attractor(n)));
+        shares.sort_by(f64::total_cmp);
+        assert_eq!(shares, [28.0 / 64.0, 36.0 / 64.0], "{section}");
+    }
+}
+
 #[test]
 fn each_well_has_its_orbit() {
     for (mode, middle) in [("right", 1.0), ("left", -1.0)] {

@@ -13,6 +13,8 @@ use crate::dynamics::attractor::coordinates::Coordinates;
 pub struct Spot {
     pub mode: usize,
     pub at: Change,
+    /// The `until` that have fired on the way from the last return, as bits; zero at a start.
+    pub way: u64,
 }
 
 /// The co-ordinates of a section's points.
@@ -54,7 +56,7 @@ impl SectionCoordinates {
         for (it, size) in at.iter_mut().zip(&self.sizes) {
             *it = if *size == 0.0 { 0.0 } else { *it / size };
         }
-        Spot { mode, at }
+        Spot { mode, at, way: 0 }
     }
 
     /// A derivative of the map in these co-ordinates.
@@ -123,6 +125,10 @@ impl Coordinates for SectionCoordinates {
             *place = libm::floor(at / width) as i64;
         }
         cell
+    }
+
+    fn way(&self, spot: &Spot) -> Option<u64> {
+        Some(spot.way)
     }
 
     fn period(attractor: &ReturnAttractor) -> Option<u64> {

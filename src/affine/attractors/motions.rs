@@ -127,7 +127,7 @@ impl Motions for SectionMotions<'_> {
             if self.map.has_escaped(&point.state) {
                 return Err(Stop::Label(Label::Escaping));
             }
-            let spot = self.coordinates.spot(&point);
+            let spot = Spot { way: returns.fired(), ..self.coordinates.spot(&point) };
             // Several returns of one instant are no rest.
             let stays = last.is_some_and(|(time, at)| {
                 point.time > time

@@ -40,6 +40,9 @@ impl fmt::Display for NoReturn {
 
 impl std::error::Error for NoReturn {}
 
+/// The bits of a mode's `until` among those that tell the ways of two motions apart.
+const UNTIL_BITS: usize = 5;
+
 /// A motion that is followed from return to return.
 pub(super) struct Walk<'a, T: Number> {
     map: &'a SectionMap<'a, T>,
@@ -51,6 +54,8 @@ pub(super) struct Walk<'a, T: Number> {
     beside: Option<Place<T>>,
     /// The event by which it came onto the section from there, if it lay short of that.
     onto_section: Option<Guard>,
+    /// The `until` that have fired since the last return, as bits, of which several may share one.
+    fired: u64,
 }
 
 impl<'a, T: Number> Walk<'a, T> {
@@ -61,7 +66,7 @@ impl<'a, T: Number> Walk<'a, T> {
         let until = map.horizon(&place.time, strobe);
         let run = map.solver().run_at(place, until);
         let last = run.start();
-        Self { map, run, last, strobe, beside: None, onto_section: None }
+        Self { map, run, last, strobe, beside: None, onto_section: None, fired: 0 }
     }
 
     /// The motion from a place that approximates a point of the section. Where it lies short of an
@@ -85,11 +90,15 @@ impl<'a, T: Number> Walk<'a, T> {
         see: &mut dyn FnMut(&Event<T>, &Event<T>),
     ) -> Result<Event<T>, NoReturn> {
         let mut left = self.map.section().every.max(1);
+        self.fired = 0;
         self.run.go_on_to(self.map.horizon(&self.last.time, self.strobe));
         loop {
             let event = self.run.next().ok_or(NoReturn::Ended(Ending::Horizon))?;
             see(&self.last, &event);
             self.last.clone_from(&event);
+            if let What::Until(mode, until) = event.what {
+                self.fired |= 1 << ((mode * UNTIL_BITS + until) % u64::BITS as usize);
+            }
             if !self.returns()? || self.comes_onto_section(&event) {
                 continue;
             }
@@ -222,6 +231,12 @@ impl<'a, T: Number> Returns<'a, T> {
     #[must_use]
     pub fn last_event(&self) -> Return<T> {
         Return::new(self.walk.last.clone())
+    }
+
+    /// The `until` that have fired between the last two returns, as bits, of which several may share
+    /// one: motions of different bits lie on different pieces of the map.
+    pub(in crate::affine) fn fired(&self) -> u64 {
+        self.walk.fired
     }
 
     /// The number of ties, touches, entries and conditions that rounding leaves undecided.

@@ -39,6 +39,11 @@ pub(crate) trait Coordinates: Clone + Debug + Send + Sync {
     /// The cell of this width in which a spot lies.
     fn cell(&self, spot: &Self::Spot, width: f64) -> Self::Cell;
 
+    /// Bits of the way on which a motion has come to a spot: none where ways are not told apart.
+    fn way(&self, _spot: &Self::Spot) -> Option<u64> {
+        None
+    }
+
     /// The period of an attractor in returns; none of one that is no orbit.
     fn period(attractor: &Self::Attractor) -> Option<u64>;
 

@@ -34,7 +34,8 @@ impl<'a, C: Coordinates> Recognizer<'a, C> {
             && entered.due == n
         {
             let size = entered.trap.size(self.coordinates, spot);
-            let closer = size < entered.size || entered.trap.is_at_rest(size);
+            let closer = (size < entered.size || entered.trap.is_at_rest(size))
+                && entered.trap.is_on_way(self.coordinates, spot);
             entered.turns += 1;
             if closer && entered.turns >= CLOSER_TURNS {
                 return Some(entered.known);
@@ -61,7 +62,8 @@ impl<'a, C: Coordinates> Recognizer<'a, C> {
     fn enter(&self, n: u64, spot: &C::Spot) -> Option<EnteredTrap<'a, C>> {
         self.known.iter().enumerate().find_map(|(known, it)| {
             let Evidence::Traps(traps) = &it.evidence else { return None };
-            let sizes = traps.iter().map(|trap| (trap, trap.size(self.coordinates, spot)));
+            let traps = traps.iter().filter(|it| it.is_on_way(self.coordinates, spot));
+            let sizes = traps.map(|trap| (trap, trap.size(self.coordinates, spot)));
             let (trap, size) = sizes.into_iter().find(|(_, size)| *size <= 1.0)?;
             Some(EnteredTrap { known, trap, due: n + it.period(), size, turns: 0 })
         })

@@ -292,6 +292,7 @@ pub(super) fn known_point(centre: StrobePoint, radius: f64) -> Known {
         lyapunov_per_period: -1.0,
         lyapunov_error: 0.0,
     };
-    let ball = Trap { centre, piece: None, metric: IDENTITY.concat(), radius, rest: 0.0 };
+    let (metric, ways) = (IDENTITY.concat(), Vec::new());
+    let ball = Trap { centre, piece: None, metric, radius, rest: 0.0, ways };
     Known::new(attractor, Evidence::Traps(vec![ball]))
 }

@@ -64,6 +64,12 @@ pub(crate) const MAX_RADIUS: f64 = 0.25;
 pub(crate) const RADIUS_HALVINGS: i32 = 28;
 /// Points of a trap's net on each of its shells, in three dimensions.
 pub(crate) const DIRECTIONS: u32 = 48;
+/// Turns within which a point of a trap's net that comes back on another way than the orbit's has
+/// to arrive at it.
+pub(crate) const ARRIVAL_TURNS: u64 = 256;
+/// The square of the distance, as a share of the trap's radius, at which it has arrived: another
+/// orbit in the trap is further away.
+pub(crate) const ARRIVAL_TOLERANCE: f64 = 1e-6;
 /// The shells, as shares of the radius: a corner of the map inside must not stay unseen.
 pub(crate) const SHELLS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
 /// The number of points of an orbit, roughly, that get a trap at most.

@@ -22,9 +22,19 @@ pub(crate) struct Trap<C: Coordinates> {
     pub radius: f64,
     /// The distance, by the metric, within which a motion is at rest for all that rounding does.
     pub rest: f64,
+    /// The ways on which the net of the trap has come back; none where ways are not told apart.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub ways: Vec<u64>,
 }
 
 impl<C: Coordinates> Trap<C> {
+    /// Whether a motion has come to a spot on a way of the net: on another one it may be led to
+    /// another orbit.
+    pub fn is_on_way(&self, coordinates: &C, spot: &C::Spot) -> bool {
+        let is_known = |way| self.ways.is_empty() || self.ways.contains(&way);
+        coordinates.way(spot).is_none_or(is_known)
+    }
+
     /// The square of the distance in units of the radius: at most 1 inside.
     pub fn size(&self, coordinates: &C, spot: &C::Spot) -> f64 {
         if !coordinates.lies_on(&self.piece, spot) {

@@ -4,7 +4,9 @@
 //! J'^2 J^2 + ... exists and x'Sx falls at every turn, by the factor 1 - 1/|S| at least, in linear
 //! theory. How far linear theory reaches is measured: the largest ellipsoid is taken of which a net
 //! of points comes back by half of that contraction or more. The net is finite, so this is evidence
-//! and no proof; a start is believed after further turns each of which brought it closer.
+//! and no proof; a start is believed after further turns each of which brought it closer. Where
+//! ways are told apart, points that come back on other ways than the orbit's are on other pieces of
+//! the map, of which linear theory knows nothing: they are followed until they arrive.
 //!
 //! The net lies along the changes that the return to the orbit's point leaves: every later return
 //! lies there, such as on the surface of the section's event.
@@ -12,7 +14,8 @@
 use super::coordinates::Coordinates;
 use super::motions::{Motions, Turn};
 use super::thresholds::{
-    MAX_RADIUS, MAX_TRAPS, METRIC_DOUBLINGS, RADIUS_HALVINGS, REST_FACTOR, REST_TURNS, SHELLS,
+    ARRIVAL_TOLERANCE, ARRIVAL_TURNS, MAX_RADIUS, MAX_TRAPS, METRIC_DOUBLINGS, RADIUS_HALVINGS,
+    REST_FACTOR, REST_TURNS, SHELLS,
 };
 use super::trap::Trap;
 use crate::dynamics::linear::product;
@@ -44,41 +47,68 @@ impl<'a, M: Motions> TrapSearch<'a, M> {
         let largest: f64 = counted.map(|n| metric[n][n]).sum();
         let net = net(&metric, &axes, &M::directions(axes.len()))?;
         let (centre, piece) = (motions.spot_of(place), motions.piece_of(place));
-        let unit = Trap { centre, piece, metric: metric.concat(), radius: 1.0, rest: 0.0 };
+        let unit = Trap {
+            centre,
+            piece,
+            metric: metric.concat(),
+            radius: 1.0,
+            rest: 0.0,
+            ways: Vec::new(),
+        };
         Some(Self { motions, place, period, unit, net, shrinks: 1.0 - 0.5 / largest })
     }
 
     fn largest(&self) -> Option<Trap<M::Coordinates>> {
-        let rest = self.rest();
+        let mut own = Vec::new();
+        let rest = self.rest(&mut own);
         let attempt = |halving: i32| {
             let radius = MAX_RADIUS * 0.5_f64.powi(halving);
-            let trap = Trap { radius, rest, ..self.unit.clone() };
-            SHELLS.iter().all(|shell| self.comes_back(&trap, *shell)).then_some(trap)
+            let mut trap = Trap { radius, rest, ways: own.clone(), ..self.unit.clone() };
+            let mut others = Vec::new();
+            let comes_back = SHELLS.iter().all(|shell| self.comes_back(&trap, *shell, &mut others));
+            trap.ways.append(&mut others);
+            comes_back.then_some(trap)
         };
         (0..=RADIUS_HALVINGS).find_map(attempt)
     }
 
-    /// The distance by which rounding may move a motion that begins at the place.
-    fn rest(&self) -> f64 {
+    /// The distance by which rounding may move a motion that begins at the place. Its ways are
+    /// noted.
+    fn rest(&self, ways: &mut Vec<u64>) -> f64 {
         let mut moved = 0.0_f64;
         let followed = self.turns(self.place, REST_TURNS, &mut |spot| {
             moved = moved.max(self.unit.distance(self.motions.coordinates(), spot));
+            note(ways, self.motions.coordinates().way(spot));
         });
         if followed && moved.is_finite() { REST_FACTOR * moved.sqrt() } else { 0.0 }
     }
 
-    /// Whether all points of a shell of the net are closer after a turn.
-    fn comes_back(&self, trap: &Trap<M::Coordinates>, shell: f64) -> bool {
+    /// Whether all points of a shell of the net are closer after a turn, and those that come on
+    /// other ways than the orbit's arrive at it. Such ways are noted.
+    fn comes_back(&self, trap: &Trap<M::Coordinates>, shell: f64, others: &mut Vec<u64>) -> bool {
         let coordinates = self.motions.coordinates();
         self.net.iter().all(|direction| {
             let step: Vec<f64> = direction.iter().map(|it| it * trap.radius * shell).collect();
             let Some((start, spot)) = self.motions.moved(self.place, &step) else { return false };
             let before = trap.distance(coordinates, &spot);
             let mut after = f64::INFINITY;
-            let followed =
-                self.turns(&start, 1, &mut |spot| after = trap.distance(coordinates, spot));
-            followed && after <= self.shrinks * before
+            let mut is_on_way = true;
+            let followed = self.turns(&start, 1, &mut |spot| {
+                after = trap.distance(coordinates, spot);
+                is_on_way = trap.is_on_way(coordinates, spot);
+                note(others, coordinates.way(spot).filter(|_| !is_on_way));
+            });
+            followed && after <= self.shrinks * before && (is_on_way || self.arrives(&start, trap))
         })
+    }
+
+    /// Whether a motion arrives at the orbit.
+    fn arrives(&self, start: &M::Place, trap: &Trap<M::Coordinates>) -> bool {
+        let mut left = f64::INFINITY;
+        let followed = self.turns(start, ARRIVAL_TURNS, &mut |spot| {
+            left = trap.distance(self.motions.coordinates(), spot);
+        });
+        followed && left <= ARRIVAL_TOLERANCE
     }
 
     /// Shows the spots of a motion after each of so many turns; whether it makes them.
@@ -97,6 +127,10 @@ impl<'a, M: Motions> TrapSearch<'a, M> {
         });
         followed.is_ok()
     }
+}
+
+fn note(ways: &mut Vec<u64>, way: Option<u64>) {
+    ways.extend(way.filter(|it| !ways.contains(it)));
 }
 
 /// S, by the derivative of one turn; none where the multipliers are not inside the unit circle.
