@@ -345,3 +345,13 @@ fn an_event_at_the_strobe_is_one_event_of_the_orbit() {
     names.sort();
     assert_eq!(names, ["low@m", "start@m"]);
 }
+
+/// Newton's method ends a few roundings away from the orbit, by way of stiff teeth.
+#[test]
+fn an_orbit_that_closes_sooner_has_the_shorter_period() {
+    let text = include_str!("gear_pair.system.toml");
+    for period in [1, 2, 3, 4, 5, 6] {
+        let found = orbit(text, &Section::strobe(0.0), 300, period);
+        assert_eq!(found.points.len(), 1, "{period}: {:?}", found.points);
+    }
+}

@@ -125,6 +125,11 @@ impl<P: Clone, W: Clone> Shots<P, W> {
 
     /// Whether the points close to the last digits.
     pub fn is_closed(&self) -> bool {
+        self.is_closed_to(1.0)
+    }
+
+    /// Whether the points close to so many units of the last digits.
+    fn is_closed_to(&self, units: f64) -> bool {
         let count = self.images.len();
         let carried = self.images.iter().enumerate().map(|(k, it)| {
             // The roundings of a point lie along the changes that the return to it leaves.
@@ -140,7 +145,7 @@ impl<P: Clone, W: Clone> Shots<P, W> {
             it.segments as f64 * grown.fold(1.0, f64::max)
         });
         let rounding = ROUNDINGS * f64::EPSILON * carried.fold(1.0, f64::max);
-        self.is_joined && self.residual <= rounding
+        self.is_joined && self.residual <= units * rounding
     }
 
     /// The largest entry of the derivatives of the images, in their units.
@@ -201,8 +206,8 @@ impl<M: ReturnMap> Shooting<M> for Shots<M::Point, M::Way> {
         self.residual
     }
 
-    fn is_closed(&self) -> bool {
-        Self::is_closed(self)
+    fn closes_to(&self, units: f64) -> bool {
+        self.is_closed_to(units)
     }
 
     /// The points with a share of Newton's step made, each on the piece of the image before it.

@@ -13,6 +13,9 @@ const MAX_IDLE_STEPS: usize = 3;
 /// Orbits further apart than this are never taken for one: at a flip the residual of the doubled
 /// orbit is cubic in its width, and rounding hides (1e-15)^(1/3).
 const MAX_ORBIT_DISTANCE: f64 = 1e-4;
+/// The units of the last digits to which points between two ends of Newton's method close that are
+/// one orbit: no step has brought them closer.
+const UNITS_HALF_WAY: f64 = 16.0;
 
 /// Points that are to be an orbit of a map, each with its image.
 pub(crate) trait Shooting<M>: Clone {
@@ -22,8 +25,13 @@ pub(crate) trait Shooting<M>: Clone {
     /// The largest distance of an image to the next point, over 1 + |point|.
     fn residual(&self) -> f64;
 
+    /// Whether the points close to the last digits, or to so many of their units.
+    fn closes_to(&self, units: f64) -> bool;
+
     /// Whether the points close to the last digits.
-    fn is_closed(&self) -> bool;
+    fn is_closed(&self) -> bool {
+        self.closes_to(1.0)
+    }
 
     /// The points with a share of Newton's step made; none where one is out of range.
     fn stepped(&self, map: &M, share: f64) -> Option<Self>;
@@ -119,5 +127,5 @@ fn shortened<M, S: Shooting<M>>(map: &M, orbit: &S, count: usize) -> Option<S> {
         return None;
     }
     // Two that differ have something between them that does not close.
-    orbit.half_way(map, &shorter)?.is_closed().then_some(shorter)
+    orbit.half_way(map, &shorter)?.closes_to(UNITS_HALF_WAY).then_some(shorter)
 }

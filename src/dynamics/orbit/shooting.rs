@@ -170,8 +170,8 @@ impl Shooting<StrobeMap> for ShootingIterate {
         self.residual
     }
 
-    fn is_closed(&self) -> bool {
-        self.residual <= self.rounding()
+    fn closes_to(&self, units: f64) -> bool {
+        self.residual <= units * self.rounding()
     }
 
     fn stepped(&self, map: &StrobeMap, share: f64) -> Option<Self> {
