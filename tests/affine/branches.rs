@@ -45,6 +45,8 @@ x = 0
 v = 0
 "#;
 
+const DRY_RIG: &str = include_str!("dry_rig.system.toml");
+
 /// A system at the values of a parameter, with others set.
 pub struct Varied {
     file: SystemFile,
@@ -189,6 +191,36 @@ fn an_event_that_passes_the_strobe_is_no_bifurcation() {
     assert!(branch.bifurcations.is_empty(), "{:?}", bifurcation_rows(&branch));
     let modes: Vec<usize> = branch.points.iter().map(|it| it.1.points[0].mode).collect();
     assert_eq!((modes[0], modes[modes.len() - 1]), (0, 1));
+}
+
+/// A mass with dry friction that stops before the wall, or strikes it: the orbit that strikes next
+/// to the touch is unstable with a multiplier beyond all bounds, and a fold makes it stable.
+#[test]
+fn a_stop_before_the_wall_becomes_a_strike_and_turns_back_at_a_fold() {
+    let varied = Varied::new(DRY_RIG, Section::strobe(0.0), "P", &[]);
+    let branch = varied.follow(&varied.settled_return(0.2575, 300), 1, [0.2575, 0.259]);
+    assert!(branch.is_complete(), "{}", branch.ending);
+    let grazing = only_bifurcation(&branch, BifurcationKind::Grazing);
+    let fold = only_bifurcation(&branch, BifurcationKind::Fold);
+    assert_eq!(branch.bifurcations.len(), 2, "{:?}", bifurcation_rows(&branch));
+    assert_eq!(grazing.event.unwrap().name(&varied.at(0.258).unwrap()), "impact@right");
+    assert!(grazing.turns && fold.turns);
+    // The other end of the interval finds both as they are found from here.
+    let back = varied.follow(&varied.settled_return(0.259, 300), 1, [0.259, 0.2575]);
+    assert_value(only_bifurcation(&back, BifurcationKind::Grazing), grazing.value);
+    assert_value(only_bifurcation(&back, BifurcationKind::Fold), fold.value);
+}
+
+/// The strobe comes among impacts that accumulate, of which the word of the orbit has the first:
+/// where one of them passes it the word is another one, and nothing happens to the orbit.
+#[test]
+fn an_impact_that_passes_the_strobe_amid_chatter_is_no_bifurcation() {
+    let varied = Varied::new(DRY_RIG, Section::strobe(0.0), "P", &[]);
+    let branch = varied.follow(&varied.settled_return(0.5, 300), 1, [0.5, 0.47]);
+    assert!(branch.is_complete(), "{}", branch.ending);
+    assert!(branch.bifurcations.is_empty(), "{:?}", bifurcation_rows(&branch));
+    let words: Vec<usize> = branch.points.iter().map(|it| it.1.events.len()).collect();
+    assert_ne!(words[0], words[words.len() - 1]);
 }
 
 /// Unstable orbits are followed past it, too, and orbits that a reset changes there.

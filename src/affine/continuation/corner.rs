@@ -35,13 +35,22 @@ const REFINEMENTS: usize = 4;
 const MAX_BLURS: f64 = 100.0;
 
 /// A piece of a curve followed as far as it goes.
-struct Approach {
+pub(super) struct Approach {
     /// The last orbit of the piece.
-    last: CurvePoint,
+    pub last: CurvePoint,
+    /// The length of the way to it.
+    pub length: f64,
     /// The distance from it within which the piece ends.
     rest: f64,
     /// Whether no orbit was found further on, rather than one of another piece.
     is_lost: bool,
+}
+
+impl Approach {
+    /// What the halving leaves uncertain of the parameter's value at the piece's end.
+    pub fn error(&self) -> f64 {
+        self.rest * self.last.tangent.rate.abs()
+    }
 }
 
 impl Curve<'_> {
@@ -51,10 +60,16 @@ impl Curve<'_> {
     /// The corner's error is what the halving leaves, and the distance at which the corner is found
     /// from the other side if it is, but at least what is looked for.
     pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
-        let (before, own) = self.end(base, distance);
+        self.corner_at(base, self.approach(base, distance))
+    }
+
+    /// The corner at the end of a piece that was followed from a point.
+    pub(super) fn corner_at(&self, base: &CurvePoint, end: Approach) -> Corner<CurvePoint> {
+        let (own, before) = (end.error(), end.last);
         let least = self.least_error(base, &before);
         if let Some(beyond) = self.past_strobe(&before) {
-            return Corner { before, beyond: Some(beyond), error: own.max(least) };
+            let (beyond, error) = (Some(beyond), own.max(least));
+            return Corner { before, beyond, error, is_of_section: true };
         }
         // Where another piece follows, the end is found to roundings; else more is left.
         if own > RELATIVE_ERROR_TOLERANCE * before.value.abs()
@@ -62,7 +77,8 @@ impl Curve<'_> {
         {
             return touch;
         }
-        let mut best = Corner { before, beyond: None, error: f64::INFINITY };
+        let error = f64::INFINITY;
+        let mut best = Corner { before, beyond: None, error, is_of_section: false };
         for step in PROBE_DISTANCES {
             let before = &best.before;
             let Some(beyond) = self.point_beyond(before, step) else { continue };
@@ -88,17 +104,9 @@ impl Curve<'_> {
 
     /// The end of a piece of the curve as a corner beyond which no orbit is looked for.
     pub fn lost_corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
-        let (before, own) = self.end(base, distance);
-        let error = own.max(self.least_error(base, &before));
-        Corner { before, beyond: None, error }
-    }
-
-    /// The last orbit of the piece along the curve from a point, and what the halving leaves
-    /// uncertain of the parameter's value at the piece's end.
-    pub(super) fn end(&self, base: &CurvePoint, distance: f64) -> (CurvePoint, f64) {
-        let Approach { last, rest, .. } = self.approach(base, distance);
-        let own = rest * last.tangent.rate.abs();
-        (last, own)
+        let end = self.approach(base, distance);
+        let error = end.error().max(self.least_error(base, &end.last));
+        Corner { before: end.last, beyond: None, error, is_of_section: false }
     }
 
     /// The least error that is said of a corner which was reached from a base.
@@ -112,20 +120,30 @@ impl Curve<'_> {
     /// The distance in the parameter between the corner and where it is found from beyond; none
     /// where no orbit is found on the way there, as where a derivative grows without bound.
     fn seen_from(&self, beyond: &CurvePoint, step: f64, before: &CurvePoint) -> Option<f64> {
-        let Approach { last, rest, is_lost } = self.approach(&beyond.turned(), 2.0 * step);
-        let apart = (last.value - before.value).abs() + rest * last.tangent.rate.abs();
-        (!is_lost).then_some(apart)
+        let end = self.approach(&beyond.turned(), 2.0 * step);
+        let apart = (end.last.value - before.value).abs() + end.error();
+        (!end.is_lost).then_some(apart)
     }
 
     /// Follows the curve from a point as far as its piece goes.
-    fn approach(&self, base: &CurvePoint, distance: f64) -> Approach {
-        let is_lost = Cell::new(false);
+    pub(super) fn approach(&self, base: &CurvePoint, distance: f64) -> Approach {
+        self.approach_within(base, distance, f64::INFINITY)
+    }
+
+    /// Follows the curve from a point as far as its piece goes, or for a length.
+    pub(super) fn approach_within(&self, base: &CurvePoint, distance: f64, most: f64) -> Approach {
+        let (is_lost, length) = (Cell::new(false), Cell::new(0.0));
         let (last, rest) = last_along(base, distance, CORNER_TOLERANCE, &|from, step| {
+            if length.get() > most {
+                return None;
+            }
             let there = self.corrected_point(from, step).or_else(|| self.at_value(from, step));
             is_lost.set(there.is_none());
-            there.filter(|it| it.is_on_piece_of(from))
+            let there = there.filter(|it| it.is_on_piece_of(from))?;
+            length.set(length.get() + step);
+            Some(there)
         });
-        Approach { last, rest, is_lost: is_lost.get() }
+        Approach { last, length: length.get(), rest, is_lost: is_lost.get() }
     }
 
     /// The orbit at the parameter's value a step along the curve, by Newton's method there.

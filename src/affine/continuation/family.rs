@@ -30,6 +30,15 @@ const KEPT_SOLVERS: usize = 8;
 /// Relative steps of the differences, longest first: the first balances truncation and rounding,
 /// the others are for neighbourhoods of a corner.
 const DIFFERENCE_STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
+/// Further steps next to a touch.
+const STEPS_AT_TOUCH: [f64; 2] = [6e-12, 6e-13];
+/// The derivative of a map that is large for a touch to be near, where it grows without bound.
+const MIN_DERIVATIVE_AT_TOUCH: f64 = 100.0;
+/// The number of the first step at which a difference of one side serves.
+const FIRST_OF_ONE_SIDE: usize = 2;
+/// The share by which differences of one side may change from a step to the next: next to a touch
+/// the image changes by a root, and they grow by the root of the steps' quotient.
+const MAX_CHANGE_OF_ONE_SIDE: f64 = 0.001;
 
 impl<'a> ReturnFamily<'a> {
     /// The family of a section; `system` is the system at a value, and `longest` the longest time
@@ -130,29 +139,51 @@ impl<'a> ReturnFamily<'a> {
             })
         };
         let size = value.abs().max(scale);
-        let mut fallback = [0.0; MAX_COORDINATES];
-        for step in DIFFERENCE_STEPS.map(|relative| relative * size) {
+        let quotient = |a: Change, b: Change, span: f64| -> Change {
+            std::array::from_fn(|n| (a[n] - b[n]) / span)
+        };
+        let none = [0.0; MAX_COORDINATES];
+        let (mut fallback, mut longest, mut last) = (None, None, None);
+        let is_at_touch = is_near_touch(shots);
+        let further = if is_at_touch { &STEPS_AT_TOUCH[..] } else { &[] };
+        let steps = DIFFERENCE_STEPS.iter().chain(further).map(|relative| relative * size);
+        for (n, step) in steps.enumerate() {
             let (up, down) = ((value + step) - value, value - (value - step));
-            let quotient = |a: Change, b: Change, span: f64| -> Change {
-                std::array::from_fn(|n| (a[n] - b[n]) / span)
-            };
-            let is_short = step <= 1.01 * DIFFERENCE_STEPS[2] * size;
-            match (beside(up), beside(-down)) {
+            let own_side = match (beside(up), beside(-down)) {
                 (Some((above, true)), Some((below, true))) => {
                     return quotient(above, below, up + down);
                 }
-                (Some((above, true)), _) if is_short => {
-                    return quotient(above, [0.0; MAX_COORDINATES], up);
-                }
-                (_, Some((below, true))) if is_short => {
-                    return quotient([0.0; MAX_COORDINATES], below, down);
-                }
+                (Some((above, true)), _) => quotient(above, none, up),
+                (_, Some((below, true))) => quotient(none, below, down),
                 (Some((above, _)), Some((below, _))) => {
-                    fallback = quotient(above, below, up + down)
+                    fallback = Some(quotient(above, below, up + down));
+                    continue;
                 }
-                _ => {}
+                _ => continue,
+            };
+            if n < FIRST_OF_ONE_SIDE {
+                continue;
             }
+            if !is_at_touch {
+                return own_side;
+            }
+            // The longer one has the smaller rounding.
+            if let Some(before) = last.filter(|before| are_alike(before, &own_side)) {
+                return before;
+            }
+            (longest, last) = (longest.or(Some(own_side)), Some(own_side));
         }
-        fallback
+        longest.or(fallback).unwrap_or(none)
     }
+}
+
+/// Whether a touch may be near to points that are to be an orbit.
+pub(super) fn is_near_touch(shots: &OrbitShots) -> bool {
+    shots.largest_derivative() >= MIN_DERIVATIVE_AT_TOUCH
+}
+
+fn are_alike(one: &Change, other: &Change) -> bool {
+    let size = one.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+    let pairs = one.iter().zip(other);
+    pairs.into_iter().all(|(a, b)| (a - b).abs() <= MAX_CHANGE_OF_ONE_SIDE * size)
 }

@@ -10,6 +10,11 @@ use crate::dynamics::continuation::steps::{Corner, Noted, OrbitCurve, OrbitPoint
 use crate::dynamics::linear::ReIm;
 use crate::dynamics::orbit::newton::polish;
 
+/// A corner lies within so many times the step that has led to another piece. Where the piece goes
+/// on for longer, the corrector has left the curve: next to a touch it leads to the orbit without
+/// the event where a step is too long.
+const MAX_LENGTH_TO_CORNER: f64 = 2.0;
+
 impl OrbitPoint for CurvePoint {
     fn value(&self) -> f64 {
         self.value
@@ -79,7 +84,15 @@ impl OrbitCurve for Curve<'_> {
     }
 
     fn corner(&self, base: &CurvePoint, distance: f64, last: bool) -> Option<Corner<CurvePoint>> {
-        Some(Self::corner(self, base, distance)).filter(|it| last || it.beyond.is_some())
+        if last {
+            return Some(Self::corner(self, base, distance));
+        }
+        let most = MAX_LENGTH_TO_CORNER * distance;
+        let end = self.approach_within(base, distance, most);
+        if end.length > most {
+            return None;
+        }
+        Some(self.corner_at(base, end)).filter(|it| it.beyond.is_some())
     }
 
     fn of_corner(
@@ -89,7 +102,7 @@ impl OrbitCurve for Curve<'_> {
     ) -> Option<ReturnBifurcation> {
         let Meaning { kind, event } = self.meaning(base, corner)?;
         let phase = self.phase(base, corner, event);
-        let Corner { before, beyond, error } = corner;
+        let Corner { before, beyond, error, .. } = corner;
         let (point, is_lost, turns) = (self.shown_point(before), beyond.is_none(), corner.turns());
         let (value, orbit, error) = (before.value, point.orbit.clone(), *error);
         let event = Some(event);

@@ -7,7 +7,7 @@ use super::super::returns::shooting::{ReturnMap, Shots};
 use super::corner::MAX_ROOT_MULTIPLE;
 use super::curve::Curve;
 use super::point::{CurvePoint, are_on_one_piece};
-use super::words::cyclic;
+use super::words::{cyclic, events_of};
 use crate::dynamics::orbit::newton::polish;
 
 /// The other strobes' angles, in radians from the section's: the first at which no event of the
@@ -20,6 +20,14 @@ const MAX_TIME_FROM_STROBE: f64 = 1e-5;
 /// there has to be a time that is no rounding, and no other corner: a graze may be very near.
 const DISTANCES_BEYOND: [f64; 6] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-8, 1e-10];
 
+/// An orbit as another strobe sees it.
+struct Seen {
+    places: Vec<Carried>,
+    /// The word from wherever it is least. Where the section cuts a motion of impacts that
+    /// accumulate, of which a word has the first ones, the word of the section is another one.
+    word: Vec<[usize; 3]>,
+}
+
 impl Curve<'_> {
     /// The orbit beyond the end of a piece where that end is an event's passing of the strobe.
     pub(super) fn past_strobe(&self, before: &CurvePoint) -> Option<CurvePoint> {
@@ -28,8 +36,8 @@ impl Curve<'_> {
         }
         ANGLES_BESIDE.iter().find_map(|angle| {
             let beside = self.family.section().turned(*angle)?;
-            let places = self.seen_at(before, &beside)?;
-            let beyond = |step: &f64| self.orbit_beyond(before, *step, &beside, &places);
+            let seen = self.seen_at(before, &beside)?;
+            let beyond = |step: &f64| self.orbit_beyond(before, *step, &beside, &seen);
             DISTANCES_BEYOND.iter().find_map(beyond)
         })
     }
@@ -52,12 +60,18 @@ impl Curve<'_> {
         })
     }
 
-    /// The places of an orbit at another strobe, which comes after each of its points.
-    fn seen_at(&self, orbit: &CurvePoint, strobe: &Section) -> Option<Vec<Carried>> {
-        self.family.at_section(orbit.value, &strobe.clone().every(1), |map| {
+    /// An orbit at another strobe, which comes after each of its points.
+    fn seen_at(&self, orbit: &CurvePoint, strobe: &Section) -> Option<Seen> {
+        let places = self.family.at_section(orbit.value, &strobe.clone().every(1), |map| {
             let places = orbit.shots.points.iter();
             places.map(|it| Some(map.carry(&map.image(it).ok()?.point))).collect()
-        })
+        });
+        let places: Vec<_> = places?;
+        let shots = self.family.at_section(orbit.value, strobe, |map| {
+            Shots::new(map, places.iter().map(|it| map.take_up(it)).collect())
+        });
+        let word = cyclic(&events_of(&shots?));
+        Some(Seen { places, word })
     }
 
     /// The orbit a step beyond a corner, found from its places at another strobe.
@@ -66,15 +80,16 @@ impl Curve<'_> {
         before: &CurvePoint,
         step: f64,
         beside: &Section,
-        places: &[Carried],
+        own: &Seen,
     ) -> Option<CurvePoint> {
         let (family, value) = (self.family, before.value + step * before.tangent.rate);
         let seen = family.at_section(value, beside, |map| {
-            let places: Vec<_> = places.iter().map(|it| map.take_up(it)).collect();
+            let places: Vec<_> = own.places.iter().map(|it| map.take_up(it)).collect();
             let seen = polish(map, Shots::new(map, places.clone())?);
             // Near there: at the section itself a reset may have parted the two.
             let is_near = seen.distance(map, &places) <= MAX_ROOT_MULTIPLE * libm::sqrt(step);
-            (seen.is_closed() && is_near).then_some(seen)
+            let is_same = cyclic(&events_of(&seen)) == own.word;
+            (seen.is_closed() && is_near && is_same).then_some(seen)
         })?;
         let section = family.section();
         let mut points = family.at_section(value, &section.clone().every(1), |map| {
@@ -98,8 +113,7 @@ impl Curve<'_> {
             return None;
         }
         let point = self.point(value, shots, &before.tangent)?;
-        let is_same = cyclic(&point.orbit.events) == cyclic(&before.orbit.events);
         let is_forward = point.tangent.rate * before.tangent.rate >= 0.0;
-        is_same.then(|| if is_forward { point } else { point.turned() })
+        Some(if is_forward { point } else { point.turned() })
     }
 }

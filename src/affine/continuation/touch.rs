@@ -9,7 +9,7 @@
 use super::super::returns::section::Guard;
 use super::super::returns::shooting::{MAX_COORDINATES, ReturnMap, Shots};
 use super::curve::Curve;
-use super::family::OrbitShots;
+use super::family::{OrbitShots, is_near_touch};
 use super::point::{CurvePoint, Direction};
 use super::words::same_events;
 use crate::dynamics::continuation::steps::Corner;
@@ -18,9 +18,6 @@ use crate::dynamics::orbit::newton::solve;
 /// Distances from where a touch is held to be at which the orbit without the event is looked for,
 /// as multiples of the distance to the last orbit with it: it may be on either side.
 const DISTANCES: [f64; 8] = [1.0, -1.0, 4.0, -4.0, 16.0, -16.0, 64.0, -64.0];
-/// The derivative of a map that is large for a touch to be looked for: the orbit is found to its
-/// last digits otherwise, until it touches.
-const MIN_DERIVATIVE: f64 = 100.0;
 /// Steps of the curve beyond a touch at which the event has to be there.
 const STEPS_TO_TOUCH: [f64; 3] = [1e-10, 1e-8, 1e-6];
 
@@ -44,7 +41,8 @@ impl Curve<'_> {
         base: &CurvePoint,
         last: &CurvePoint,
     ) -> Option<Corner<CurvePoint>> {
-        if last.shots.largest_derivative() < MIN_DERIVATIVE {
+        // Elsewhere the orbit is found to its last digits until it touches.
+        if !is_near_touch(&last.shots) {
             return None;
         }
         let expected = self.expected_touch(base, last)?;
@@ -55,7 +53,8 @@ impl Curve<'_> {
             let back = Direction { points, rate: self.unit * (expected.value - value).signum() };
             let point = self.point(value, shots, &back)?;
             let length = (expected.value - value) / point.tangent.rate;
-            let (touch, own) = self.end(&point, length.abs());
+            let end = self.approach(&point, length.abs());
+            let (own, touch) = (end.error(), end.last);
             let is_there = (touch.value - expected.value).abs() <= expected.rest.abs()
                 && self.has_event_beyond(&touch, expected.event);
             if !is_there {
@@ -64,7 +63,7 @@ impl Curve<'_> {
             let error = own.max(self.least_error(&point, &touch));
             let is_forward = touch.tangent.rate * last.tangent.rate >= 0.0;
             let before = if is_forward { touch } else { touch.turned() };
-            Some(Corner { before, beyond: Some(point.turned()), error })
+            Some(Corner { before, beyond: Some(point.turned()), error, is_of_section: false })
         })
     }
 

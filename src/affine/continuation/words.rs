@@ -28,6 +28,9 @@ const PROBE_DISTANCES: [[f64; 2]; 3] = [[1e-6, 1.6e-5], [1e-8, 1.6e-7], [1e-4, 1
 /// A rate or a time that has grown by more vanishes at the corner: the root of sixteen is four.
 const MIN_GROWTH_FACTOR: f64 = 2.0;
 
+/// The length along the curve from which the fall of a rate to a touch is looked at, at least.
+const LENGTH_FROM_TOUCH: f64 = 1e-4;
+
 /// A rate that falls by more from the last step to the end of its piece, whose distance is smaller
 /// by orders of magnitude, vanishes there; no rate falls so much in a step otherwise.
 const MIN_FALL_TO_TOUCH: f64 = 16.0;
@@ -47,6 +50,9 @@ impl Curve<'_> {
     /// The meaning of a corner to which the curve comes from `base`.
     pub fn meaning(&self, base: &CurvePoint, corner: &Corner<CurvePoint>) -> Option<Meaning> {
         let Corner { before, beyond, .. } = corner;
+        if corner.is_of_section {
+            return None;
+        }
         let beyond = beyond.as_ref();
         let is_another = |it: &CurvePoint| cyclic(&it.orbit.events) != cyclic(&before.orbit.events);
         if is_another(base) {
@@ -70,7 +76,10 @@ impl Curve<'_> {
     fn touch_before(&self, base: &CurvePoint, before: &CurvePoint) -> Option<Meaning> {
         // Beside the speed of the motion, because an orbit may shrink to a state of rest.
         let relative = |it: Crossing| Crossing { rate: it.rate / it.speed, ..it };
-        let [near, far] = [before, base].map(|it| {
+        // A short last step begins next to the touch itself.
+        let [length, most] = [LENGTH_FROM_TOUCH; 2];
+        let far = self.approach_within(&base.turned(), length, most).last;
+        let [near, far] = [before, &far].map(|it| {
             let all = self.crossings(it.value, &it.shots)?;
             Some(all.into_iter().map(relative).collect::<Vec<_>>())
         });
@@ -87,7 +96,7 @@ impl Curve<'_> {
         before: &CurvePoint,
         beyond: Option<&CurvePoint>,
     ) -> Option<Meaning> {
-        let probe = || Some(self.events_of(self.probes(before, PROBE_DISTANCES[0][0]).first()?));
+        let probe = || Some(events_of(self.probes(before, PROBE_DISTANCES[0][0]).first()?));
         let after = beyond.map(|it| it.orbit.events.clone()).or_else(probe)?;
         let [lost, gained] = differing_parts(&before.orbit.events, &after);
         let is_beyond = lost.is_empty();
@@ -98,26 +107,30 @@ impl Curve<'_> {
         if changed.iter().chain(&gained).all(|it| it.is_watched) {
             return Some(Meaning { kind: plain, event: first });
         }
-        // Where orbits beyond have other events again, points that do not close tell as much.
-        let orbits = beyond.filter(|_| is_beyond).and_then(|it| self.orbits_beyond(before, it));
-        let sides = orbits.or_else(|| {
-            PROBE_DISTANCES.iter().find_map(|distances| {
-                let [near, far] = distances.map(|it| self.side(before, is_beyond, it));
-                same_events(near?, far?)
-            })
-        });
-        let (near, far) = sides.unwrap_or_default();
-        let touched = touched_event(&near, &far, changed, MIN_GROWTH_FACTOR);
+        let sides = |is_beyond: bool| -> Sides {
+            // Where orbits beyond have other events again, points that do not close tell as much.
+            let orbits = beyond.filter(|_| is_beyond).and_then(|it| self.orbits_beyond(before, it));
+            let sides = orbits.or_else(|| {
+                PROBE_DISTANCES.iter().find_map(|distances| {
+                    let [near, far] = distances.map(|it| self.side(before, is_beyond, it));
+                    same_events(near?, far?)
+                })
+            });
+            sides.unwrap_or_default()
+        };
+        let (near, far) = sides(is_beyond);
+        // The event that is touched may come in the place of another one, such as that of its rate.
+        let beyond_too = || {
+            let (near, far) = if is_beyond { Sides::default() } else { sides(true) };
+            touched_event(&near, &far, &gained, MIN_GROWTH_FACTOR)
+        };
+        let touched = touched_event(&near, &far, changed, MIN_GROWTH_FACTOR).or_else(beyond_too);
         let is_corner = !gained.is_empty() && !lost.is_empty() || are_at_once(&near, &far, changed);
         Some(match touched {
             Some(event) => Meaning { kind: BifurcationKind::Grazing, event },
             None if is_corner => Meaning { kind: BifurcationKind::Corner, event: first },
             None => Meaning { kind: plain, event: first },
         })
-    }
-
-    fn events_of(&self, shots: &OrbitShots) -> Vec<Guard> {
-        shots.images.iter().flat_map(|it| it.way.events.iter().copied()).collect()
     }
 
     /// The crossings of the first orbit beyond, and of one sixteen times as far from the corner.
@@ -147,6 +160,11 @@ impl Curve<'_> {
             Some(all?.concat())
         })
     }
+}
+
+/// The events of shots, one after the other.
+pub(super) fn events_of(shots: &OrbitShots) -> Vec<Guard> {
+    shots.images.iter().flat_map(|it| it.way.events.iter().copied()).collect()
 }
 
 /// The crossings near to a corner and far from it, if they are of the same events.

@@ -32,7 +32,8 @@ impl FamilyCurve {
             let Some(beyond) = self.point_beyond(&before, step) else { continue };
             let error = rest * before.tangent.rate.abs() + self.seen_from(&beyond, step, &before);
             if best.as_ref().is_none_or(|it| error < it.error) {
-                best = Some(Corner { before: before.clone(), beyond: Some(beyond), error });
+                let before = before.clone();
+                best = Some(Corner { before, beyond: Some(beyond), error, is_of_section: false });
             }
             if error <= RELATIVE_ERROR_TOLERANCE * before.value.abs() {
                 break;

@@ -94,7 +94,7 @@ impl OrbitCurve for FamilyCurve {
         _: &ContinuationPoint,
         corner: &Corner<ContinuationPoint>,
     ) -> Option<Bifurcation> {
-        let Corner { before, beyond, error } = corner;
+        let Corner { before, beyond, error, .. } = corner;
         let beyond = beyond.as_ref()?;
         let is_graze = before.phase_sequence() != beyond.phase_sequence();
         is_graze.then(|| Bifurcation {

@@ -11,6 +11,9 @@ const FIRST_STEP: f64 = 1e-3;
 const MAX_STEP: f64 = 0.03;
 /// A step this short that fails is held to be at a corner.
 const MIN_STEP: f64 = 1e-6;
+/// A step that fails by the turn of the tangent alone is held to be at a corner if it is this short:
+/// next to a touch a fold may be as sharp.
+const MIN_STEP_OF_TURN: f64 = 1e-9;
 /// Steps of a branch before it is given up.
 const MAX_STEPS: usize = 20_000;
 /// Cosine of the largest turn of the tangent in a step.
@@ -61,6 +64,8 @@ pub(crate) struct Corner<P> {
     pub(crate) beyond: Option<P>,
     /// Bound on the error of the parameter's value at the corner.
     pub(crate) error: f64,
+    /// Whether the section alone makes the corner: an event of the same orbits passes it there.
+    pub(crate) is_of_section: bool,
 }
 
 impl<P: OrbitPoint> Corner<P> {
@@ -223,6 +228,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
             let distance = *step;
             let attempt = self.curve.corrected_point(point, distance);
             let other_piece = attempt.as_ref().is_some_and(|it| !it.is_on_piece_of(point));
+            let is_on_piece = attempt.is_some() && !other_piece;
             let smooth = attempt.filter(|it| self.is_smooth(point, it, distance));
             if let Some(next) = smooth {
                 let (next, distance, ending) = self.cut(point, next, distance);
@@ -237,7 +243,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
                     return Ok((self.curve.refreshed(next), ending));
                 }
             }
-            let last = distance <= MIN_STEP;
+            let last = distance <= if is_on_piece { MIN_STEP_OF_TURN } else { MIN_STEP };
             if other_piece || last {
                 if let Some(corner) = self.curve.corner(point, distance, last) {
                     return self.turn(point, corner, step);
