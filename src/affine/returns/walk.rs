@@ -233,8 +233,8 @@ impl<'a, T: Number> Returns<'a, T> {
         Return::new(self.walk.last.clone())
     }
 
-    /// The `until` that have fired between the last two returns, as bits, of which several may share
-    /// one: motions of different bits lie on different pieces of the map.
+    /// The `until` that have fired between the last two returns, as bits, of which several may
+    /// share one: motions of different bits lie on different pieces of the map.
     pub(in crate::affine) fn fired(&self) -> u64 {
         self.walk.fired
     }

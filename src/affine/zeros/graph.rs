@@ -189,8 +189,8 @@ impl ZeroGraph {
     ///
     /// With the guard h of the impact, the reset of a turn changes nothing, its guard is a multiple
     /// of h' in its mode, where h' begins as in the impact's, and h' is zero in the impact's mode,
-    /// in whose node it has arrived. Guards that are multiples of h', or in the turn's mode of h, keep the sign
-    /// that they have at first.
+    /// in whose node it has arrived. Guards that are multiples of h', or in the turn's mode of h,
+    /// keep the sign that they have at first.
     pub fn kept_inside(&mut self, cycle: Cycle) -> Option<[u64; 2]> {
         let between = cycle.turn.0;
         if let Some((_, found)) = self.nodes[between].cycles.iter().find(|it| it.0 == cycle) {
@@ -202,8 +202,8 @@ impl ZeroGraph {
         found
     }
 
-    /// A guard of an `until` of the node that follows an event whose reset changes nothing: one that
-    /// was zero at the entry of the node before it, and whose rate is zero after the event.
+    /// A guard of an `until` of the node that follows an event whose reset changes nothing: one
+    /// that was zero at the entry of the node before it, and whose rate is zero after the event.
     #[inline]
     pub fn returning_guard(&mut self, node: usize, until: usize, next: usize) -> Option<usize> {
         let asked = |it: &&(usize, usize, Option<usize>)| (it.0, it.1) == (until, next);

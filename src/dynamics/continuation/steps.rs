@@ -11,8 +11,8 @@ const FIRST_STEP: f64 = 1e-3;
 const MAX_STEP: f64 = 0.03;
 /// A step this short that fails is held to be at a corner.
 const MIN_STEP: f64 = 1e-6;
-/// A step that fails by the turn of the tangent alone is held to be at a corner if it is this short:
-/// next to a touch a fold may be as sharp.
+/// A step that fails by the turn of the tangent alone is held to be at a corner if it is as short:
+/// a fold next to a touch may be as sharp.
 const MIN_STEP_OF_TURN: f64 = 1e-9;
 /// Steps of a branch before it is given up.
 const MAX_STEPS: usize = 20_000;
