@@ -2,7 +2,7 @@
 
 use super::{enclosed_events, events, names, system};
 use percuss::affine::DoubleDouble;
-use percuss::affine::{Event, Solver, What};
+use percuss::affine::{Ending, Event, Solver, What};
 use percuss::number::Number;
 
 /// The level of 3/4 is passed, and then exp(-t) touches exp(-2 t) + 1/4 at the logarithm of two.
@@ -213,4 +213,34 @@ fn a_tie_and_a_successor_that_are_open_are_not_passed() {
         }
         assert!(enclosed_events::<DoubleDouble>(&system, 1.5).len() > 1, "106 bits decide it");
     }
+}
+
+/// Of a ball that counts its impacts no accumulation is proved: a run in f64 ends once their times
+/// are below the clock's last digit. In the end 64 impacts have one time.
+#[test]
+fn impacts_below_the_clocks_last_digit_make_no_progress() {
+    let counting = "
+schema = 1
+name = \"counting\"
+states = [\"x\", \"v\", \"n\"]
+[[mode]]
+name = \"flight\"
+equations = [\"x' = v\", \"v' = -1\", \"n' = 0\"]
+[[mode.until]]
+name = \"impact\"
+guard = \"x < 0\"
+reset = [\"x = 0\", \"v = -v/2\", \"n = n + 1\"]
+[start]
+mode = \"flight\"
+x = 1
+v = 0
+n = 0
+";
+    let all = events::<f64>(&system(counting), 9.0);
+    let end = all.last().unwrap();
+    assert_eq!(end.what, What::End(Ending::NoProgress));
+    // The sum of the flights is 3 sqrt 2, and each impact halves the speed of 2^(1/2).
+    assert!((end.time.value() - 3.0 * 2_f64.sqrt()).abs() < 1e-15);
+    let steps = (2.0 * f64::from(f64::MANTISSA_DIGITS)) as usize;
+    assert!(all.len() < steps + 2 * 64, "{}", all.len());
 }

@@ -124,7 +124,7 @@ fn the_reset_of_a_turn_may_add_multiples_of_its_guard_alone() {
         judge(&with(reset), |n| closed_form(numbers, n), [1e-12, 1e-12]);
     }
     let changed = with(r#"["m = m + 1"]"#);
-    assert_eq!(changed.last().map(|it| it.what), Some(What::End(AffineEnding::Undecided)));
+    assert_eq!(changed.last().map(|it| it.what), Some(What::End(AffineEnding::NoProgress)));
 }
 
 #[test]
