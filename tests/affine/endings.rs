@@ -215,8 +215,8 @@ fn a_tie_and_a_successor_that_are_open_are_not_passed() {
     }
 }
 
-/// Of a ball that counts its impacts no accumulation is proved: a run in f64 ends once their times
-/// are below the clock's last digit. In the end 64 impacts have one time.
+/// The impacts of a ball that counts them are not proved to accumulate: a run in f64 ends once 64
+/// of them come within the clock's last digit.
 #[test]
 fn impacts_below_the_clocks_last_digit_make_no_progress() {
     let counting = "

@@ -15,7 +15,7 @@ fn ball(numbers: &str) -> System {
     ball_with_turn("", numbers)
 }
 
-/// The same ball, whose turn has these keys too.
+/// The ball of [`ball`] with further keys in its turn.
 fn ball_with_turn(keys: &str, numbers: &str) -> System {
     let text = format!(
         r#"

@@ -47,7 +47,7 @@ pub(super) struct Approach {
 }
 
 impl Approach {
-    /// What the halving leaves uncertain of the parameter's value at the piece's end.
+    /// A bound of the error of the parameter's value at the piece's end, as halved.
     pub fn error(&self) -> f64 {
         self.rest * self.last.tangent.rate.abs()
     }

@@ -5,7 +5,7 @@ use super::super::model::system::System;
 use super::super::returns::map::{Carried, SectionMap};
 use super::super::returns::orbit::Way;
 use super::super::returns::section::Section;
-use super::super::returns::shooting::{Change, MAX_COORDINATES, ReturnMap, Shots};
+use super::super::returns::shooting::{Change, Image, MAX_COORDINATES, ReturnMap, Shots};
 use super::super::run::place::Place;
 use super::super::solver::Solver;
 use std::cell::RefCell;
@@ -111,19 +111,19 @@ impl<'a> ReturnFamily<'a> {
         let Some(points) = self.carry(value, &shots.points) else {
             return vec![[0.0; MAX_COORDINATES]; shots.points.len()];
         };
-        let points = points.iter().zip(0..);
-        points.map(|(point, k)| self.slope(value, shots, k, point, scale)).collect()
+        let is_at_touch = is_near_touch(shots);
+        let pairs = shots.images.iter().zip(&points);
+        pairs.map(|(here, point)| self.slope(value, here, point, scale, is_at_touch)).collect()
     }
 
     fn slope(
         &self,
         value: f64,
-        shots: &OrbitShots,
-        k: usize,
+        here: &Image<Place<f64>, Way>,
         point: &Carried,
         scale: f64,
+        is_at_touch: bool,
     ) -> Change {
-        let here = &shots.images[k];
         // The image of the point at another value, less its image here, and whether it has the same
         // events.
         let beside = |step: f64| {
@@ -144,7 +144,6 @@ impl<'a> ReturnFamily<'a> {
         };
         let none = [0.0; MAX_COORDINATES];
         let (mut fallback, mut longest, mut last) = (None, None, None);
-        let is_at_touch = is_near_touch(shots);
         let further = if is_at_touch { &STEPS_AT_TOUCH[..] } else { &[] };
         let steps = DIFFERENCE_STEPS.iter().chain(further).map(|relative| relative * size);
         for (n, step) in steps.enumerate() {

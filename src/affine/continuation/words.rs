@@ -77,8 +77,7 @@ impl Curve<'_> {
         // Beside the speed of the motion, because an orbit may shrink to a state of rest.
         let relative = |it: Crossing| Crossing { rate: it.rate / it.speed, ..it };
         // A short last step begins next to the touch itself.
-        let [length, most] = [LENGTH_FROM_TOUCH; 2];
-        let far = self.approach_within(&base.turned(), length, most).last;
+        let far = self.approach_within(&base.turned(), LENGTH_FROM_TOUCH, LENGTH_FROM_TOUCH).last;
         let [near, far] = [before, &far].map(|it| {
             let all = self.crossings(it.value, &it.shots)?;
             Some(all.into_iter().map(relative).collect::<Vec<_>>())

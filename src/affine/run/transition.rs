@@ -29,9 +29,9 @@ impl<T: Number> Run<'_, T> {
         let mode = self.graph.node(self.node).mode;
         // Without enclosed errors a time below the clock's last digit is none: impacts that
         // accumulate without a proof of it would go on without end.
-        let elapsed = time.since(&self.entered).value();
-        let has_not_moved = self.enclosure.is_none() && elapsed == T::zero();
-        let is_at_once = firing.at_entry || has_not_moved;
+        let has_not_moved =
+            || self.enclosure.is_none() && time.since(&self.entered).value() == T::zero();
+        let is_at_once = firing.at_entry || has_not_moved();
         self.events_in_instant = if is_at_once { self.events_in_instant + 1 } else { 1 };
         let mut state = before;
         solver.reset(mode, firing.until, &mut state);

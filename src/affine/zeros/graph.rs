@@ -28,7 +28,7 @@ struct ModeResidues {
     /// The resets of `until`, then those of their limits.
     resets: Vec<Vec<Residues>>,
     /// For each `until`, whether its reset changes nothing.
-    unchanged: Vec<bool>,
+    changes_nothing: Vec<bool>,
     /// The conditions of each reset's successors, with their modes.
     next: Vec<Vec<(Option<Residues>, usize)>>,
 }
@@ -218,7 +218,7 @@ impl ZeroGraph {
                 && !to.zeros.contains(guard)
                 && to.zeros.contains(&row_times(guard, &own.matrix))
         };
-        let unchanged = self.modes[from.mode].unchanged.get(until) == Some(&true);
+        let unchanged = self.modes[from.mode].changes_nothing.get(until) == Some(&true);
         let found = (0..own.resets.len() / 2).find(comes_back).filter(|_| unchanged);
         self.nodes[node].returning.push((until, next, found));
         found
@@ -334,7 +334,7 @@ fn kept_inside(
         let all = mode.guards.iter().enumerate().filter(|(_, row)| is_kept(row));
         all.fold(0, |mask, (n, _)| mask | 1 << n)
     };
-    let is_turn = other.unchanged[turn]
+    let is_turn = other.changes_nothing[turn]
         && between.zeros.contains(&apart)
         && before.zeros.contains(&rate)
         && between.lasting.ratio(&other.guards[turn], &other_rate).is_some();
@@ -382,7 +382,7 @@ impl ModeResidues {
             matrix: matrix(&mode.matrix)?,
             guards: guards.collect::<Option<_>>()?,
             points: points.collect::<Option<_>>()?,
-            unchanged: mode.until.iter().map(Until::changes_nothing).collect(),
+            changes_nothing: mode.until.iter().map(Until::changes_nothing).collect(),
             resets: mode.exits().map(|(reset, _)| matrix(reset)).collect::<Option<_>>()?,
             next: mode.exits().map(|(_, successors)| next(successors)).collect::<Option<_>>()?,
         })

@@ -60,7 +60,7 @@ impl Given {
             None => None,
         };
         let (parameter, axes) = (word("parameter"), word("axes"));
-        // Of a verb without these flags clap cannot be asked.
+        // Asking clap for flags that a verb has not is a panic.
         let has_model = matches.try_contains_id("problem").is_ok();
         let model = has_model.then(|| ModelFlags::from_arg_matches(matches).ok()?.problem().ok());
         let oscillator =

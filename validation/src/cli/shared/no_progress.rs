@@ -2,7 +2,7 @@
 //! what to write in the system's file.
 
 use percuss::Kind;
-use percuss::affine::{Rational, Row, System, Until, is_unit};
+use percuss::affine::{Rational, Row, System, Until, is_multiple, is_unit};
 use std::collections::VecDeque;
 
 /// The largest number of events that are named.
@@ -125,8 +125,7 @@ impl RepeatedEvent<'_> {
         let [own, others] = [&self.until.guard, &other.until.guard];
         let Some(at) = own.iter().position(|it| !it.is_zero()) else { return false };
         let factor = &others[at] / &own[at];
-        let is_multiple = own.iter().zip(others).all(|(a, b)| *b == a * &factor);
-        rests(self) && rests(other) && is_multiple && factor < Rational::ZERO
+        rests(self) && rests(other) && is_multiple(others, own) && factor < Rational::ZERO
     }
 }
 
