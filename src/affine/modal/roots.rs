@@ -1,5 +1,6 @@
 //! The roots of polynomials with exact coefficients.
 
+use super::aberth::roots_away_from_zero;
 use crate::affine::arithmetic::real::{BigComplex, BigReal};
 use crate::affine::model::rational::Rational;
 
@@ -15,7 +16,7 @@ pub fn simple_roots(polynomial: &[Rational], bits: usize) -> Option<Vec<BigCompl
         Some((constant, [linear, leading])) => {
             Some(of_quadratic(&(constant / leading), &(linear / leading), bits))
         }
-        _ => roots_away_from_zero(polynomial, bits),
+        _ => roots_away_from_zero(polynomial, bits).map(above_the_axis),
     }
 }
 
@@ -33,98 +34,6 @@ fn of_quadratic(constant: &Rational, linear: &Rational, bits: usize) -> Vec<BigC
     let larger = if middle < BigReal::zero() { &middle - &root } else { &middle + &root };
     let smaller = &BigReal::new(constant, bits) / &larger;
     [smaller, larger].map(BigComplex::real).to_vec()
-}
-
-/// The roots of a polynomial that has each once, and none at zero: Aberth's iteration, all of them
-/// at a time.
-fn roots_away_from_zero(polynomial: &[Rational], bits: usize) -> Option<Vec<BigComplex>> {
-    /// The number of steps of all roots after which the iteration is given up.
-    const MAX_ROUNDS: usize = 2000;
-    let coefficients: Vec<_> = polynomial.iter().map(|it| BigReal::new(it, bits)).collect();
-    let degree = coefficients.len() - 1;
-    if degree == 1 {
-        return Some(vec![BigComplex::real(&-&coefficients[0] / &coefficients[1])]);
-    }
-    let mut roots = beginnings(&coefficients);
-    for _ in 0..MAX_ROUNDS {
-        let mut settled = true;
-        for n in 0..degree {
-            let step = step(&coefficients, &roots, n);
-            settled &= is_small(&step, &roots[n]);
-            roots[n] = &roots[n] - &step;
-        }
-        if settled {
-            return Some(above_the_axis(roots));
-        }
-    }
-    None
-}
-
-/// Whether a step moves a root by less than the last quarter of its bits.
-fn is_small(step: &BigComplex, root: &BigComplex) -> bool {
-    let last = 3 * step.re.bits() as isize / 4;
-    step.norm_square() <= root.norm_square().scaled(-2 * last)
-}
-
-/// Starts on circles whose radii follow the coefficients (Bini's choice, by the upper hull of their
-/// logarithms).
-fn beginnings(coefficients: &[BigReal]) -> Vec<BigComplex> {
-    let logarithm = |it: &BigReal| {
-        let (mut size, mut shift) = (it.abs(), 0.0);
-        if size.is_zero() {
-            return f64::NEG_INFINITY;
-        }
-        // Into the range of f64.
-        while size > BigReal::exact(1e300) {
-            (size, shift) = (size.scaled(-900), shift + 900.0);
-        }
-        while size < BigReal::exact(1e-300) {
-            (size, shift) = (size.scaled(900), shift - 900.0);
-        }
-        libm::log2(size.to_f64()) + shift
-    };
-    let heights: Vec<f64> = coefficients.iter().map(logarithm).collect();
-    let degree = heights.len() - 1;
-    let mut roots = Vec::with_capacity(degree);
-    let mut from = 0;
-    while from < degree {
-        let slope = |to: usize| (heights[to] - heights[from]) / (to - from) as f64;
-        let to = (from + 1..=degree).max_by(|a, b| slope(*a).total_cmp(&slope(*b)));
-        let to = to.unwrap_or(degree);
-        let (radius, count) = (-slope(to), to - from);
-        for k in 0..count {
-            let angle = std::f64::consts::TAU * (k as f64 / count as f64) + 0.7 + from as f64;
-            let (sin, cos) = libm::sincos(angle);
-            let whole = libm::floor(radius);
-            let rest = libm::exp2(radius - whole);
-            let scaled = |it: f64| BigReal::exact(it * rest).scaled(whole as isize);
-            roots.push(BigComplex::new(scaled(cos), scaled(sin)));
-        }
-        from = to;
-    }
-    roots
-}
-
-fn step(coefficients: &[BigReal], roots: &[BigComplex], n: usize) -> BigComplex {
-    let at = &roots[n];
-    let mut value = BigComplex::real(BigReal::zero());
-    let mut slope = value.clone();
-    for coefficient in coefficients.iter().rev() {
-        slope = &(&slope * at) + &value;
-        value = &(&value * at) + &BigComplex::real(coefficient.clone());
-    }
-    if value.norm_square().is_zero() {
-        return value;
-    }
-    // 1/(p'/p - sum 1/(z - z_k))
-    let mut sum = &slope * &value.inverse();
-    for (_, other) in roots.iter().enumerate().filter(|(k, _)| *k != n) {
-        let gap = at - other;
-        if !gap.norm_square().is_zero() {
-            sum = &sum - &gap.inverse();
-        }
-    }
-    if sum.norm_square().is_zero() { value } else { sum.inverse() }
 }
 
 /// Real roots, and of each pair the one above the real axis.
@@ -166,7 +75,7 @@ mod tests {
         let others = others.map(|(a, b, c, d)| (rational(a, b), rational(c, d)));
         for (constant, linear) in [apart, close, slow].iter().chain(&others) {
             let whole = [constant.clone(), linear.clone(), Rational::ONE];
-            let expected = roots_away_from_zero(&whole, BITS).unwrap();
+            let expected = above_the_axis(roots_away_from_zero(&whole, BITS).unwrap());
             let found = simple_roots(&whole, BITS).unwrap();
             assert_eq!(found.len(), expected.len());
             for root in &found {

@@ -17,11 +17,10 @@ use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::guards::row::ModalRow;
 use crate::affine::modal;
 use crate::affine::model::error::SystemError;
-use crate::affine::model::system::{
-    LARGEST_DIMENSION, Mode, Row, Successor, System, Until, is_unit,
-};
+use crate::affine::model::system::{LARGEST_DIMENSION, Row, Successor, System, Until, is_unit};
 use crate::affine::zeros::exact_mode::ExactMode;
 use crate::affine::zeros::graph::ZeroGraph;
+use crate::dynamics::parallel;
 use crate::numeric::number::{Bound, Number};
 use event::Event;
 use pool::CachePool;
@@ -91,16 +90,15 @@ impl<T: Number> Solver<T> {
     pub fn prepare(system: &System, backward: bool) -> Result<Self, SystemError> {
         system.check()?;
         let system = if backward { system.reversed() } else { system.clone() };
-        let mut blocks = Vec::new();
-        for mode in &system.modes {
-            let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale, bits_for::<T>());
-            blocks.push(bound::ordered(blocks_of_mode));
-        }
+        let blocks = parallel::map(&system.modes, |mode| {
+            bound::ordered(modal::blocks(&mode.matrix, system.time_scale, bits_for::<T>()))
+        });
         let graph = ZeroGraph::new(&system);
         let graph = graph.ok_or_else(|| SystemError::Undecidable { item: system.name.clone() })?;
-        let flows: Vec<ModeFlow<T>> = blocks.iter().map(|it| ModeFlow::new(it)).collect();
+        let flows: Vec<ModeFlow<T>> = parallel::map(&blocks, |it| ModeFlow::new(it));
         let row = |row: &Row, mode: usize| ModalRow::new(row, &flows[mode], &blocks[mode]);
-        let mode = |(n, mode): (usize, &Mode)| {
+        let mode = |n: &usize| {
+            let (n, mode) = (*n, &system.modes[*n]);
             let until = mode.until.iter().map(|it| &it.guard);
             let guards: Vec<_> = until.chain(mode.watch.iter().map(|it| &it.guard)).collect();
             let guard = |guard: &&Row| {
@@ -129,7 +127,7 @@ impl<T: Number> Solver<T> {
                 exact: OnceLock::new(),
             }
         };
-        let modes = system.modes.iter().enumerate().map(mode).collect();
+        let modes = parallel::map(&Vec::from_iter(0..system.modes.len()), mode);
         let clock = system.forcing.as_ref().map(Clock::new);
         Ok(Self { modes, clock, pool: CachePool::new(graph), backward, system })
     }
