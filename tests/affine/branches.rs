@@ -154,7 +154,8 @@ fn a_rigid_stop_is_touched_where_the_free_motion_is() {
     }
 }
 
-/// Next to a strobe at which the graze lies the map has two corners more, and had a fold.
+/// Next to a strobe at which the graze lies the map has two corners more. A multiplier of 4 becomes
+/// one below 1 within 1e-4 of the graze, so that a fold lies between.
 #[test]
 fn a_graze_at_the_strobe_is_that_of_other_strobes() {
     let text = include_str!("../../benches/bilinear.system.toml");
@@ -162,10 +163,12 @@ fn a_graze_at_the_strobe_is_that_of_other_strobes() {
         let varied = Varied::new(text, Section::strobe(angle), "frequency", &[]);
         let branch = varied.follow(&varied.settled_return(1.1, 500), 1, [1.1, 2.5]);
         assert!(branch.is_complete(), "{angle}: {}", branch.ending);
-        assert_eq!(branch.bifurcations.len(), 2, "{:?}", bifurcation_rows(&branch));
+        assert_eq!(branch.bifurcations.len(), 3, "{:?}", bifurcation_rows(&branch));
         assert_value(only_bifurcation(&branch, BifurcationKind::Grazing), 1.252_884_567_093_854_4);
-        let fold = only_bifurcation(&branch, BifurcationKind::Fold).value;
-        assert!((fold - 1.548_088_891_779_077).abs() < 1e-13, "{angle}: {fold}");
+        let folds = branch.bifurcations.iter().filter(|it| it.kind == BifurcationKind::Fold);
+        let folds: Vec<_> = folds.map(|it| it.value).collect();
+        assert!((folds[0] - 1.548_088_891_779_077).abs() < 1e-13, "{angle}: {folds:?}");
+        assert!((folds[1] - 1.252_842_589_956_201).abs() < 1e-13, "{angle}: {folds:?}");
         // The points are those of the strobe that was asked for.
         let (value, orbit) = &branch.points[branch.points.len() - 1];
         let shown = varied.map(*value, |map| {
@@ -221,6 +224,40 @@ fn an_impact_that_passes_the_strobe_amid_chatter_is_no_bifurcation() {
     assert!(branch.bifurcations.is_empty(), "{:?}", bifurcation_rows(&branch));
     let words: Vec<usize> = branch.points.iter().map(|it| it.1.events.len()).collect();
     assert_ne!(words[0], words[words.len() - 1]);
+}
+
+/// Beyond a graze at which the motion jumps another orbit may lie near: it is not the branch's. The
+/// stick-slip of a drill string ends at 1.61504, and its steady cycle goes on to 1.60426.
+#[test]
+fn an_orbit_beyond_a_discontinuity_is_another_branchs() {
+    let text = include_str!("drill_string.system.toml");
+    let varied = Varied::new(text, Section::event("go"), "w0", &[]);
+    let branch = varied.follow(&varied.settled_return(1.6, 60), 1, [1.6, 1.64]);
+    let BranchEnding::Lost { value } = branch.ending else { panic!("{}", branch.ending) };
+    let graze = only_bifurcation(&branch, BifurcationKind::Grazing);
+    assert_value(graze, 1.615_041_302_772);
+    assert_eq!(value, graze.value);
+    assert_eq!(graze.event.unwrap().name(&varied.at(1.6).unwrap()), "stop@slip");
+}
+
+/// A neuron's current: the branch turns at a fold, and ends where its potential touches the
+/// threshold before the spike, so that the spike comes earlier and the same events follow.
+#[test]
+fn a_branch_ends_where_an_event_comes_earlier() {
+    let text = "schema = 1\nname = \"neuron\"\nstates = [\"v\", \"w\"]\n\
+                forcing = { omega = 3, phi = 0 }\n[parameters]\nI = 1.6\n[[mode]]\n\
+                name = \"leak\"\nequations = [\"v' = -v + I - w + cos/2\", \"w' = -w/4\"]\n\
+                until = [{ name = \"spike\", guard = \"v > 1\", \
+                reset = [\"v = 0\", \"w = w + 1/5\"] }]\n\
+                [start]\nmode = \"leak\"\nv = 0\nw = 0\n";
+    let varied = Varied::new(text, Section::strobe(0.0), "I", &[]);
+    let branch = varied.follow(&varied.settled_return(1.9, 100), 2, [1.9, 2.6]);
+    let fold = only_bifurcation(&branch, BifurcationKind::Fold);
+    assert!((fold.value - 1.932_197_705_708_688).abs() <= 1e-13, "{}", fold.value);
+    let graze = only_bifurcation(&branch, BifurcationKind::Grazing);
+    assert_value(graze, 1.932_079_053_990_55);
+    assert_eq!(branch.ending, BranchEnding::Lost { value: graze.value });
+    assert_eq!(graze.event.unwrap().name(&varied.at(1.9).unwrap()), "spike@leak");
 }
 
 /// Unstable orbits are followed past it, too, and orbits that a reset changes there.
@@ -326,12 +363,14 @@ fn a_last_sticking_at_which_a_multiplier_is_one_is_within_its_error() {
         let [lost] = &branch.bifurcations[..] else {
             panic!("{from}: {:?}", bifurcation_rows(&branch))
         };
-        let kinds = [BifurcationKind::EventLost, BifurcationKind::Corner];
+        // The rate of the force is zero at the last stop, which is a graze if it is seen so near.
+        let kinds = [BifurcationKind::EventLost, BifurcationKind::Corner, BifurcationKind::Grazing];
         assert!(kinds.contains(&lost.kind), "{from}: {:?}", bifurcation_rows(&branch));
         let (value, error) = (lost.value, lost.error);
         assert!((value - 3.0).abs() <= error, "{from}: {value} +- {error}");
-        // A rounding of the orbit over 1 less a multiplier is as large there as 3 - A.
-        assert!(error < 1e-6, "{from}: {error}");
+        // A rounding of the orbit over 1 less a multiplier is as large there as 3 - A, 1e-7. From
+        // beyond, the end is seen as far away as a step is longer than that: to 6e-6.
+        assert!(error < 1e-5, "{from}: {error}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::returns::shooting::{ReturnMap, Shots};
 use super::curve::Curve;
-use super::family::OrbitShots;
+use super::family::{OrbitShots, is_near_touch};
 use super::point::{CurvePoint, are_on_one_piece};
 use crate::dynamics::continuation::corner::last_along;
 use crate::dynamics::continuation::steps::{Corner, OrbitPoint};
@@ -22,6 +22,11 @@ const RELATIVE_ERROR_TOLERANCE: f64 = 1e-11;
 /// The next piece ends within this share of the step at which it was found: one that ends further
 /// away has others between it and the corner.
 const MAX_END_SHARE: f64 = 0.1;
+/// The distance of the next piece's end from the corner's orbit is at most this share of that at
+/// which the piece was found: the piece of another orbit, beyond a discontinuity, does not come
+/// nearer. Within some steps an orbit is as near as the curve of a smooth map leads, and roundings.
+const MAX_DISTANCE_SHARE: f64 = 0.5;
+const MAX_SMOOTH_MULTIPLE: f64 = 10.0;
 /// Times once around after which a motion from an orbit next to a corner is looked at.
 const SETTLING_TURNS: [u32; 2] = [1, 40];
 /// Steps along the curve by which such a motion begins aside of the orbit: on one of the two sides
@@ -33,6 +38,8 @@ const REFINEMENTS: usize = 4;
 /// The distance to where a multiplier would be 1 is part of a corner's error up to this multiple of
 /// what rounding leaves uncertain of the orbit: rounding then decides where the piece seems to end.
 const MAX_BLURS: f64 = 100.0;
+/// The length along the curve over which a multiplier's way to 1 is measured, at least.
+const LENGTH_TO_MULTIPLIER: f64 = 1e-2;
 
 /// A piece of a curve followed as far as it goes.
 pub(super) struct Approach {
@@ -82,7 +89,7 @@ impl Curve<'_> {
         for step in PROBE_DISTANCES {
             let before = &best.before;
             let Some(beyond) = self.point_beyond(before, step) else { continue };
-            let apart = self.seen_from(&beyond, step, before).unwrap_or(0.0);
+            let Some(apart) = self.seen_from(&beyond, step, before) else { continue };
             if apart > MAX_END_SHARE * step {
                 continue;
             }
@@ -98,7 +105,11 @@ impl Curve<'_> {
         if best.beyond.is_none() {
             best.beyond = self.striking(&best.before);
         }
-        best.error = error.max(least);
+        // Where rounding decides, the end is no touch that an event would tell.
+        let is_told = best.beyond.is_none()
+            && self.doubt(base, &best.before, self.blur(&best.before, &base.tangent)) == 0.0;
+        let to_touch = if is_told { self.distance_to_touch(base, &best.before) } else { 0.0 };
+        best.error = error.max(least).max(to_touch);
         best
     }
 
@@ -112,17 +123,31 @@ impl Curve<'_> {
     /// The least error that is said of a corner which was reached from a base.
     pub(super) fn least_error(&self, base: &CurvePoint, before: &CurvePoint) -> f64 {
         let blur = self.blur(before, &base.tangent);
-        let left = distance_to_unit_multiplier(base, before);
-        let doubt = if left <= MAX_BLURS * blur { left } else { 0.0 };
+        let doubt = self.doubt(base, before, blur);
         RELATIVE_ERROR_TOLERANCE * before.value.abs() + self.uncertainty(before) + blur + doubt
     }
 
-    /// The distance in the parameter between the corner and where it is found from beyond; none
-    /// where no orbit is found on the way there, as where a derivative grows without bound.
+    /// The distance to where a multiplier would be 1 if rounding decides where the piece seems to
+    /// end; zero elsewhere.
+    fn doubt(&self, base: &CurvePoint, before: &CurvePoint, blur: f64) -> f64 {
+        if distance_to_unit_multiplier(base, before) > MAX_BLURS * blur {
+            return 0.0;
+        }
+        // From next to the end the multiplier's own rounding would decide.
+        let far = self.approach_within(&base.turned(), LENGTH_TO_MULTIPLIER, LENGTH_TO_MULTIPLIER);
+        distance_to_unit_multiplier(&far.last, before)
+    }
+
+    /// The distance in the parameter between the corner and where it is found from beyond: zero
+    /// where a derivative grows without bound, so that the way there is lost before. None
+    /// where the way does not lead to the orbit at the corner: it is then another one's.
     fn seen_from(&self, beyond: &CurvePoint, step: f64, before: &CurvePoint) -> Option<f64> {
         let end = self.approach(&beyond.turned(), 2.0 * step);
+        let [from, to] = [beyond, &end.last].map(|it| self.distance(it.value, &it.shots, before));
         let apart = (end.last.value - before.value).abs() + end.error();
-        (!end.is_lost).then_some(apart)
+        let comes_nearer = to? <= (MAX_DISTANCE_SHARE * from?).max(MAX_SMOOTH_MULTIPLE * step);
+        let has_no_bound = end.is_lost || is_near_touch(&end.last.shots);
+        comes_nearer.then_some(if has_no_bound { 0.0 } else { apart })
     }
 
     /// Follows the curve from a point as far as its piece goes.
@@ -137,7 +162,7 @@ impl Curve<'_> {
             if length.get() > most {
                 return None;
             }
-            let there = self.corrected_point(from, step).or_else(|| self.at_value(from, step));
+            let there = self.corrected_freely(from, step).or_else(|| self.at_value(from, step));
             is_lost.set(there.is_none());
             let there = there.filter(|it| it.is_on_piece_of(from))?;
             length.set(length.get() + step);
@@ -155,7 +180,8 @@ impl Curve<'_> {
         let value = base.value + step * base.tangent.rate;
         let shots = self.shifted(base, &base.tangent, step)?;
         let shots = self.family.at(value, |map| Some(polish(map, shots)))?;
-        if !shots.is_closed() || !self.is_near(value, &shots, base, step) {
+        let is_forward = self.distance_along(base, value, &shots)? > 0.0;
+        if !shots.is_closed() || !is_forward || !self.is_near(value, &shots, base, step) {
             return None;
         }
         // A direction that rests on such a difference is no better than that of the point before.
@@ -178,7 +204,7 @@ impl Curve<'_> {
         // The way forward first, of each probe.
         bases.into_iter().rev().find_map(|base| {
             let point =
-                self.corrected_point(&base, step).filter(|it| !it.is_on_piece_of(before))?;
+                self.corrected_freely(&base, step).filter(|it| !it.is_on_piece_of(before))?;
             if !self.is_near(point.value, &point.shots, before, step) {
                 return None;
             }
@@ -277,13 +303,18 @@ impl Curve<'_> {
         from: &CurvePoint,
         step: f64,
     ) -> bool {
-        let distance = self.family.at(value, |map| {
+        let distance = self.distance(value, shots, from);
+        distance.is_some_and(|it| it <= MAX_ROOT_MULTIPLE * libm::sqrt(step))
+    }
+
+    /// The largest distance between points of shots and those of an orbit, relative to their sizes.
+    fn distance(&self, value: f64, shots: &OrbitShots, from: &CurvePoint) -> Option<f64> {
+        self.family.at(value, |map| {
             let pairs = shots.points.iter().zip(&from.carried);
             let sizes =
                 pairs.map(|(it, own)| map.size(it, &map.change_between(&map.take_up(own), it)));
             Some(sizes.fold(0.0, f64::max))
-        });
-        distance.is_some_and(|it| it <= MAX_ROOT_MULTIPLE * libm::sqrt(step))
+        })
     }
 }
 

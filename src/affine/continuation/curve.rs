@@ -8,6 +8,7 @@ use super::family::{OrbitShots, ReturnFamily};
 use super::point::{CurvePoint, Direction, are_on_one_piece};
 use crate::affine::arithmetic::vector::sum_rounding;
 use crate::dynamics::linear::{apply, product, solve};
+use core::cell::Cell;
 
 /// The family, the parameter's unit of arc length, and those of the states.
 pub(super) struct Curve<'a> {
@@ -15,6 +16,9 @@ pub(super) struct Curve<'a> {
     pub unit: f64,
     /// The curve by whose points those of this one are shown, if not by their own.
     pub shown: Option<&'a Curve<'a>>,
+    /// The value from which a piece was followed to its end, and that at its end, where no orbit was
+    /// found beyond: a shorter step finds none either.
+    pub lost_end: Cell<[f64; 2]>,
     scales: Change,
     /// The number of entries of z.
     dimension: usize,
@@ -35,6 +39,14 @@ pub(super) struct Jump {
 
 /// Newton's iterations of a corrector: more, and the step was too long.
 const ITERATIONS: usize = 10;
+
+/// The rate of the parameter, in units, from which a corrector holds its value: further from a
+/// fold, where orbits are far from values.
+const MIN_STEEP_RATE: f64 = 0.3;
+
+/// The least distance along the tangent to the next orbit, and the greatest to it, in steps.
+const MIN_ALONG_STEP: f64 = 0.5;
+const MAX_LENGTH_OF_STEP: f64 = 2.0;
 
 /// The least change of the parameter, in units, from which its derivative is learned.
 const MIN_PARAMETER_CHANGE: f64 = 1e-6;
@@ -92,7 +104,8 @@ impl<'a> Curve<'a> {
             scales.iter_mut().zip(own).for_each(|(it, own)| *it = *own);
             Some((scales, system.dimension()))
         })?;
-        Some(Self { family, unit, shown: None, scales, dimension })
+        let lost_end = Cell::new([f64::NAN; 2]);
+        Some(Self { family, unit, shown: None, lost_end, scales, dimension })
     }
 
     /// The curve, whose points are shown by those of another one.
@@ -127,12 +140,44 @@ impl<'a> Curve<'a> {
     /// The orbit at a distance along the tangent of `base`, with the parameter's derivative as the
     /// corrector learned it.
     pub fn corrected_point(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
+        let is_steep = (base.tangent.rate / self.unit).abs() >= MIN_STEEP_RATE;
+        let at_value = is_steep.then(|| self.corrected(base, distance, true)).flatten();
+        at_value.or_else(|| self.corrected_freely(base, distance))
+    }
+
+    /// The same with the parameter free, as next to corners.
+    pub fn corrected_freely(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
+        self.corrected(base, distance, false)
+    }
+
+    /// Whether a step leads to shots on the curve, rather than to those of another sheet of it or
+    /// of another curve.
+    pub fn is_step(
+        &self,
+        base: &CurvePoint,
+        value: f64,
+        shots: &OrbitShots,
+        distance: f64,
+    ) -> bool {
+        let Some(points) = self.changes_from(base, value, shots) else { return false };
+        let moved = Direction { points, rate: value - base.value };
+        let along = self.product(&base.tangent, &moved, &base.shots) / distance;
+        let length = self.product(&moved, &moved, &base.shots).sqrt() / distance.abs();
+        along >= MIN_ALONG_STEP && length <= MAX_LENGTH_OF_STEP
+    }
+
+    /// The same with the parameter held at the tangent's value, for which one solver is prepared,
+    /// or the distance.
+    fn corrected(&self, base: &CurvePoint, distance: f64, holds_value: bool) -> Option<CurvePoint> {
         let mut value = base.value + distance * base.tangent.rate;
         let mut shots = self.shifted(base, &base.tangent, distance)?;
         let mut slopes = base.slopes.clone();
         let mut best: Option<(f64, OrbitShots, Vec<Change>)> = None;
         for _ in 0..ITERATIONS {
-            let left = self.distance_along(base, value, &shots)? - distance;
+            let left = match holds_value {
+                true => 0.0,
+                false => self.distance_along(base, value, &shots)? - distance,
+            };
             let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
             let closed = in_place && shots.is_closed();
             match &best {
@@ -140,7 +185,10 @@ impl<'a> Curve<'a> {
                 None if !closed => {}
                 _ => best = Some((value, shots.clone(), slopes.clone())),
             }
-            let bordered = self.bordered_system(&shots, &slopes, &base.tangent, &base.shots);
+            let mut bordered = self.bordered_system(&shots, &slopes, &base.tangent, &base.shots);
+            if holds_value {
+                bordered.matrix[MAX_COORDINATES][..MAX_COORDINATES].fill(0.0);
+            }
             let mut right = [0.0; BORDERED_DIMENSION];
             (0..MAX_COORDINATES).for_each(|n| right[n] = -bordered.offset[n] / self.scales[n]);
             right[MAX_COORDINATES] = -left;
@@ -152,8 +200,33 @@ impl<'a> Curve<'a> {
             self.learn(&mut slopes, [value, step], [&shots, &next], &changes);
             (value, shots) = (value + step, next);
         }
-        let (value, shots, slopes) = best?;
+        let (value, shots, mut slopes) = best?;
+        if distance.abs() > f64::EPSILON && !self.is_step(base, value, &shots, distance) {
+            return None;
+        }
+        if holds_value {
+            let changes = self.changes_from(base, value, &shots)?;
+            let step = value - base.value;
+            self.learn(&mut slopes, [base.value, step], [&base.shots, &shots], &changes);
+            // What has been learned holds midway.
+            for (own, from) in slopes.iter_mut().zip(&base.slopes) {
+                *own = std::array::from_fn(|n| 2.0 * own[n] - from[n]);
+            }
+        }
         self.point_with(value, shots, slopes, &base.tangent)
+    }
+
+    /// The changes of all points from those of an orbit.
+    fn changes_from(
+        &self,
+        base: &CurvePoint,
+        value: f64,
+        shots: &OrbitShots,
+    ) -> Option<Vec<Change>> {
+        self.family.at(value, |map| {
+            let pairs = base.carried.iter().zip(&shots.points);
+            Some(pairs.map(|(a, b)| map.change_between(&map.take_up(a), b)).collect())
+        })
     }
 
     /// The shots at another value of the parameter, with these changes.
@@ -198,8 +271,8 @@ impl<'a> Curve<'a> {
             })
         });
         for (k, apart) in apart.into_iter().flatten().enumerate() {
-            let by_state = apply(&before.images[k].derivative, &changes[k]);
-            slopes[k] = std::array::from_fn(|n| (apart[n] - by_state[n]) / step);
+            let [from, to] = [before, after].map(|it| apply(&it.images[k].derivative, &changes[k]));
+            slopes[k] = std::array::from_fn(|n| (apart[n] - 0.5 * (from[n] + to[n])) / step);
         }
     }
 
@@ -297,7 +370,7 @@ impl<'a> Curve<'a> {
     }
 
     /// The distance along the tangent of `base` at which shots lie.
-    fn distance_along(&self, base: &CurvePoint, value: f64, shots: &OrbitShots) -> Option<f64> {
+    pub fn distance_along(&self, base: &CurvePoint, value: f64, shots: &OrbitShots) -> Option<f64> {
         let moved = self.family.at(value, |map| {
             Some(map.change_between(&map.take_up(&base.carried[0]), &shots.points[0]))
         })?;

@@ -30,7 +30,7 @@ const KEPT_SOLVERS: usize = 8;
 /// Relative steps of the differences, longest first: the first balances truncation and rounding,
 /// the others are for neighbourhoods of a corner.
 const DIFFERENCE_STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
-/// Further steps next to a touch.
+/// Further steps next to a touch, and where differences of one side do not agree.
 const STEPS_AT_TOUCH: [f64; 2] = [6e-12, 6e-13];
 /// The derivative of a map that is large for a touch to be near, where it grows without bound.
 const MIN_DERIVATIVE_AT_TOUCH: f64 = 100.0;
@@ -39,6 +39,11 @@ const FIRST_OF_ONE_SIDE: usize = 2;
 /// The share by which differences of one side may change from a step to the next: next to a touch
 /// the image changes by a root, and they grow by the root of the steps' quotient.
 const MAX_CHANGE_OF_ONE_SIDE: f64 = 0.001;
+
+/// The share by which changes to both sides may differ on a smooth piece, where they are larger
+/// than so many sizes of the states.
+const MAX_ODDNESS: f64 = 0.5;
+const MAX_SMALL_CHANGE: f64 = 1e-8;
 
 impl<'a> ReturnFamily<'a> {
     /// The family of a section; `system` is the system at a value, and `longest` the longest time
@@ -144,13 +149,20 @@ impl<'a> ReturnFamily<'a> {
         };
         let none = [0.0; MAX_COORDINATES];
         let (mut fallback, mut longest, mut last) = (None, None, None);
-        let further = if is_at_touch { &STEPS_AT_TOUCH[..] } else { &[] };
-        let steps = DIFFERENCE_STEPS.iter().chain(further).map(|relative| relative * size);
+        let steps = DIFFERENCE_STEPS.iter().chain(&STEPS_AT_TOUCH).map(|relative| relative * size);
         for (n, step) in steps.enumerate() {
+            if n >= DIFFERENCE_STEPS.len() && longest.is_none() && !is_at_touch {
+                break;
+            }
             let (up, down) = ((value + step) - value, value - (value - step));
             let own_side = match (beside(up), beside(-down)) {
                 (Some((above, true)), Some((below, true))) => {
-                    return quotient(above, below, up + down);
+                    let both = quotient(above, below, up + down);
+                    if self.is_smooth(value, &here.point, [&above, &below]) {
+                        return both;
+                    }
+                    fallback = fallback.or(Some(both));
+                    continue;
                 }
                 (Some((above, true)), _) => quotient(above, none, up),
                 (_, Some((below, true))) => quotient(none, below, down),
@@ -163,9 +175,6 @@ impl<'a> ReturnFamily<'a> {
             if n < FIRST_OF_ONE_SIDE {
                 continue;
             }
-            if !is_at_touch {
-                return own_side;
-            }
             // The longer one has the smaller rounding.
             if let Some(before) = last.filter(|before| are_alike(before, &own_side)) {
                 return before;
@@ -173,6 +182,16 @@ impl<'a> ReturnFamily<'a> {
             (longest, last) = (longest.or(Some(own_side)), Some(own_side));
         }
         longest.or(fallback).unwrap_or(none)
+    }
+
+    /// Whether changes of an image to both sides are those of a smooth map. Where an event comes
+    /// earlier because its guard is touched, the image jumps, and the events are the same.
+    fn is_smooth(&self, value: f64, at: &Place<f64>, [above, below]: [&Change; 2]) -> bool {
+        let odd: Change = std::array::from_fn(|n| above[n] + below[n]);
+        let sizes = self.at(value, |map| Some([above, below, &odd].map(|it| map.size(at, it))));
+        let Some([above, below, odd]) = sizes else { return false };
+        let size = above.max(below);
+        size <= MAX_SMALL_CHANGE || odd <= MAX_ODDNESS * size
     }
 }
 

@@ -4,9 +4,10 @@ use super::super::returns::orbit::Orbit;
 use super::super::returns::shooting::{ReturnMap, Shots};
 use super::ReturnBifurcation;
 use super::curve::Curve;
+use super::family::is_near_touch;
 use super::point::{CurvePoint, are_on_one_piece};
 use super::words::Meaning;
-use crate::dynamics::continuation::steps::{Corner, Noted, OrbitCurve, OrbitPoint};
+use crate::dynamics::continuation::steps::{Accepts, Corner, Noted, OrbitCurve, OrbitPoint};
 use crate::dynamics::linear::ReIm;
 use crate::dynamics::orbit::newton::polish;
 
@@ -14,6 +15,9 @@ use crate::dynamics::orbit::newton::polish;
 /// on for longer, the corrector has left the curve: next to a touch it leads to the orbit without
 /// the event where a step is too long.
 const MAX_LENGTH_TO_CORNER: f64 = 2.0;
+
+/// Two ends of a piece are the same one if their values differ by a smaller share.
+const MAX_DIFFERENCE_OF_END: f64 = 1e-10;
 
 impl OrbitPoint for CurvePoint {
     fn value(&self) -> f64 {
@@ -83,16 +87,34 @@ impl OrbitCurve for Curve<'_> {
         Self::half(self, point, next)
     }
 
-    fn corner(&self, base: &CurvePoint, distance: f64, last: bool) -> Option<Corner<CurvePoint>> {
-        if last {
-            return Some(Self::corner(self, base, distance));
+    fn corner(
+        &self,
+        base: &CurvePoint,
+        distance: f64,
+        accepts: Option<Accepts<'_, CurvePoint>>,
+    ) -> Option<Corner<CurvePoint>> {
+        let Some(accepts) = accepts else { return Some(Self::corner(self, base, distance)) };
+        let [lost_from, lost_at] = self.lost_end.get();
+        if base.value == lost_from {
+            return None;
         }
         let most = MAX_LENGTH_TO_CORNER * distance;
         let end = self.approach_within(base, distance, most);
-        if end.length > most {
+        let own_error = end.error() + MAX_DIFFERENCE_OF_END * end.last.value.abs();
+        let was_lost = (end.last.value - lost_at).abs() <= own_error;
+        if end.length > most || was_lost || !accepts(&end.last) {
             return None;
         }
-        Some(self.corner_at(base, end)).filter(|it| it.beyond.is_some())
+        let corner = self.corner_at(base, end);
+        // A touch is expected where the speed of an impact says so, the better the nearer.
+        if corner.beyond.is_none() && !is_near_touch(&corner.before.shots) {
+            self.lost_end.set([base.value, corner.before.value]);
+        }
+        Some(corner).filter(|it| it.beyond.is_some())
+    }
+
+    fn distance_along(&self, base: &CurvePoint, other: &CurvePoint) -> f64 {
+        Self::distance_along(self, base, other.value, &other.shots).unwrap_or(f64::NAN)
     }
 
     fn of_corner(

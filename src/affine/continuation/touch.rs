@@ -21,6 +21,9 @@ const DISTANCES: [f64; 8] = [1.0, -1.0, 4.0, -4.0, 16.0, -16.0, 64.0, -64.0];
 /// Steps of the curve beyond a touch at which the event has to be there.
 const STEPS_TO_TOUCH: [f64; 3] = [1e-10, 1e-8, 1e-6];
 
+/// A touch is expected within so many times the distance in which an event has become slower.
+const MAX_SHARE_TO_TOUCH: f64 = 4.0;
+
 /// A touch as two orbits with the event tell it.
 struct Expected {
     /// The parameter's value.
@@ -77,6 +80,18 @@ impl Curve<'_> {
         let share = to / (from - to);
         let rest = share * (last.value - base.value);
         Some(Expected { value: last.value + rest, rest, share, event })
+    }
+
+    /// A bound of the distance in the parameter from the last orbit that was found to a touch, if an
+    /// event becomes so slow towards it; zero otherwise. The square of the event's rate falls in
+    /// proportion to that distance; twice what follows leaves room for higher orders.
+    pub(super) fn distance_to_touch(&self, base: &CurvePoint, last: &CurvePoint) -> f64 {
+        let far = self.point_before(base);
+        let expected = self.expected_touch(&far, last).filter(|it| it.share <= MAX_SHARE_TO_TOUCH);
+        expected.map_or(0.0, |it| {
+            let slowed = 1.0 + 1.0 / it.share;
+            2.0 * (last.value - far.value).abs() / (slowed * slowed - 1.0)
+        })
     }
 
     /// The orbit at a value next to a touch that has not the event.

@@ -63,7 +63,9 @@ impl Curve<'_> {
         }
         match beyond {
             None => {
-                self.touch_before(base, before).or_else(|| self.change_of_events(before, beyond))
+                let changed = || self.change_of_events(before, beyond);
+                let touched = self.touch_before(base, before).or_else(changed);
+                touched.or_else(|| self.touch_of_same_events(before))
             }
             Some(it) if is_another(it) => self.change_of_events(before, beyond),
             Some(_) if corner.turns() => self.touch_before(base, before),
@@ -76,8 +78,7 @@ impl Curve<'_> {
     fn touch_before(&self, base: &CurvePoint, before: &CurvePoint) -> Option<Meaning> {
         // Beside the speed of the motion, because an orbit may shrink to a state of rest.
         let relative = |it: Crossing| Crossing { rate: it.rate / it.speed, ..it };
-        // A short last step begins next to the touch itself.
-        let far = self.approach_within(&base.turned(), LENGTH_FROM_TOUCH, LENGTH_FROM_TOUCH).last;
+        let far = self.point_before(base);
         let [near, far] = [before, &far].map(|it| {
             let all = self.crossings(it.value, &it.shots)?;
             Some(all.into_iter().map(relative).collect::<Vec<_>>())
@@ -87,6 +88,30 @@ impl Curve<'_> {
         let is_watched = event.is_watched;
         let kind = if is_watched { BifurcationKind::EventLost } else { BifurcationKind::Grazing };
         Some(Meaning { kind, event })
+    }
+
+    /// An orbit so far before a corner that the fall of a rate towards it is seen: a short last step
+    /// begins next to the touch itself.
+    pub(super) fn point_before(&self, base: &CurvePoint) -> CurvePoint {
+        self.approach_within(&base.turned(), LENGTH_FROM_TOUCH, LENGTH_FROM_TOUCH).last
+    }
+
+    /// The touch beyond which the same events follow one another, the first of them earlier.
+    fn touch_of_same_events(&self, before: &CurvePoint) -> Option<Meaning> {
+        let here = self.crossings(before.value, &before.shots)?;
+        let beyond = |distance: f64| {
+            let shots = self.shifted(before, &before.tangent, distance)?;
+            self.crossings(before.value + distance * before.tangent.rate, &shots)
+        };
+        PROBE_DISTANCES.iter().find_map(|[near, far]| {
+            let (near, far) = same_events(beyond(*near)?, beyond(*far)?)?;
+            let (here, near) = same_events(here.clone(), near)?;
+            let sooner = |side: &[Crossing], k: usize| here[k].time - side[k].time;
+            // A smooth change is sixteen times smaller next to the corner, and a root's four times.
+            let jumps = |k: &usize| MIN_GROWTH_FACTOR * sooner(&near, *k) > sooner(&far, *k).abs();
+            let event = here[(0..here.len()).find(jumps)?].guard;
+            Some(Meaning { kind: BifurcationKind::Grazing, event })
+        })
     }
 
     /// The part in which the events of a corner's two sides differ.

@@ -1,7 +1,7 @@
 //! From one smooth piece of the map to the next.
 
 use super::point::{ContinuationPoint, FamilyCurve, shifted};
-use super::steps::{Corner, OrbitPoint};
+use super::steps::{Accepts, Corner, OrbitPoint};
 use crate::dynamics::orbit::ShootingIterate;
 use crate::dynamics::strobe::StrobePoint;
 
@@ -25,8 +25,12 @@ impl FamilyCurve {
         &self,
         base: &ContinuationPoint,
         distance: f64,
+        accepts: Option<Accepts<'_, ContinuationPoint>>,
     ) -> Option<Corner<ContinuationPoint>> {
         let (before, rest) = self.approach(base, distance);
+        if accepts.is_some_and(|accepts| !accepts(&before)) {
+            return None;
+        }
         let mut best: Option<Corner<_>> = None;
         for step in PROBE_DISTANCES {
             let Some(beyond) = self.point_beyond(&before, step) else { continue };

@@ -1,7 +1,7 @@
 //! The curve of the impact oscillator's orbits, as step control sees it.
 
 use super::point::{ContinuationPoint, FamilyCurve};
-use super::steps::{Corner, Noted, OrbitCurve, OrbitPoint};
+use super::steps::{Accepts, Corner, Noted, OrbitCurve, OrbitPoint};
 use super::{Bifurcation, BifurcationKind, BranchPoint};
 use crate::dynamics::linear::ReIm;
 use crate::dynamics::orbit::ShootingIterate;
@@ -84,9 +84,13 @@ impl OrbitCurve for FamilyCurve {
         &self,
         base: &ContinuationPoint,
         distance: f64,
-        _: bool,
+        accepts: Option<Accepts<'_, ContinuationPoint>>,
     ) -> Option<Corner<ContinuationPoint>> {
-        Self::corner(self, base, distance)
+        Self::corner(self, base, distance, accepts)
+    }
+
+    fn distance_along(&self, base: &ContinuationPoint, other: &ContinuationPoint) -> f64 {
+        Self::distance_along(self, base, &other.iterate, other.value)
     }
 
     fn of_corner(

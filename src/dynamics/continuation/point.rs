@@ -114,7 +114,7 @@ impl FamilyCurve {
     }
 
     /// The distance along the tangent of `base` at which an iterate lies.
-    fn distance_along(
+    pub(super) fn distance_along(
         &self,
         base: &ContinuationPoint,
         iterate: &ShootingIterate,

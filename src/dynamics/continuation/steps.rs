@@ -86,6 +86,9 @@ pub(crate) struct Noted<P> {
     pub(crate) turns: bool,
 }
 
+/// Whether the way to the last orbit of a piece is known, so that the corner there may be passed.
+pub(crate) type Accepts<'a, P> = &'a dyn Fn(&P) -> bool;
+
 /// A curve of orbits in (points, parameter), parametrised by its arc length.
 pub(crate) trait OrbitCurve {
     type Point: OrbitPoint;
@@ -110,9 +113,17 @@ pub(crate) trait OrbitCurve {
     fn half(&self, point: &Self::Point, next: &Self::Point) -> Option<Self::Point>;
 
     /// The corner between a point and a distance along its tangent at which the piece is another
-    /// one or no orbit is found. None sends the follower to a shorter step; one of the shortest is
-    /// the `last`.
-    fn corner(&self, base: &Self::Point, distance: f64, last: bool) -> Option<Corner<Self::Point>>;
+    /// one or no orbit is found. None sends the follower to a shorter step: where a step may be
+    /// shorter, `accepts` says of the last orbit of the piece whether the way to it is known.
+    fn corner(
+        &self,
+        base: &Self::Point,
+        distance: f64,
+        accepts: Option<Accepts<'_, Self::Point>>,
+    ) -> Option<Corner<Self::Point>>;
+
+    /// The distance along the tangent of `base` at which another point lies.
+    fn distance_along(&self, base: &Self::Point, other: &Self::Point) -> f64;
 
     /// The bifurcation that a corner is, if it is one; the curve comes to it from `base`.
     fn of_corner(
@@ -245,7 +256,10 @@ impl<C: OrbitCurve> Follower<'_, C> {
             }
             let last = distance <= if is_on_piece { MIN_STEP_OF_TURN } else { MIN_STEP };
             if other_piece || last {
-                if let Some(corner) = self.curve.corner(point, distance, last) {
+                let accepts = |end: &C::Point| self.is_plain(point, end);
+                let accepts: Option<Accepts<'_, C::Point>> =
+                    if last { None } else { Some(&accepts) };
+                if let Some(corner) = self.curve.corner(point, distance, accepts) {
                     return self.turn(point, corner, step);
                 }
                 if last {
@@ -267,6 +281,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
             let (end, _, ending) = self.cut(point, corner.before, 0.0);
             return Ok((end, ending));
         }
+        self.note_between(point, &corner.before, self.curve.distance_along(point, &corner.before));
         self.bifurcations.extend(self.curve.of_corner(point, &corner));
         self.keep(&corner.before);
         let Some(beyond) = corner.beyond else {
@@ -281,6 +296,18 @@ impl<C: OrbitCurve> Follower<'_, C> {
         next.is_on_piece_of(point)
             && self.curve.cosine(point, next) >= MIN_TURN_COSINE
             && (next.change_of_multipliers(point) <= MAX_MULTIPLIER_CHANGE || distance <= MIN_STEP)
+    }
+
+    /// Whether the way from a point to the end of its piece has no bifurcation: multipliers may grow
+    /// without bound there, but a curve that turns, or a test that changes its sign, is followed by
+    /// shorter steps.
+    fn is_plain(&self, point: &C::Point, end: &C::Point) -> bool {
+        let (from, to) = (point.neimark_sacker_test(), end.neimark_sacker_test());
+        let keeps_sign = |test: &dyn Fn(&C::Point) -> f64| test(point) * test(end) > 0.0;
+        self.curve.cosine(point, end) >= MIN_TURN_COSINE
+            && keeps_sign(&OrbitPoint::rate)
+            && keeps_sign(&OrbitPoint::flip_test)
+            && (from.1 != to.1 || from.0 * to.0 > 0.0)
     }
 
     /// A step that leaves the interval is cut at its end.
