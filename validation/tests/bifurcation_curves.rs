@@ -69,3 +69,24 @@ fn the_curves_of_an_event_that_is_gained_and_lost_are_where_a_level_is_reached()
     let flags = [&start[..], &down, &["--second-range", "0.5,0.6"]].concat();
     curve(&flags, ["event-lost", "above@on"], |h| amplitude(h, 1.0));
 }
+
+/// At p = 0 every motion of x' = p x + cos t is periodic: the branch goes on, unstable.
+#[test]
+fn a_multiplier_that_passes_one_without_a_turn_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("line.system.toml");
+    let system = "schema = 1\nname = \"line\"\nstates = [\"x\"]\nforcing = { omega = 1 }\n\
+                  [parameters]\np = -1\n[[mode]]\nname = \"on\"\n\
+                  equations = [\"x' = p*x + cos\"]\n[start]\nmode = \"on\"\nx = 0\n";
+    std::fs::write(&path, system).expect("it is written");
+    let path = path.to_str().expect("a name");
+    let ends = ["--parameter", "p", "--from", "-1", "--to", "0.97", "--period", "1"];
+    let output = run(&[&["continue", path, "--transient", "20"][..], &ends].concat());
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(text(&output.stdout).contains("\"bifurcations\": []"));
+    assert_eq!(said.lines().count(), 1, "{said}");
+    let between = said.split_once(": between ").expect(&said).1;
+    let [from, to] = [0, 2].map(|n| number(between.split(' ').nth(n).expect("a number")));
+    assert!(from < 0.0 && to > 0.0, "{said}");
+}

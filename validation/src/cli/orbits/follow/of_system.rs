@@ -78,6 +78,13 @@ pub(super) fn run(
     let told = json(&first, parameter, branch.as_ref().ok());
     let figure = || drawing(arguments, chosen, &first, &shown, branch.as_ref().ok());
     outputs.data_and_figure(&arguments.picture, |_, out| output::json(out, &told), figure)?;
+    for [from, to] in branch.iter().flat_map(crossings) {
+        say(&format!(
+            "--parameter {parameter}: between {from:?} and {to:?} a multiplier passes 1 and the \
+             branch does not turn, as where a symmetric orbit gives way to two that are not. \
+             Follow these from a start of their own."
+        ));
+    }
     let why = match branch {
         Ok(branch) if branch.is_complete() => return Ok(DONE),
         Ok(branch) => format!("--parameter {parameter}: {}", branch.ending),
@@ -85,6 +92,19 @@ pub(super) fn run(
     };
     say(&why);
     Ok(OUT_OF_BOUNDS)
+}
+
+/// The intervals between points of a branch in which its stability changes and nothing is listed.
+fn crossings(branch: &ReturnBranch) -> Vec<[f64; 2]> {
+    let changes = branch.points.windows(2).filter_map(|pair| match pair {
+        [(from, one), (to, other)] if one.is_stable() != other.is_stable() => {
+            let [low, high] = [from.min(*to), from.max(*to)];
+            let within = |it: &ReturnBifurcation| low <= it.value && it.value <= high;
+            (!branch.bifurcations.iter().any(within)).then_some([*from, *to])
+        }
+        _ => None,
+    });
+    changes.collect()
 }
 
 /// Refuses flags that do not fit a system.
