@@ -238,7 +238,7 @@ fn too_few(tallies: &[Tally]) -> Vec<String> {
 /// On set-ups and cases that set no limit wrong answers are caught, and no right one is condemned.
 #[test]
 fn wrong_answers_are_caught_where_no_limit_was_set() {
-    let cases = exact::prepared(|_| true, None);
+    let cases = exact::prepared(|_| true, Some(Suite::Quick));
     let classes = defaults().expect("the limits are read").classes;
     let variants = [&CAUGHT_VARIANTS[..], &CAUGHT_ONE_STEP_VARIANTS].concat();
     let mut made = trials(&cases, 1e-6, &classes, &variants);
