@@ -231,8 +231,8 @@ fn an_impact_that_passes_the_strobe_amid_chatter_is_no_bifurcation() {
 #[test]
 fn an_orbit_beyond_a_discontinuity_is_another_branchs() {
     let text = include_str!("drill_string.system.toml");
-    let varied = Varied::new(text, Section::event("go"), "w0", &[]);
-    let branch = varied.follow(&varied.settled_return(1.6, 60), 1, [1.6, 1.64]);
+    let varied = Varied::new(text, Section::event("slow"), "w0", &[]);
+    let branch = varied.follow(&varied.settled_return(1.5, 60), 1, [1.5, 2.0]);
     let BranchEnding::Lost { value } = branch.ending else { panic!("{}", branch.ending) };
     let graze = only_bifurcation(&branch, BifurcationKind::Grazing);
     assert_value(graze, 1.615_041_302_772);

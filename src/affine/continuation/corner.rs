@@ -24,9 +24,8 @@ const RELATIVE_ERROR_TOLERANCE: f64 = 1e-11;
 const MAX_END_SHARE: f64 = 0.1;
 /// The distance of the next piece's end from the corner's orbit is at most this share of that at
 /// which the piece was found: the piece of another orbit, beyond a discontinuity, does not come
-/// nearer. Within some steps an orbit is as near as the curve of a smooth map leads, and roundings.
+/// nearer. Within a step an orbit is as near as it comes where it does not depend on the parameter.
 const MAX_DISTANCE_SHARE: f64 = 0.5;
-const MAX_SMOOTH_MULTIPLE: f64 = 10.0;
 /// Times once around after which a motion from an orbit next to a corner is looked at.
 const SETTLING_TURNS: [u32; 2] = [1, 40];
 /// Steps along the curve by which such a motion begins aside of the orbit: on one of the two sides
@@ -145,7 +144,7 @@ impl Curve<'_> {
         let end = self.approach(&beyond.turned(), 2.0 * step);
         let [from, to] = [beyond, &end.last].map(|it| self.distance(it.value, &it.shots, before));
         let apart = (end.last.value - before.value).abs() + end.error();
-        let comes_nearer = to? <= (MAX_DISTANCE_SHARE * from?).max(MAX_SMOOTH_MULTIPLE * step);
+        let comes_nearer = to? <= (MAX_DISTANCE_SHARE * from?).max(step);
         let has_no_bound = end.is_lost || is_near_touch(&end.last.shots);
         comes_nearer.then_some(if has_no_bound { 0.0 } else { apart })
     }

@@ -16,8 +16,8 @@ pub(super) struct Curve<'a> {
     pub unit: f64,
     /// The curve by whose points those of this one are shown, if not by their own.
     pub shown: Option<&'a Curve<'a>>,
-    /// The value from which a piece was followed to its end, and that at its end, where no orbit was
-    /// found beyond: a shorter step finds none either.
+    /// The value from which a piece was followed to its end, and that at its end, where no orbit
+    /// was found beyond: a shorter step finds none either.
     pub lost_end: Cell<[f64; 2]>,
     scales: Change,
     /// The number of entries of z.
@@ -145,7 +145,8 @@ impl<'a> Curve<'a> {
         at_value.or_else(|| self.corrected_freely(base, distance))
     }
 
-    /// The same with the parameter free, as next to corners.
+    /// The orbit at a distance along the tangent of `base`, with the parameter free, as next to
+    /// corners.
     pub fn corrected_freely(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
         self.corrected(base, distance, false)
     }
@@ -166,8 +167,8 @@ impl<'a> Curve<'a> {
         along >= MIN_ALONG_STEP && length <= MAX_LENGTH_OF_STEP
     }
 
-    /// The same with the parameter held at the tangent's value, for which one solver is prepared,
-    /// or the distance.
+    /// The orbit a step along the tangent of `base`: the parameter is held at the tangent's value,
+    /// for which one solver is prepared, or the distance is.
     fn corrected(&self, base: &CurvePoint, distance: f64, holds_value: bool) -> Option<CurvePoint> {
         let mut value = base.value + distance * base.tangent.rate;
         let mut shots = self.shifted(base, &base.tangent, distance)?;

@@ -82,8 +82,8 @@ impl Curve<'_> {
         Some(Expected { value: last.value + rest, rest, share, event })
     }
 
-    /// A bound of the distance in the parameter from the last orbit that was found to a touch, if an
-    /// event becomes so slow towards it; zero otherwise. The square of the event's rate falls in
+    /// A bound of the distance in the parameter from the last orbit that was found to a touch, if
+    /// an event becomes so slow towards it; zero otherwise. The square of the event's rate falls in
     /// proportion to that distance; twice what follows leaves room for higher orders.
     pub(super) fn distance_to_touch(&self, base: &CurvePoint, last: &CurvePoint) -> f64 {
         let far = self.point_before(base);

@@ -28,6 +28,10 @@ const PROBE_DISTANCES: [[f64; 2]; 3] = [[1e-6, 1.6e-5], [1e-8, 1.6e-7], [1e-4, 1
 /// A rate or a time that has grown by more vanishes at the corner: the root of sixteen is four.
 const MIN_GROWTH_FACTOR: f64 = 2.0;
 
+/// An event that comes earlier by more of the return's time has jumped: smooth changes and
+/// roundings are smaller so near to a corner.
+const MIN_JUMP: f64 = 1e-3;
+
 /// The length along the curve from which the fall of a rate to a touch is looked at, at least.
 const LENGTH_FROM_TOUCH: f64 = 1e-4;
 
@@ -90,8 +94,8 @@ impl Curve<'_> {
         Some(Meaning { kind, event })
     }
 
-    /// An orbit so far before a corner that the fall of a rate towards it is seen: a short last step
-    /// begins next to the touch itself.
+    /// An orbit so far before a corner that the fall of a rate towards it is seen: a short last
+    /// step begins next to the touch itself.
     pub(super) fn point_before(&self, base: &CurvePoint) -> CurvePoint {
         self.approach_within(&base.turned(), LENGTH_FROM_TOUCH, LENGTH_FROM_TOUCH).last
     }
@@ -108,7 +112,11 @@ impl Curve<'_> {
             let (here, near) = same_events(here.clone(), near)?;
             let sooner = |side: &[Crossing], k: usize| here[k].time - side[k].time;
             // A smooth change is sixteen times smaller next to the corner, and a root's four times.
-            let jumps = |k: &usize| MIN_GROWTH_FACTOR * sooner(&near, *k) > sooner(&far, *k).abs();
+            let least = MIN_JUMP * here.iter().fold(0.0, |most: f64, it| most.max(it.time));
+            let jumps = |k: &usize| {
+                let [near, far] = [&near, &far].map(|side| sooner(side, *k));
+                near > least && MIN_GROWTH_FACTOR * near > far.abs()
+            };
             let event = here[(0..here.len()).find(jumps)?].guard;
             Some(Meaning { kind: BifurcationKind::Grazing, event })
         })

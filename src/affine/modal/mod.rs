@@ -7,9 +7,9 @@
 //!
 //! [`components`] are entries of z that do not depend on others, each with a matrix of their own.
 //! [`polynomial`] finds the eigenvalues, which are the [`roots`] of its factors; those of more than
-//! two roots are iterated by [`aberth`]. This file makes blocks of them, with the products, inverses
-//! and null spaces of [`matrix`]. [`quasi_triangular`] chooses the co-ordinates of eigenvalues that
-//! stay together. Read this file first.
+//! two roots are iterated by [`aberth`]. This file makes blocks of them, with the products,
+//! inverses and null spaces of [`matrix`]. [`quasi_triangular`] chooses the co-ordinates of
+//! eigenvalues that stay together. Read this file first.
 
 mod aberth;
 mod components;

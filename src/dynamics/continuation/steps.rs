@@ -298,9 +298,9 @@ impl<C: OrbitCurve> Follower<'_, C> {
             && (next.change_of_multipliers(point) <= MAX_MULTIPLIER_CHANGE || distance <= MIN_STEP)
     }
 
-    /// Whether the way from a point to the end of its piece has no bifurcation: multipliers may grow
-    /// without bound there, but a curve that turns, or a test that changes its sign, is followed by
-    /// shorter steps.
+    /// Whether the way from a point to the end of its piece has no bifurcation: multipliers may
+    /// grow without bound there, but a curve that turns, or a test that changes its sign, is
+    /// followed by shorter steps.
     fn is_plain(&self, point: &C::Point, end: &C::Point) -> bool {
         let (from, to) = (point.neimark_sacker_test(), end.neimark_sacker_test());
         let keeps_sign = |test: &dyn Fn(&C::Point) -> f64| test(point) * test(end) > 0.0;
