@@ -52,6 +52,16 @@ pub(super) struct Approach {
     is_lost: bool,
 }
 
+/// Distances in the parameter that rounding leaves uncertain of a corner.
+#[derive(Clone, Copy)]
+pub(super) struct Blurs {
+    /// That of the orbit there, as [`Curve::blur`] has it.
+    own: f64,
+    /// That to where a multiplier would be 1 if rounding decides where the piece seems to end; zero
+    /// elsewhere.
+    to_unit: f64,
+}
+
 impl Approach {
     /// A bound of the error of the parameter's value at the piece's end, as halved.
     pub fn error(&self) -> f64 {
@@ -72,7 +82,8 @@ impl Curve<'_> {
     /// The corner at the end of a piece that was followed from a point.
     pub(super) fn corner_at(&self, base: &CurvePoint, end: Approach) -> Corner<CurvePoint> {
         let (own, before) = (end.error(), end.last);
-        let least = self.least_error(base, &before);
+        let blurs = self.blurs(base, &before);
+        let least = self.least_error(&before, blurs);
         if let Some(beyond) = self.past_strobe(&before) {
             let (beyond, error) = (Some(beyond), own.max(least));
             return Corner { before, beyond, error, is_of_section: true };
@@ -105,8 +116,7 @@ impl Curve<'_> {
             best.beyond = self.striking(&best.before);
         }
         // Where rounding decides, the end is no touch that an event would tell.
-        let is_told = best.beyond.is_none()
-            && self.doubt(base, &best.before, self.blur(&best.before, &base.tangent)) == 0.0;
+        let is_told = best.beyond.is_none() && blurs.to_unit == 0.0;
         let to_touch = if is_told { self.distance_to_touch(base, &best.before) } else { 0.0 };
         best.error = error.max(least).max(to_touch);
         best
@@ -115,26 +125,25 @@ impl Curve<'_> {
     /// The end of a piece of the curve as a corner beyond which no orbit is looked for.
     pub fn lost_corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
         let end = self.approach(base, distance);
-        let error = end.error().max(self.least_error(base, &end.last));
+        let error = end.error().max(self.least_error(&end.last, self.blurs(base, &end.last)));
         Corner { before: end.last, beyond: None, error, is_of_section: false }
     }
 
-    /// The least error that is said of a corner which was reached from a base.
-    pub(super) fn least_error(&self, base: &CurvePoint, before: &CurvePoint) -> f64 {
-        let blur = self.blur(before, &base.tangent);
-        let doubt = self.doubt(base, before, blur);
-        RELATIVE_ERROR_TOLERANCE * before.value.abs() + self.uncertainty(before) + blur + doubt
+    /// The least error that is said of a corner.
+    pub(super) fn least_error(&self, before: &CurvePoint, blurs: Blurs) -> f64 {
+        let Blurs { own, to_unit } = blurs;
+        RELATIVE_ERROR_TOLERANCE * before.value.abs() + self.uncertainty(before) + own + to_unit
     }
 
-    /// The distance to where a multiplier would be 1 if rounding decides where the piece seems to
-    /// end; zero elsewhere.
-    fn doubt(&self, base: &CurvePoint, before: &CurvePoint, blur: f64) -> f64 {
-        if distance_to_unit_multiplier(base, before) > MAX_BLURS * blur {
-            return 0.0;
+    /// What rounding leaves uncertain of a corner which was reached from a base.
+    pub(super) fn blurs(&self, base: &CurvePoint, before: &CurvePoint) -> Blurs {
+        let own = self.blur(before, &base.tangent);
+        if distance_to_unit_multiplier(base, before) > MAX_BLURS * own {
+            return Blurs { own, to_unit: 0.0 };
         }
         // From next to the end the multiplier's own rounding would decide.
         let far = self.approach_within(&base.turned(), LENGTH_TO_MULTIPLIER, LENGTH_TO_MULTIPLIER);
-        distance_to_unit_multiplier(&far.last, before)
+        Blurs { own, to_unit: distance_to_unit_multiplier(&far.last, before) }
     }
 
     /// The distance in the parameter between the corner and where it is found from beyond: zero

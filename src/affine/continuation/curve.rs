@@ -1,11 +1,11 @@
-//! The curve of orbits in (points, parameter): its tangent, and the corrector.
+//! The curve of orbits in (points, parameter): its measure, its tangent, and the bordered system.
 
 use super::super::returns::shooting::{
     Change, Derivative, MAX_COORDINATES, ReturnMap, Shots, identity,
 };
 use super::super::run::place::Place;
 use super::family::{OrbitShots, ReturnFamily};
-use super::point::{CurvePoint, Direction, are_on_one_piece};
+use super::point::{CurvePoint, Direction};
 use crate::affine::arithmetic::vector::sum_rounding;
 use crate::dynamics::linear::{apply, product, solve};
 use core::cell::Cell;
@@ -37,27 +37,13 @@ pub(super) struct Jump {
     pub by_value: f64,
 }
 
-/// Newton's iterations of a corrector: more, and the step was too long.
-const ITERATIONS: usize = 10;
-
-/// The rate of the parameter, in units, from which a corrector holds its value: further from a
-/// fold, where orbits are far from values.
-const MIN_STEEP_RATE: f64 = 0.3;
-
-/// The least distance along the tangent to the next orbit, and the greatest to it, in steps.
-const MIN_ALONG_STEP: f64 = 0.5;
-const MAX_LENGTH_OF_STEP: f64 = 2.0;
-
-/// The least change of the parameter, in units, from which its derivative is learned.
-const MIN_PARAMETER_CHANGE: f64 = 1e-6;
-
 /// The dimension of the bordered system: the co-ordinates of a point, and the parameter.
-const BORDERED_DIMENSION: usize = MAX_COORDINATES + 1;
+pub(super) const BORDERED_DIMENSION: usize = MAX_COORDINATES + 1;
 
 /// The bordered system: orbits next to shots, and a direction.
-struct Bordered {
-    matrix: [[f64; BORDERED_DIMENSION]; BORDERED_DIMENSION],
-    offset: Change,
+pub(super) struct Bordered {
+    pub matrix: [[f64; BORDERED_DIMENSION]; BORDERED_DIMENSION],
+    pub offset: Change,
 }
 
 /// The recurrence from the first point once around: d -> `matrix` d + `offset`.
@@ -76,7 +62,7 @@ fn recurrence(shots: &OrbitShots, added: &[Change]) -> Around {
 }
 
 /// The changes of all points that follow from that of the first.
-fn spread_changes(shots: &OrbitShots, first: Change, added: &[Change]) -> Vec<Change> {
+pub(super) fn spread_changes(shots: &OrbitShots, first: Change, added: &[Change]) -> Vec<Change> {
     let mut changes = vec![first];
     for (image, added) in shots.images.iter().zip(added).take(shots.points.len() - 1) {
         let carried = apply(&image.derivative, &changes[changes.len() - 1]);
@@ -85,7 +71,7 @@ fn spread_changes(shots: &OrbitShots, first: Change, added: &[Change]) -> Vec<Ch
     changes
 }
 
-fn sum(one: &Change, other: &Change, share: f64) -> Change {
+pub(super) fn sum(one: &Change, other: &Change, share: f64) -> Change {
     std::array::from_fn(|n| one[n] + share * other[n])
 }
 
@@ -135,146 +121,6 @@ impl<'a> Curve<'a> {
             });
             Shots::new(map, moved.collect())
         })
-    }
-
-    /// The orbit at a distance along the tangent of `base`, with the parameter's derivative as the
-    /// corrector learned it.
-    pub fn corrected_point(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
-        let is_steep = (base.tangent.rate / self.unit).abs() >= MIN_STEEP_RATE;
-        let at_value = is_steep.then(|| self.corrected(base, distance, true)).flatten();
-        at_value.or_else(|| self.corrected_freely(base, distance))
-    }
-
-    /// The orbit at a distance along the tangent of `base`, with the parameter free, as next to
-    /// corners.
-    pub fn corrected_freely(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
-        self.corrected(base, distance, false)
-    }
-
-    /// Whether a step leads to shots on the curve, rather than to those of another sheet of it or
-    /// of another curve.
-    pub fn is_step(
-        &self,
-        base: &CurvePoint,
-        value: f64,
-        shots: &OrbitShots,
-        distance: f64,
-    ) -> bool {
-        let Some(points) = self.changes_from(base, value, shots) else { return false };
-        let moved = Direction { points, rate: value - base.value };
-        let along = self.product(&base.tangent, &moved, &base.shots) / distance;
-        let length = self.product(&moved, &moved, &base.shots).sqrt() / distance.abs();
-        along >= MIN_ALONG_STEP && length <= MAX_LENGTH_OF_STEP
-    }
-
-    /// The orbit a step along the tangent of `base`: the parameter is held at the tangent's value,
-    /// for which one solver is prepared, or the distance is.
-    fn corrected(&self, base: &CurvePoint, distance: f64, holds_value: bool) -> Option<CurvePoint> {
-        let mut value = base.value + distance * base.tangent.rate;
-        let mut shots = self.shifted(base, &base.tangent, distance)?;
-        let mut slopes = base.slopes.clone();
-        let mut best: Option<(f64, OrbitShots, Vec<Change>)> = None;
-        for _ in 0..ITERATIONS {
-            let left = match holds_value {
-                true => 0.0,
-                false => self.distance_along(base, value, &shots)? - distance,
-            };
-            let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
-            let closed = in_place && shots.is_closed();
-            match &best {
-                Some((_, before, _)) if !closed || shots.residual >= before.residual => break,
-                None if !closed => {}
-                _ => best = Some((value, shots.clone(), slopes.clone())),
-            }
-            let mut bordered = self.bordered_system(&shots, &slopes, &base.tangent, &base.shots);
-            if holds_value {
-                bordered.matrix[MAX_COORDINATES][..MAX_COORDINATES].fill(0.0);
-            }
-            let mut right = [0.0; BORDERED_DIMENSION];
-            (0..MAX_COORDINATES).for_each(|n| right[n] = -bordered.offset[n] / self.scales[n]);
-            right[MAX_COORDINATES] = -left;
-            let (first, step) = self.unscaled(&solve(bordered.matrix, right));
-            let added: Vec<Change> =
-                shots.defects.iter().zip(&slopes).map(|(a, b)| sum(a, b, step)).collect();
-            let changes = spread_changes(&shots, first, &added);
-            let next = self.moved(value, &shots, &changes, step)?;
-            self.learn(&mut slopes, [value, step], [&shots, &next], &changes);
-            (value, shots) = (value + step, next);
-        }
-        let (value, shots, mut slopes) = best?;
-        if distance.abs() > f64::EPSILON && !self.is_step(base, value, &shots, distance) {
-            return None;
-        }
-        if holds_value {
-            let changes = self.changes_from(base, value, &shots)?;
-            let step = value - base.value;
-            self.learn(&mut slopes, [base.value, step], [&base.shots, &shots], &changes);
-            // What has been learned holds midway.
-            for (own, from) in slopes.iter_mut().zip(&base.slopes) {
-                *own = std::array::from_fn(|n| 2.0 * own[n] - from[n]);
-            }
-        }
-        self.point_with(value, shots, slopes, &base.tangent)
-    }
-
-    /// The changes of all points from those of an orbit.
-    fn changes_from(
-        &self,
-        base: &CurvePoint,
-        value: f64,
-        shots: &OrbitShots,
-    ) -> Option<Vec<Change>> {
-        self.family.at(value, |map| {
-            let pairs = base.carried.iter().zip(&shots.points);
-            Some(pairs.map(|(a, b)| map.change_between(&map.take_up(a), b)).collect())
-        })
-    }
-
-    /// The shots at another value of the parameter, with these changes.
-    fn moved(
-        &self,
-        value: f64,
-        shots: &OrbitShots,
-        changes: &[Change],
-        step: f64,
-    ) -> Option<OrbitShots> {
-        let carried = self.family.carry(value, &shots.points)?;
-        let count = carried.len();
-        self.family.at(value + step, |map| {
-            let moved = carried.iter().zip(changes).enumerate().map(|(k, (point, change))| {
-                let piece = &shots.images[(k + count - 1) % count].point;
-                map.moved(&map.take_up(point), change, piece)
-            });
-            Shots::new(map, moved.collect())
-        })
-    }
-
-    /// Makes the parameter's derivatives those that a step has shown.
-    fn learn(
-        &self,
-        slopes: &mut [Change],
-        [value, step]: [f64; 2],
-        [before, after]: [&OrbitShots; 2],
-        changes: &[Change],
-    ) {
-        if step.abs() < MIN_PARAMETER_CHANGE * self.unit || !are_on_one_piece(before, after) {
-            return;
-        }
-        let images: Vec<Place<f64>> = before.images.iter().map(|it| it.point.clone()).collect();
-        let apart = self.family.carry(value, &images).and_then(|images| {
-            self.family.at(value + step, |map| {
-                let pairs = images.iter().zip(&after.images);
-                Some(
-                    pairs
-                        .map(|(a, b)| map.change_between(&map.take_up(a), &b.point))
-                        .collect::<Vec<_>>(),
-                )
-            })
-        });
-        for (k, apart) in apart.into_iter().flatten().enumerate() {
-            let [from, to] = [before, after].map(|it| apply(&it.images[k].derivative, &changes[k]));
-            slopes[k] = std::array::from_fn(|n| (apart[n] - 0.5 * (from[n] + to[n])) / step);
-        }
     }
 
     /// A closed iterate with the curve's direction, which is that of `along` as far as there is a
@@ -365,18 +211,9 @@ impl<'a> Curve<'a> {
     }
 
     /// A solution of the bordered system as a change of the first point and of the parameter.
-    fn unscaled(&self, solution: &[f64; BORDERED_DIMENSION]) -> (Change, f64) {
+    pub(super) fn unscaled(&self, solution: &[f64; BORDERED_DIMENSION]) -> (Change, f64) {
         let first = std::array::from_fn(|n| solution[n] * self.scales[n]);
         (first, solution[MAX_COORDINATES] * self.unit)
-    }
-
-    /// The distance along the tangent of `base` at which shots lie.
-    pub fn distance_along(&self, base: &CurvePoint, value: f64, shots: &OrbitShots) -> Option<f64> {
-        let moved = self.family.at(value, |map| {
-            Some(map.change_between(&map.take_up(&base.carried[0]), &shots.points[0]))
-        })?;
-        let moved = Direction { points: vec![moved], rate: value - base.value };
-        Some(self.product(&base.tangent, &moved, &base.shots))
     }
 
     /// The arc's inner product of two directions.
@@ -396,7 +233,7 @@ impl<'a> Curve<'a> {
         sizes.fold(0.0, f64::max)
     }
 
-    fn bordered_system(
+    pub(super) fn bordered_system(
         &self,
         shots: &OrbitShots,
         slopes: &[Change],

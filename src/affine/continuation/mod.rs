@@ -10,14 +10,15 @@
 //! angle where an event comes near the strobe.
 //!
 //! [`family`] has the maps at the parameter's values, [`point`] the points of the curve, [`curve`]
-//! its tangent and the corrector, [`corner`] the ends of its pieces, [`halving`] those of a doubled
-//! branch, and [`mod@follow`] what step control asks for. Read them in this order. In two
-//! parameters, [`plane`] has the lines on which one varies, [`again`] a bifurcation on one of them,
-//! [`traced`] the steps from line to line, and [`bifurcation_curve`] whole curves.
+//! its tangent, [`corrector`] the next point, [`corner`] the ends of its pieces, [`halving`] those
+//! of a doubled branch, and [`mod@follow`] what step control asks for. Read them in this order. In
+//! two parameters, [`plane`] has the lines on which one varies, [`again`] a bifurcation on one of
+//! them, [`traced`] the steps from line to line, and [`bifurcation_curve`] whole curves.
 
 mod again;
 mod bifurcation_curve;
 mod corner;
+mod corrector;
 mod curve;
 mod family;
 mod follow;

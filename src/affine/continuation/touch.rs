@@ -63,7 +63,7 @@ impl Curve<'_> {
             if !is_there {
                 return None;
             }
-            let error = own.max(self.least_error(&point, &touch));
+            let error = own.max(self.least_error(&touch, self.blurs(&point, &touch)));
             let is_forward = touch.tangent.rate * last.tangent.rate >= 0.0;
             let before = if is_forward { touch } else { touch.turned() };
             Some(Corner { before, beyond: Some(point.turned()), error, is_of_section: false })
