@@ -18,7 +18,8 @@ bin=$folder/venv/bin
 "$bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.9,<2'
 
 step "wheel"
-# Beside a release build of the command only this package is compiled.
+# Beside a release build of the command a third of the packages is compiled anew, because what
+# Python needs asks for more of five crates.
 "$bin/maturin" build --release --locked --manifest-path python/Cargo.toml --out "$folder/dist" \
     --interpreter "$bin/python" --compatibility linux --quiet
 
