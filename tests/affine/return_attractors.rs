@@ -1,7 +1,9 @@
 //! Attractors and basins of return maps, beside the oscillator's own and systems whose attractors
 //! are known.
 
-use percuss::affine::{NoOrbit, Plane, ReturnBasins, SectionMap, Solver, System, SystemFile};
+use percuss::affine::{
+    DEFAULT_MAX_RETURN_TIME, NoOrbit, Plane, ReturnBasins, SectionMap, Solver, System, SystemFile,
+};
 use percuss::dynamics::attractor::{AttractorKind, Basins, Grid, Label, Window};
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::system::Section;
@@ -248,6 +250,26 @@ fn a_motion_that_returns_to_rest_for_ever_is_an_equilibrium() {
     returns.by_ref().take(40).for_each(|it| drop(it.unwrap()));
     let orbit = map.orbit(&returns.place().unwrap(), 1);
     assert!(matches!(orbit, Err(NoOrbit::Rest(_))), "{orbit:?}");
+}
+
+/// A mass that no longer meets its stop goes on by the free motion, whose state at angle zero is
+/// told, whenever the last impact was: x'' = A cos - 2 zeta x' - x.
+#[test]
+fn motions_that_no_longer_meet_the_stop_are_one_attractor() {
+    let [amplitude, zeta, frequency] = [1.0, 0.05, 2.75_f64];
+    let system = with(RIGID, &[("d", 0.2)], "free");
+    let section = Section::event("impact");
+    let found = basins(&system, &section, &plane([-1.0, 0.19, -2.0, 2.0], 10, 10), 100);
+    let free = found.attractors.iter().filter(|it| it.kind == AttractorKind::Equilibrium);
+    let [free] = free.collect::<Vec<_>>()[..] else { panic!("{:?}", kinds(&found)) };
+    let stiffness = 1.0 - frequency.powi(2);
+    let size = amplitude / (stiffness.powi(2) + (2.0 * zeta * frequency).powi(2));
+    let at_angle_zero = [size * stiffness, size * 2.0 * zeta * frequency.powi(2)];
+    // What is left of the last impact, at a speed below 1, when the motion is given up.
+    let left = libm::exp(-zeta * DEFAULT_MAX_RETURN_TIME * system.time_scale);
+    for (own, known) in free.points[0].state.iter().zip(at_angle_zero) {
+        assert!((own - known).abs() <= left, "{own} {known} {left}");
+    }
 }
 
 /// Every dose takes the state to 1 - x: all starts are on orbits of period 2 with the multiplier

@@ -120,7 +120,7 @@ impl Motions for SectionMotions<'_> {
             }
             let point = match returns.next() {
                 Some(Ok(point)) => point,
-                Some(Err(NoReturn::Equilibrium)) => return Err(Stop::Rest(returns.last_event())),
+                Some(Err(NoReturn::Equilibrium)) => return Err(Stop::Rest(returns.given_up())),
                 Some(Err(NoReturn::Ended(_))) => return Err(Stop::Label(Label::Ended)),
                 Some(Err(NoReturn::AmidEvents | NoReturn::AmidImpacts)) | None => break,
             };

@@ -216,13 +216,17 @@ impl<'a, T: Number> SectionMap<'a, T> {
     /// The time up to which a run goes from a return: that of the strobe of this number, or the
     /// longest that is waited for.
     pub(super) fn horizon(&self, returned: &Time<T>, strobe: f64) -> Time<T> {
-        match (&self.section.returns, &self.period) {
-            (Returning::Strobe(_), Some([period, first])) => {
-                let Time { high, low } = multiple(period, strobe);
-                first.after(high).after(low)
-            }
-            _ => returned.after(self.longest),
-        }
+        let is_strobe = matches!(self.section.returns, Returning::Strobe(_));
+        let strobe = self.strobe(strobe).filter(|_| is_strobe);
+        strobe.unwrap_or_else(|| returned.after(self.longest))
+    }
+
+    /// The time of the strobe of this number from the angle's first on, where the system is forced.
+    /// The angle of a section of events is zero.
+    pub(super) fn strobe(&self, number: f64) -> Option<Time<T>> {
+        let [period, first] = self.period.as_ref()?;
+        let Time { high, low } = multiple(period, number);
+        Some(first.after(high).after(low))
     }
 }
 

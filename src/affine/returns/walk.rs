@@ -173,6 +173,19 @@ impl<'a, T: Number> Walk<'a, T> {
         }
     }
 
+    /// The state at the first strobe of the forcing from the last event on; that of the last event
+    /// where nothing is forced, or the run ends before.
+    fn go_on_to_strobe(&mut self) -> Event<T> {
+        let next = self.map.strobe_after(&self.last.time, true);
+        if let Some(strobe) = self.map.strobe(next) {
+            self.run.go_on_to(strobe);
+            while let Some(event) = self.run.next() {
+                self.last = event;
+            }
+        }
+        self.last.clone()
+    }
+
     /// The place of the last return.
     pub fn place(&mut self) -> Result<Place<T>, NoReturn> {
         self.run.place().ok_or(NoReturn::AmidEvents)
@@ -224,6 +237,12 @@ impl<'a, T: Number> Returns<'a, T> {
     /// A return that is one of several events of one instant.
     pub fn place(&mut self) -> Result<Place<T>, NoReturn> {
         self.walk.place()
+    }
+
+    /// Where a motion is that has not returned for the longest time: of a forced system, at the next
+    /// strobe, so that motions which go to one orbit are found at one state.
+    pub(in crate::affine) fn given_up(&mut self) -> Return<T> {
+        Return::new(self.walk.go_on_to_strobe())
     }
 
     /// The last event of the motion, whether it is a return or not: the state in which a motion
