@@ -369,8 +369,8 @@ fn a_last_sticking_at_which_a_multiplier_is_one_is_within_its_error() {
         let (value, error) = (lost.value, lost.error);
         assert!((value - 3.0).abs() <= error, "{from}: {value} +- {error}");
         // A rounding of the orbit over 1 less a multiplier is as large there as 3 - A, 1e-7. From
-        // beyond, the end is seen as far away as a step is longer than that: to 6e-6.
-        assert!(error < 1e-5, "{from}: {error}");
+        // beyond, the end is seen as far away as a step is longer than that.
+        assert!(error < 1e-6, "{from}: {error}");
     }
 }
 

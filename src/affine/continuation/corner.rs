@@ -46,6 +46,8 @@ pub(super) struct Approach {
     pub last: CurvePoint,
     /// The length of the way to it.
     pub length: f64,
+    /// That of the first step of the way; zero where there was none.
+    pub first_step: f64,
     /// The distance from it within which the piece ends.
     rest: f64,
     /// Whether no orbit was found further on, rather than one of another piece.
@@ -165,7 +167,7 @@ impl Curve<'_> {
 
     /// Follows the curve from a point as far as its piece goes, or for a length.
     pub(super) fn approach_within(&self, base: &CurvePoint, distance: f64, most: f64) -> Approach {
-        let (is_lost, length) = (Cell::new(false), Cell::new(0.0));
+        let (is_lost, length, first_step) = (Cell::new(false), Cell::new(0.0), Cell::new(0.0));
         let (last, rest) = last_along(base, distance, CORNER_TOLERANCE, &|from, step| {
             if length.get() > most {
                 return None;
@@ -173,10 +175,14 @@ impl Curve<'_> {
             let there = self.corrected_freely(from, step).or_else(|| self.at_value(from, step));
             is_lost.set(there.is_none());
             let there = there.filter(|it| it.is_on_piece_of(from))?;
+            if length.get() == 0.0 {
+                first_step.set(step);
+            }
             length.set(length.get() + step);
             Some(there)
         });
-        Approach { last, length: length.get(), rest, is_lost: is_lost.get() }
+        let [length, first_step] = [length, first_step].map(Cell::into_inner);
+        Approach { last, length, first_step, rest, is_lost: is_lost.into_inner() }
     }
 
     /// The orbit at the parameter's value a step along the curve, by Newton's method there.

@@ -6,9 +6,10 @@ use super::super::returns::shooting::{
 use super::super::run::place::Place;
 use super::family::{OrbitShots, ReturnFamily};
 use super::point::{CurvePoint, Direction};
+use super::refusal::Refusal;
 use crate::affine::arithmetic::vector::sum_rounding;
 use crate::dynamics::linear::{apply, product, solve};
-use core::cell::Cell;
+use core::cell::RefCell;
 
 /// The family, the parameter's unit of arc length, and those of the states.
 pub(super) struct Curve<'a> {
@@ -16,9 +17,8 @@ pub(super) struct Curve<'a> {
     pub unit: f64,
     /// The curve by whose points those of this one are shown, if not by their own.
     pub shown: Option<&'a Curve<'a>>,
-    /// The value from which a piece was followed to its end, and that at its end, where no orbit
-    /// was found beyond: a shorter step finds none either.
-    pub lost_end: Cell<[f64; 2]>,
+    /// The end of a piece that was refused last.
+    pub refusal: RefCell<Option<Refusal>>,
     scales: Change,
     /// The number of entries of z.
     dimension: usize,
@@ -90,8 +90,8 @@ impl<'a> Curve<'a> {
             scales.iter_mut().zip(own).for_each(|(it, own)| *it = *own);
             Some((scales, system.dimension()))
         })?;
-        let lost_end = Cell::new([f64::NAN; 2]);
-        Some(Self { family, unit, shown: None, lost_end, scales, dimension })
+        let refusal = RefCell::new(None);
+        Some(Self { family, unit, shown: None, refusal, scales, dimension })
     }
 
     /// The curve, whose points are shown by those of another one.

@@ -25,7 +25,7 @@ pub struct ReturnFamily<'a> {
 }
 
 /// Solvers that are kept: a corrector goes back and forth between few values.
-const KEPT_SOLVERS: usize = 8;
+const KEPT_SOLVERS: usize = 16;
 
 /// Relative steps of the differences, longest first: the first balances truncation and rounding,
 /// the others are for neighbourhoods of a corner.

@@ -6,6 +6,7 @@ use super::ReturnBifurcation;
 use super::curve::Curve;
 use super::family::is_near_touch;
 use super::point::{CurvePoint, are_on_one_piece};
+use super::refusal::Refusal;
 use super::words::Meaning;
 use crate::dynamics::continuation::steps::{Accepts, Corner, Noted, OrbitCurve, OrbitPoint};
 use crate::dynamics::linear::ReIm;
@@ -15,9 +16,6 @@ use crate::dynamics::orbit::newton::polish;
 /// on for longer, the corrector has left the curve: next to a touch it leads to the orbit without
 /// the event where a step is too long.
 const MAX_LENGTH_TO_CORNER: f64 = 2.0;
-
-/// Two ends of a piece are the same one if their values differ by a smaller share.
-const MAX_DIFFERENCE_OF_END: f64 = 1e-10;
 
 impl OrbitPoint for CurvePoint {
     fn value(&self) -> f64 {
@@ -45,6 +43,28 @@ impl OrbitPoint for CurvePoint {
         };
         let changes = sums(self).into_iter().zip(sums(other));
         changes.map(|(a, b)| (a - b).abs() / (1.0 + a.abs().min(b.abs()))).fold(0.0, f64::max)
+    }
+}
+
+impl Curve<'_> {
+    /// Whether the end to which a step leads has been refused, and would be again. Were it another
+    /// end, it would be passed by the shortest step.
+    fn is_refused(
+        &self,
+        base: &CurvePoint,
+        distance: f64,
+        most: f64,
+        accepts: Accepts<'_, CurvePoint>,
+    ) -> bool {
+        let refusal = self.refusal.borrow();
+        let Some(refusal) = refusal.as_ref() else { return false };
+        let leads_to = |end: &CurvePoint| {
+            let ahead = OrbitCurve::distance_along(self, base, end);
+            let is_too_far = ahead > most;
+            let is_ahead = end.is_on_piece_of(base) && ahead > 0.0;
+            is_ahead && (is_too_far || refusal.is_lost || !accepts(end))
+        };
+        refusal.is_of_longer_step(base, distance) || refusal.end.as_ref().is_some_and(leads_to)
     }
 }
 
@@ -94,23 +114,23 @@ impl OrbitCurve for Curve<'_> {
         accepts: Option<Accepts<'_, CurvePoint>>,
     ) -> Option<Corner<CurvePoint>> {
         let Some(accepts) = accepts else { return Some(Self::corner(self, base, distance)) };
-        let [lost_from, lost_at] = self.lost_end.get();
-        if base.value == lost_from {
-            return None;
-        }
         let most = MAX_LENGTH_TO_CORNER * distance;
-        let end = self.approach_within(base, distance, most);
-        let own_error = end.error() + MAX_DIFFERENCE_OF_END * end.last.value.abs();
-        let was_lost = (end.last.value - lost_at).abs() <= own_error;
-        if end.length > most || was_lost || !accepts(&end.last) {
+        if self.is_refused(base, distance, most, accepts) {
             return None;
         }
-        let corner = self.corner_at(base, end);
-        // A touch is expected where the speed of an impact says so, the better the nearer.
-        if corner.beyond.is_none() && !is_near_touch(&corner.before.shots) {
-            self.lost_end.set([base.value, corner.before.value]);
+        let end = self.approach_within(base, distance, most);
+        let is_near = end.length <= most;
+        let mut refusal = Refusal::new(base, end.first_step, is_near.then(|| end.last.clone()));
+        if is_near && accepts(&end.last) {
+            let corner = self.corner_at(base, end);
+            if corner.beyond.is_some() {
+                return Some(corner);
+            }
+            // A touch is expected where the speed of an impact says so, the better the nearer.
+            refusal.is_lost = !is_near_touch(&corner.before.shots);
         }
-        Some(corner).filter(|it| it.beyond.is_some())
+        self.refusal.replace(Some(refusal));
+        None
     }
 
     fn distance_along(&self, base: &CurvePoint, other: &CurvePoint) -> f64 {

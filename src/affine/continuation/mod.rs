@@ -9,11 +9,12 @@
 //! [`impact`] the orbit that strikes beyond a touch. [`strobe`] chooses another
 //! angle where an event comes near the strobe.
 //!
-//! [`family`] has the maps at the parameter's values, [`point`] the points of the curve, [`curve`]
-//! its tangent, [`corrector`] the next point, [`corner`] the ends of its pieces, [`halving`] those
-//! of a doubled branch, and [`mod@follow`] what step control asks for. Read them in this order. In
-//! two parameters, [`plane`] has the lines on which one varies, [`again`] a bifurcation on one of
-//! them, [`traced`] the steps from line to line, and [`bifurcation_curve`] whole curves.
+//! [`family`] has the maps at the parameter's values, [`point`] the points of the curve,
+//! [`refusal`] the end that was not passed, [`curve`] the tangent, [`corrector`] the next point,
+//! [`corner`] the ends of pieces, [`halving`] those of a doubled branch, and [`mod@follow`] what
+//! step control asks for. Read them in this order. In two parameters, [`plane`] has the lines on
+//! which one varies, [`again`] a bifurcation on one of them, [`traced`] the steps from line to
+//! line, and [`bifurcation_curve`] whole curves.
 
 mod again;
 mod bifurcation_curve;
@@ -27,6 +28,7 @@ mod impact;
 mod passing;
 mod plane;
 mod point;
+mod refusal;
 mod strobe;
 mod touch;
 mod traced;
