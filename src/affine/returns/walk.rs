@@ -179,7 +179,7 @@ impl<'a, T: Number> Walk<'a, T> {
         let next = self.map.strobe_after(&self.last.time, true);
         if let Some(strobe) = self.map.strobe(next) {
             self.run.go_on_to(strobe);
-            while let Some(event) = self.run.next() {
+            if let Some(event) = self.run.by_ref().last() {
                 self.last = event;
             }
         }
@@ -239,8 +239,8 @@ impl<'a, T: Number> Returns<'a, T> {
         self.walk.place()
     }
 
-    /// Where a motion is that has not returned for the longest time: of a forced system, at the next
-    /// strobe, so that motions which go to one orbit are found at one state.
+    /// Where a motion is that has not returned for the longest time: of a forced system, at the
+    /// next strobe, so that motions which go to one orbit are found at one state.
     pub(in crate::affine) fn given_up(&mut self) -> Return<T> {
         Return::new(self.walk.go_on_to_strobe())
     }
