@@ -60,11 +60,11 @@ impl Curve<'_> {
         let Some(refusal) = refusal.as_ref() else { return false };
         let leads_to = |end: &CurvePoint| {
             let ahead = OrbitCurve::distance_along(self, base, end);
-            let is_too_far = ahead > most;
-            let is_ahead = end.is_on_piece_of(base) && ahead > 0.0;
-            is_ahead && (is_too_far || refusal.is_lost || !accepts(end))
+            end.is_on_piece_of(base)
+                && ahead > 0.0
+                && (ahead > most || refusal.is_lost || !accepts(end))
         };
-        refusal.is_of_longer_step(base, distance) || refusal.end.as_ref().is_some_and(leads_to)
+        refusal.is_of(base, distance) || refusal.end.as_ref().is_some_and(leads_to)
     }
 }
 
@@ -120,7 +120,8 @@ impl OrbitCurve for Curve<'_> {
         }
         let end = self.approach_within(base, distance, most);
         let is_near = end.length <= most;
-        let mut refusal = Refusal::new(base, end.first_step, is_near.then(|| end.last.clone()));
+        let counted = is_near.then(|| end.last.clone());
+        let mut refusal = Refusal::new(base, distance, end.first_step, counted);
         if is_near && accepts(&end.last) {
             let corner = self.corner_at(base, end);
             if corner.beyond.is_some() {

@@ -6,6 +6,8 @@ use super::point::CurvePoint;
 pub(super) struct Refusal {
     /// The parameter's value and rate at the point from which the piece was followed.
     from: [f64; 2],
+    /// The step within which the end was searched.
+    distance: f64,
     /// The length of the first step that stayed on the piece; zero where none did.
     first_step: f64,
     /// The end, unless the way to it was too long.
@@ -15,15 +17,19 @@ pub(super) struct Refusal {
 }
 
 impl Refusal {
-    /// The refusal of the end of a piece that was followed from a base.
-    pub fn new(base: &CurvePoint, first_step: f64, end: Option<CurvePoint>) -> Self {
-        Self { from: [base.value, base.tangent.rate], first_step, end, is_lost: false }
+    /// The refusal of what was found within a step from a base, from its first step to its end.
+    pub fn new(base: &CurvePoint, distance: f64, first_step: f64, end: Option<CurvePoint>) -> Self {
+        let from = [base.value, base.tangent.rate];
+        Self { from, distance, first_step, end, is_lost: false }
     }
 
-    /// Whether a search from a base at this distance takes the same steps: those that were too long
-    /// are left out.
-    pub fn is_of_longer_step(&self, base: &CurvePoint, distance: f64) -> bool {
-        let halvings = libm::log2(0.5 * distance / self.first_step);
-        self.from == [base.value, base.tangent.rate] && halvings >= 0.0 && halvings.fract() == 0.0
+    /// Whether the search within a step from a base would be this one: a step halved leaves out
+    /// what was too long.
+    pub fn is_of(&self, base: &CurvePoint, distance: f64) -> bool {
+        let halvings = libm::log2(self.distance / distance);
+        self.from == [base.value, base.tangent.rate]
+            && halvings >= 0.0
+            && halvings.fract() == 0.0
+            && self.first_step <= 0.5 * distance
     }
 }

@@ -216,8 +216,10 @@ impl<'a, T: Number> SectionMap<'a, T> {
     /// The time up to which a run goes from a return: that of the strobe of this number, or the
     /// longest that is waited for.
     pub(super) fn horizon(&self, returned: &Time<T>, strobe: f64) -> Time<T> {
-        let is_strobe = matches!(self.section.returns, Returning::Strobe(_));
-        let strobe = self.strobe(strobe).filter(|_| is_strobe);
+        let strobe = match self.section.returns {
+            Returning::Strobe(_) => self.strobe(strobe),
+            Returning::Events(_) => None,
+        };
         strobe.unwrap_or_else(|| returned.after(self.longest))
     }
 
