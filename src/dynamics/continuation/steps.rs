@@ -65,6 +65,10 @@ pub(crate) struct Corner<P> {
     /// Bound on the error of the parameter's value at the corner.
     pub(crate) error: f64,
     /// Whether the section alone makes the corner: an event of the same orbits passes it there.
+    #[cfg_attr(
+        not(feature = "affine"),
+        expect(dead_code, reason = "the oscillator's sections are strobes")
+    )]
     pub(crate) is_of_section: bool,
 }
 
