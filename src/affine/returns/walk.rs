@@ -173,9 +173,9 @@ impl<'a, T: Number> Walk<'a, T> {
         }
     }
 
-    /// The state at the first strobe of the forcing from the last event on; that of the last event
-    /// where nothing is forced, or the run ends before.
-    fn go_on_to_strobe(&mut self) -> Event<T> {
+    /// Goes on to the first strobe of the forcing from the last event on, if there is one and the
+    /// run does not end before.
+    fn go_on_to_strobe(&mut self) {
         let next = self.map.strobe_after(&self.last.time, true);
         if let Some(strobe) = self.map.strobe(next) {
             self.run.go_on_to(strobe);
@@ -183,7 +183,6 @@ impl<'a, T: Number> Walk<'a, T> {
                 self.last = event;
             }
         }
-        self.last.clone()
     }
 
     /// The place of the last return.
@@ -242,7 +241,8 @@ impl<'a, T: Number> Returns<'a, T> {
     /// Where a motion is that has not returned for the longest time: of a forced system, at the
     /// next strobe, so that motions which go to one orbit are found at one state.
     pub(in crate::affine) fn given_up(&mut self) -> Return<T> {
-        Return::new(self.walk.go_on_to_strobe())
+        self.walk.go_on_to_strobe();
+        self.last_event()
     }
 
     /// The last event of the motion, whether it is a return or not: the state in which a motion
