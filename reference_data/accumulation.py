@@ -43,6 +43,17 @@ class Impact(NamedTuple):
     turn: object | None = None
 
 
+class Jumps(NamedTuple):
+    """What impacts that follow one another change: each entry by so much a unit of the guard's rate.
+
+    Entries that are the same after each of them, and idle ones, have none.
+    """
+
+    by_rate: list
+    renewed: set
+    idle: set
+
+
 def proportion(row: fmpq_mat, unit: fmpq_mat, space: Space) -> fmpq | None:
     """The c for which `row` = c `unit` up to the space, if there is one."""
     row, unit = space.rest(row), space.rest(unit)
@@ -88,10 +99,57 @@ def turns_back(impact: Impact) -> bool:
     )
 
 
+def jumps(impact: Impact) -> Jumps | None:
+    """`Jumps`, if the sums of all changes that matter are known.
+
+    The others are those of entries that the reset sets to a constant, and of states on which nothing
+    else depends in the modes between impacts.
+    """
+    event, space = impact.event, impact.space
+    size = event.reset.nrows()
+    change, rate = event.reset - identity(size), event.guard * impact.on.matrix
+    found = Jumps([fmpq(0)] * size, set(), set())
+    for i in range(size):
+        row = row_of(change, i)
+        factor = fmpq(0) if space.holds(row) else proportion(row, rate, space)
+        if factor is not None:
+            found.by_rate[i] = factor
+        elif is_constant(row_of(event.reset, i), space):
+            found.renewed.add(i)
+        elif is_idle(i, impact.back) and is_idle(i, impact.on):
+            found.idle.add(i)
+        else:
+            return None
+    return found
+
+
+def has_limit(impact: Impact) -> bool:
+    """Do the limit's reset and its successors take no idle entry, whose sum has no limit?"""
+    limit, changes = impact.event.limit, jumps(impact)
+    rows = [row_of(limit.reset, k) for k in range(limit.reset.nrows())]
+    rows += [row for row, _ in limit.successors if row is not None]
+    return all(row[0, i] == 0 for row in rows for i in changes.idle)
+
+
+def is_constant(row: fmpq_mat, space: Space) -> bool:
+    last = row.ncols() - 1
+    return space.holds(fmpq_mat([[*row.entries()[:last], 0]]))
+
+
+def is_idle(i: int, leg: Leg) -> bool:
+    """Does nothing but the entry itself depend on it, in a mode and where the mode ends?"""
+    rows = lambda matrix: (row_of(matrix, k) for k in range(matrix.nrows()) if k != i)
+    others = [*rows(leg.matrix)]
+    for event in leg.mode.until:
+        others += [event.guard, *rows(event.reset)]
+        others += [row for row, _ in event.successors if row is not None]
+    return all(row[0, i] == 0 for row in others)
+
+
 class Tube:
     """A box of states about `z` that holds the motion during all impacts still to come."""
 
-    def __init__(self, impact: Impact, e: fmpq, z: arb_mat, jumps: list):
+    def __init__(self, impact: Impact, e: fmpq, z: arb_mat, jumps: Jumps):
         guard, self.legs = impact.event.guard, [impact.back, impact.on]
         self.e, self.z, self.jumps = arb(e), z, jumps
         self.matrices = [arb_mat(leg.matrix) for leg in self.legs]
@@ -123,13 +181,14 @@ class Tube:
     def reach(self, time: arb, speeds: arb) -> list:
         """How far each entry can go in `time`, with jumps of so much speed in all."""
         rates = [matrix * self.box for matrix in self.matrices]
-        return [
+        reach = [
             (
                 max(abs(rate[i, 0]).upper() for rate in rates) * time
-                + abs(arb(self.jumps[i])) * speeds
+                + abs(arb(self.jumps.by_rate[i])) * speeds
             ).upper()
             for i in range(self.z.nrows())
         ]
+        return [arb(0) if i in self.jumps.idle else it for i, it in enumerate(reach)]
 
     def settle(self) -> Remaining | None:
         """Enlarges the box until it holds the motion that its own bounds allow."""
@@ -152,7 +211,10 @@ class Tube:
         speed, rates = speeds[0].union(speeds[1]), [matrix * self.box for matrix in self.matrices]
         back, on = [way[0].union(way[1]) for way in ways]
         moved = []
-        for i, jump in enumerate(self.jumps):
+        for i, jump in enumerate(self.jumps.by_rate):
+            if i in self.jumps.renewed | self.jumps.idle:
+                moved.append(arb(0))
+                continue
             along = rates[0][i, 0] * back + rates[1][i, 0] * on if self.turns else rates[0][i, 0] * time
             moved.append(along + arb(jump) * speed)
         return arb_mat([[self.z[i, 0] + moved[i]] for i in range(self.z.nrows())])
@@ -163,18 +225,14 @@ def accumulation(impact: Impact, z: arb_mat, unit: arb) -> Remaining | None:
     e = restitution(impact)
     if e is None or not turns_back(impact):
         return None
-    event = impact.event
-    size = impact.on.matrix.nrows()
-    change = event.reset - identity(size)
-    rate, rows = event.guard * impact.on.matrix, [row_of(change, i) for i in range(size)]
-    jumps = [proportion(row, rate, impact.space) for row in rows]
-    if None in jumps:
+    changes = jumps(impact)
+    if changes is None:
         return None
-    tube = Tube(impact, e, z, jumps)
+    tube = Tube(impact, e, z, changes)
     if not worth_proving(tube, unit):
         return None
     remaining = tube.settle()
-    if remaining is None or not nothing_else_happens(impact, tube.box):
+    if remaining is None or not nothing_else_happens(impact, tube.box, z):
         return None
     if remaining.most > LIMIT * unit:
         return None
@@ -190,17 +248,23 @@ def worth_proving(tube: Tube, unit: arb) -> bool:
     return bool(found[0][0][1] + found[0][1][1] < WORTH_PROVING * LIMIT * unit)
 
 
-def nothing_else_happens(impact: Impact, box: arb_mat) -> bool:
+def nothing_else_happens(impact: Impact, box: arb_mat, z: arb_mat) -> bool:
     """Over the box: all other guards of `until` negative, and every successor as it was."""
     event, turn, back, on = impact.event, impact.turn, impact.back, impact.on
+    rate = event.guard * on.matrix
+
+    def leads_back() -> bool:
+        at = [z if keeps_sign(row, event, rate, impact.space) else box for row, _ in event.successors]
+        return leads(event, back.mode, at)
+
     if turn is None:
-        return stay_inside(event, back, [], box) and leads(event, on.mode, box)
+        return stay_inside(event, back, [], box) and leads_back()
     rates = [event.guard * leg.matrix for leg in (back, on)]
     return (
         stay_inside(event, back, [rates[0], event.guard], box)
         and stay_inside(event, on, [rates[1]], box)
-        and leads(event, back.mode, box)
-        and leads(turn, on.mode, box)
+        and leads_back()
+        and leads(turn, on.mode, [box for _ in turn.successors])
     )
 
 
@@ -221,9 +285,14 @@ def stay_inside(event, leg: Leg, kept: list, box: arb_mat) -> bool:
     return True
 
 
-def leads(event, mode, box: arb_mat) -> bool:
-    """Does an event lead into the mode from all states of the box?"""
-    for row, name in event.successors:
+def keeps_sign(row: fmpq_mat | None, event, rate: fmpq_mat, space: Space) -> bool:
+    """Is a condition after an impact a multiple of the guard's rate before it?"""
+    return row is not None and proportion(row * event.reset, rate, space) not in (None, 0)
+
+
+def leads(event, mode, boxes: list) -> bool:
+    """Does an event lead into the mode, from all states of the box of each condition?"""
+    for (row, name), box in zip(event.successors, boxes, strict=True):
         holds = None if row is None else (arb_mat(row) * box)[0, 0]
         if row is None or holds > 0:
             return name == mode.name

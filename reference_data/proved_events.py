@@ -13,7 +13,7 @@ from types import SimpleNamespace
 
 from flint import arb, arb_mat, ctx, fmpq_mat
 
-from accumulation import Impact, changes_nothing
+from accumulation import Impact, changes_nothing, has_limit
 from affine_expression import number
 from crossing import Undecided, refine
 from spread import Spread
@@ -142,6 +142,8 @@ class EventRun(Run):
             if self.silent:
                 raise Undecided("an accumulation")
             return
+        if not has_limit(impact):
+            raise Ended("accumulation")
         self.silent = True
         near = arb(2) ** -(ctx.prec // LIMIT_SHARE) * arb(self.system.time_scale)
         speed = (arb_mat(event.guard * impact.back.matrix) * self.state.z)[0, 0]

@@ -19,6 +19,7 @@ mod gradient_runs;
 mod gradient_tables;
 mod gradients;
 mod hostile;
+mod impacts_beside;
 mod inputs;
 mod kept;
 mod known;

@@ -140,13 +140,19 @@ fn is_rounded(cell: &str, proved: &str) -> bool {
 #[test]
 fn proved_rows_are_met_through_limits() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reference_data/limits");
-    for (name, until) in [("ball-on-a-table", "13"), ("two-masses-at-a-wall", "25")] {
+    let systems = std::fs::read_dir(&folder).expect("the folder");
+    let files = systems.map(|it| it.expect("an entry").file_name().into_string().expect("UTF-8"));
+    let names: Vec<_> =
+        files.filter_map(|it| Some(it.strip_suffix(".system.toml")?.to_owned())).collect();
+    assert_eq!(names.len(), 6);
+    for name in names {
         let system = folder.join(format!("{name}.system.toml"));
         let content = std::fs::read_to_string(&system).expect("a system");
-        assert!(content.starts_with(&format!("# until = {until}\n")), "{name}");
+        let until = content.lines().next().and_then(|it| it.strip_prefix("# until = "));
+        let until = until.expect("the horizon");
         let proved = std::fs::read_to_string(folder.join(format!("{name}.csv"))).expect("rows");
         let proved = rows(&proved);
-        assert!(proved.iter().filter(|row| row[2] == "accumulation").count() > 1);
+        assert!(proved.iter().any(|row| row[2] == "accumulation"));
         let path = system.to_str().expect("UTF-8");
         let found = run(&["events", path, "--until", until, "--digits", "25"]);
         let found = rows(&text(&found.stdout));

@@ -6,7 +6,8 @@
 //! and the way on u/sqrt(a2 b2) to u/sqrt(a1 b1). The next impact is at a rate of at most u
 //! sqrt(a2/b1), and e times that follows. With q = e sqrt(a2/b1) < 1 the times form a geometric
 //! series. The bounds hold in a tube of states that the motion cannot leave in that time: along the
-//! flows, and by jumps that are proportional to the rates of the impacts.
+//! flows, and by jumps that are proportional to the rates of the impacts or take a state back to
+//! where it was after the impact before.
 
 use super::enclosure::Enclosure;
 use super::turn::Turn;
@@ -15,6 +16,7 @@ use crate::affine::arithmetic::vector::{Vector, dot, row_size};
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::zeros::graph::{Cycle, Firing};
+use crate::affine::zeros::impact::Impacts;
 use crate::numeric::number::{Bound, Number};
 
 /// A run ends at an accumulation once at most this share of the system's unit of time is left.
@@ -36,6 +38,8 @@ pub(super) struct Impact<'a, T: Number> {
     pub errors_before: &'a Vector<T::Bound>,
     /// The turn by which impacts come back to their mode; none where they stay in it.
     pub turn: Option<Turn>,
+    /// What it and those that follow change.
+    pub impacts: Impacts,
 }
 
 /// The rest of the motion from an impact to the limit at which impacts accumulate.
@@ -58,6 +62,8 @@ pub(super) struct Remaining<T: Number> {
     pub tube: Vector<T::Bound>,
     /// The modes before and after turns: twice the impacts' own where there are none.
     pub modes: [usize; 2],
+    /// The states that have the same value after each impact, as bits.
+    pub renewed: u64,
 }
 
 /// A mode on the way from an impact to the next one, with the rows of the gap and of its first two
@@ -131,7 +137,7 @@ impl<T: Number> Run<'_, T> {
         let rates = modes.map(|mode| solver.rates_of(mode, z));
         let arriving = dot(gap, &solver.rates_of(impact.mode, impact.before), dimension);
         let departing = -dot(gap, &rates[0], dimension);
-        let e = self.quotient(impact.from, until, arriving, departing);
+        let e = self.quotient(impact, [arriving, departing]);
         let [bend_back, bend_on] =
             [0, 1].map(|n| dot(gap, &solver.rates_of(modes[n], &rates[n]), dimension).to_f64());
         let (e_f64, u) = (e.to_f64(), departing.to_f64());
@@ -146,14 +152,18 @@ impl<T: Number> Run<'_, T> {
         let legs = modes.map(|mode| Leg::new(solver, mode, gap));
         let errors = self.enclosure.as_ref().map(Enclosure::state);
         let off = errors.unwrap_or([T::Bound::ZERO; LARGEST_DIMENSION]);
+        let Impacts { idle, renewed, .. } = impact.impacts;
         let jump: Vector<T::Bound> = std::array::from_fn(|n| {
-            (z[n] - impact.before[n]).bound().abs() + off[n] + impact.errors_before[n]
+            let jump =
+                || (z[n] - impact.before[n]).bound().abs() + off[n] + impact.errors_before[n];
+            if impact.impacts.add_up(n) { jump() } else { T::Bound::ZERO }
         });
-        let (bounds, tube) = settled(&legs, z, [e, departing], [&off, &jump])?;
+        let (bounds, tube) = settled(&legs, z, [e, departing], [&off, &jump], idle)?;
         if !self.nothing_else_happens(impact, &tube) {
             return None;
         }
-        self.remaining(&legs, e, modes, bounds, tube)
+        let remaining = self.remaining(&legs, e, modes, bounds, tube)?;
+        Some(Remaining { renewed, ..remaining })
     }
 
     /// The rest of the motion, if it is short, with what is not known of the state.
@@ -190,6 +200,7 @@ impl<T: Number> Run<'_, T> {
             unknown: if is_enclosed { rest * latest.bound() } else { T::Bound::ZERO },
             tube,
             modes,
+            renewed: 0,
         })
     }
 
@@ -237,7 +248,9 @@ impl<T: Number> Run<'_, T> {
         successor: usize,
         tube: &Vector<T::Bound>,
     ) -> bool {
-        let orders = self.graph.arrival(node, firing).orders.clone();
+        let arrival = self.graph.arrival(node, firing);
+        let orders = arrival.orders.clone();
+        let kept = arrival.impacts.map_or(0, |it| it.kept);
         let mode = self.graph.node(node).mode;
         let (solver, z) = (self.solver, &self.state);
         let exits = solver.system.modes[mode].exits().nth(firing.until);
@@ -246,6 +259,9 @@ impl<T: Number> Run<'_, T> {
         let all = rows.iter().zip(orders.iter().copied()).enumerate().take(successor + 1);
         for (n, (row, order)) in all {
             let (Some(row), Some(order)) = (row, order) else { continue };
+            if kept >> n & 1 == 1 {
+                continue;
+            }
             let mode = next[n].mode;
             let row = (0..order).fold(*row, |row, _| solver.rate_row(mode, &row));
             let value = dot(&row, z, solver.system.dimension()).bound();
@@ -259,9 +275,10 @@ impl<T: Number> Run<'_, T> {
 
     /// The coefficient of restitution: it is a constant of the model, and the fastest impact shows
     /// it to the most digits.
-    fn quotient(&mut self, node: usize, until: usize, arriving: T, departing: T) -> T {
-        let rate = arriving.to_f64();
-        let same = |it: &Restitution<T>| (it.node, it.until) == (node, until) && it.rate >= rate;
+    fn quotient(&mut self, impact: &Impact<'_, T>, [arriving, departing]: [T; 2]) -> T {
+        let (node, until, rate) = (impact.from, impact.firing.until, arriving.to_f64());
+        let is_alike = |it: usize| self.graph.are_alike([it, node], impact.impacts.idle);
+        let same = |it: &Restitution<T>| it.until == until && it.rate >= rate && is_alike(it.node);
         if let Some(known) = self.restitution.filter(same) {
             return known.quotient;
         }
@@ -273,12 +290,13 @@ impl<T: Number> Run<'_, T> {
 
 /// The bounds that hold from a state on, after an impact with the coefficient of restitution e that
 /// leaves the gap at this rate, and the tube in which they hold: the state is not known better than
-/// by `off`, and the last impact has changed it by `jump`.
+/// by `off`, and the last impact has changed it by `jump`. Idle states, given as bits, may go anywhere.
 fn settled<T: Number>(
     legs: &[Leg<'_, T>; 2],
     z: &Vector<T>,
     [e, departing]: [T; 2],
     [off, jump]: [&Vector<T::Bound>; 2],
+    idle: u64,
 ) -> Option<(Bounds<T>, Vector<T::Bound>)> {
     let dimension = legs[0].own.matrix.len();
     let mut tube = *off;
@@ -288,7 +306,8 @@ fn settled<T: Number>(
         let [_, largest] = bounds.quotients;
         let jumps = (largest / (T::one() - largest)).bound();
         let mut reach = [T::Bound::ZERO; LARGEST_DIMENSION];
-        for (n, reach) in reach.iter_mut().enumerate().take(dimension) {
+        let bounded = |(n, _): &(usize, &mut T::Bound)| idle >> n & 1 == 0;
+        for (n, reach) in reach.iter_mut().enumerate().take(dimension).filter(bounded) {
             let fastest = legs[0].fastest(n, z, &tube).max(legs[1].fastest(n, z, &tube));
             *reach = fastest * time + jump[n] * jumps + off[n];
         }

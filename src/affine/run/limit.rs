@@ -66,6 +66,8 @@ struct LimitState<T: Number> {
     late: T::Bound,
     /// Bounds of the errors of the entries but for those of the last impact.
     errors: Vector<T::Bound>,
+    /// The states that do not change with the time of the limit, as bits.
+    renewed: u64,
 }
 
 impl<T: Number> Run<'_, T> {
@@ -83,7 +85,9 @@ impl<T: Number> Run<'_, T> {
         remaining: Option<Remaining<T>>,
     ) {
         match remaining {
-            Some(remaining) if self.goes_on_after(impact.mode, jump.until) => {
+            Some(remaining)
+                if impact.impacts.has_limit && self.goes_on_after(impact.mode, jump.until) =>
+            {
                 self.approach(impact.from, jump, Some(remaining));
             }
             Some(Remaining { earliest, latest, .. }) => {
@@ -198,7 +202,8 @@ impl<T: Number> Run<'_, T> {
         let solver = self.solver;
         if let Some(errors) = &mut self.enclosure {
             let own = &solver.modes[mode];
-            let rates = rates(&own.flow, &own.matrix, &there.state);
+            let mut rates = rates(&own.flow, &own.matrix, &there.state);
+            bits(there.renewed).for_each(|n| rates[n] = T::Bound::ZERO);
             let mut late = ErrorColumn::ZERO;
             late.delayed(there.late, &rates);
             errors.columns.push(late);
@@ -218,7 +223,7 @@ impl<T: Number> Run<'_, T> {
         let zero = ZeroGuards { guards: 1 << limit.until, point: None };
         let firing = Firing { until, zero, at_entry: true };
         let zeros = self.graph.arrival(self.node, firing).zero_before;
-        for n in (0..LARGEST_DIMENSION).filter(|n| zeros >> n & 1 == 1) {
+        for n in bits(zeros) {
             state[n] = T::zero();
             for column in self.enclosure.iter_mut().flat_map(|it| &mut it.columns) {
                 column.state[n] = T::Bound::ZERO;
@@ -260,11 +265,14 @@ impl<T: Number> Run<'_, T> {
         let (sin, cos) = solver.sin_cos(&time);
         solver.append(&mut state, sin, cos);
         let late = ((left.latest - left.earliest) * half).bound() + left.unknown;
-        let errors = match &self.enclosure {
+        let mut errors = match &self.enclosure {
             Some(enclosure) => self.limit_errors(limit, left, &enclosure.state()),
             None => [T::Bound::ZERO; LARGEST_DIMENSION],
         };
-        Some(LimitState { time, state, late, errors })
+        for n in bits(left.renewed) {
+            (state[n], errors[n]) = (self.state[n], T::Bound::ZERO);
+        }
+        Some(LimitState { time, state, late, errors, renewed: left.renewed })
     }
 
     /// Bounds of what the first order leaves out of the limit of the state.
@@ -343,6 +351,11 @@ impl<T: Number> Remaining<T> {
         let [least, most] = self.before_turns;
         ((most - least) * T::exact(0.5)).bound() + self.unknown
     }
+}
+
+/// The entries of z that are given as bits.
+fn bits(mask: u64) -> impl Iterator<Item = usize> {
+    (0..LARGEST_DIMENSION).filter(move |n| mask >> n & 1 == 1)
 }
 
 /// A share of the arithmetic's bits, as far as times that are so short stay far from underflow in

@@ -10,6 +10,7 @@ use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::exact::Entries;
 use crate::affine::zeros::graph::Firing;
+use crate::affine::zeros::impact::Impacts;
 use crate::numeric::number::{Bound, Number};
 
 /// The largest number of `until` events in one instant.
@@ -46,17 +47,21 @@ impl<T: Number> Run<'_, T> {
             return;
         }
         let arrival = self.graph.arrival(self.node, firing);
-        let (impact, rests) = (arrival.impact, arrival.rests);
+        let (impacts, rests) = (arrival.impacts, arrival.rests);
         let zero_entries = arrival.zero_entries;
         self.returning = 0;
         let from = self.node;
         let discards = self.graph.discards;
         let next = self.graph.enter(from, firing, successor);
         let is_known = self.graph.discards == discards;
+        let impacts = impacts.filter(|it| self.graph.are_idle(next, it.idle));
+        if !is_known {
+            self.restitution = None;
+        }
         self.flight = if is_known { self.flight(firing, next, time) } else { None };
         self.node = next;
         (self.entered, self.state) = (time, state);
-        let cycle = self.place_in_cycle((from, mode), firing, successor, [impact, rests]);
+        let cycle = self.place_in_cycle((from, mode), firing, successor, (impacts, rests));
         self.pass_exactly(mode, firing.until, exact);
         let what = limit.map_or(What::Until(mode, firing.until), |it| What::Limit(mode, it));
         let mut event = self.event(what, time, &self.state);
@@ -84,9 +89,11 @@ impl<T: Number> Run<'_, T> {
         let errors_before = errors_before.unwrap_or([T::Bound::ZERO; LARGEST_DIMENSION]);
         let jump = Jump { until: firing.until, before: &before, errors: errors_before };
         let turn = cycle.closing;
-        if impact && next == from || turn.is_some() {
+        let comes_back = |it: &Impacts| is_known && self.graph.are_alike([next, from], it.idle);
+        if let Some(impacts) = impacts.filter(|it| turn.is_some() || comes_back(it)) {
             let (before, errors_before) = (&before, &jump.errors);
-            let own = Impact { mode, firing, successor, from, before, errors_before, turn };
+            let own =
+                Impact { mode, firing, successor, from, before, errors_before, turn, impacts };
             let remaining = self.accumulation(&own);
             self.accumulate(&own, &jump, remaining);
         } else if let Some(until) = cycle.rested {

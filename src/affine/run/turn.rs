@@ -6,6 +6,7 @@
 
 use super::Run;
 use crate::affine::zeros::graph::Firing;
+use crate::affine::zeros::impact::Impacts;
 use crate::numeric::number::Number;
 
 /// An `until` that has led from the mode that an impact began back to that of the impact.
@@ -54,14 +55,14 @@ struct LastImpact {
 }
 
 impl<T: Number> Run<'_, T> {
-    /// Remembers an `until` that has led from a node to the present one; `is_impact` and `rests`
-    /// are those of its arrival.
+    /// Remembers an `until` that has led from a node to the present one; `impacts` and `rests` are
+    /// those of its arrival.
     pub(super) fn place_in_cycle(
         &mut self,
         (from, mode): (usize, usize),
         firing: Firing,
         successor: usize,
-        [is_impact, rests]: [bool; 2],
+        (impacts, rests): (Option<Impacts>, bool),
     ) -> PlaceInCycle {
         let LastOfCycle { impact, turn } = std::mem::take(&mut self.last_of_cycle);
         let (to, discards, until) = (self.node, self.graph.discards, firing.until);
@@ -77,15 +78,17 @@ impl<T: Number> Run<'_, T> {
             let rested = (rests && firing.at_entry).then_some(impact);
             return PlaceInCycle { closing: None, is_turn: true, rested };
         }
-        if next == mode || !(is_impact || rests) {
+        if next == mode || !(impacts.is_some() || rests) {
             return PlaceInCycle::default();
         }
         self.last_of_cycle.impact = Some(LastImpact { mode, until, to, rests, discards });
-        let closes =
-            |it: &Turn| (it.to, it.impact, it.node, it.discards) == (from, until, to, discards);
-        PlaceInCycle {
-            closing: turn.filter(|it| is_impact && closes(it)),
-            ..PlaceInCycle::default()
-        }
+        let closes = |it: &Turn, idle: u64| {
+            let are_alike = |nodes: [usize; 2]| self.graph.are_alike(nodes, idle);
+            (it.impact, it.discards) == (until, discards)
+                && are_alike([it.to, from])
+                && are_alike([it.node, to])
+        };
+        let closing = impacts.and_then(|own| turn.filter(|it| closes(it, own.idle)));
+        PlaceInCycle { closing, ..PlaceInCycle::default() }
     }
 }

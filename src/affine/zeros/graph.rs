@@ -4,34 +4,17 @@
 //! The structural zeros at the entry of a segment depend on the events that led there, not on
 //! numbers. A run therefore follows a path in a small graph, each node of which is computed once.
 
-use super::circle::Circle;
-use super::residue::{Residue, Residues, residues, row_times};
+use super::impact::{Impacts, rests};
+use super::mode_residues::ModeResidues;
+use super::residue::{Residues, row_times};
 use super::space::ZeroSpace;
-use crate::affine::model::rational::Rational;
-use crate::affine::model::system::{Mode, Row, Successor, System, Until};
+use crate::affine::model::system::System;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The number of nodes at which all are discarded: a system that counts its own events has a new
 /// node at each of them.
 const MAX_NODES: usize = 4096;
-
-/// A mode's rows modulo primes.
-#[derive(Clone, Debug)]
-struct ModeResidues {
-    matrix: Vec<Residues>,
-    /// The mode's guards: those of `until`, then those of `watch`.
-    guards: Vec<Residues>,
-    /// For each guard, the rows that are zero where it is zero at one or the other of two rational
-    /// points of the circle.
-    points: Vec<[Vec<Residues>; 2]>,
-    /// The resets of `until`, then those of their limits.
-    resets: Vec<Vec<Residues>>,
-    /// For each `until`, whether its reset changes nothing.
-    changes_nothing: Vec<bool>,
-    /// The conditions of each reset's successors, with their modes.
-    next: Vec<Vec<(Option<Residues>, usize)>>,
-}
 
 /// An event: the `until` that ends the mode, the zeros there, and whether it is at the instant at
 /// which the mode was entered. The limit at which an `until` accumulates is numbered after all
@@ -85,9 +68,8 @@ pub struct Arrival {
     /// For each successor: the order of its condition's first derivative that is not a structural
     /// zero; none if there is none, or no condition.
     pub orders: Arc<[Option<usize>]>,
-    /// Whether the event multiplies the rate of its guard by a negative factor and leaves it at
-    /// zero.
-    pub impact: bool,
+    /// What the event and those that follow it change, if it is an impact.
+    pub impacts: Option<Impacts>,
     /// Whether the event leaves its guard and the rate of that at zero.
     pub rests: bool,
     /// The entries of z that are zero before the event's reset, as bits.
@@ -219,9 +201,25 @@ impl ZeroGraph {
                 && to.zeros.contains(&row_times(guard, &own.matrix))
         };
         let unchanged = self.modes[from.mode].changes_nothing.get(until) == Some(&true);
-        let found = (0..own.resets.len() / 2).find(comes_back).filter(|_| unchanged);
+        let found = (0..own.until()).find(comes_back).filter(|_| unchanged);
         self.nodes[node].returning.push((until, next, found));
         found
+    }
+
+    /// Whether nothing depends on states, given as bits, but they themselves in the mode of a node.
+    #[inline]
+    pub fn are_idle(&self, node: usize, states: u64) -> bool {
+        states & !self.modes[self.nodes[node].mode].idle == 0
+    }
+
+    /// Whether two nodes are of one mode with the same zeros, but for those of some states, given
+    /// as bits.
+    #[inline]
+    pub fn are_alike(&self, [one, other]: [usize; 2], but: u64) -> bool {
+        let same = |one: &Node, other: &Node| {
+            one.mode == other.mode && one.zeros.without(but) == other.zeros.without(but)
+        };
+        one == other || but != 0 && same(&self.nodes[one], &self.nodes[other])
     }
 
     /// The node that follows an event by the successor of this index.
@@ -289,7 +287,7 @@ impl Node {
 fn arrival_of(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
     let own = &modes[node.mode];
     let mut zeros = with_rows(node.zeros_at(firing.at_entry), own, firing.zero);
-    let limit = firing.until.checked_sub(own.resets.len() / 2);
+    let limit = firing.until.checked_sub(own.until());
     if let Some(guard) = limit.map(|until| &own.guards[until]) {
         zeros.insert(&row_times(guard, &own.matrix));
     }
@@ -298,10 +296,13 @@ fn arrival_of(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
     let order = |(when, mode): &(Option<Residues>, usize)| {
         when.as_ref().and_then(|row| after.multiplicity(row, &modes[*mode].matrix))
     };
+    let is_limit = limit.is_some();
+    let zeros_around = [&zeros, &after];
+    let impacts = if is_limit { None } else { Impacts::of(modes, own, firing.until, zeros_around) };
     Arrival {
         orders: next.iter().map(order).collect(),
-        impact: limit.is_none() && is_impact(own, firing.until, &zeros, &after),
-        rests: limit.is_none() && rests(own, firing.until, &after),
+        impacts,
+        rests: !is_limit && rests(own, firing.until, &after),
         zero_before: zeros.zero_entries(own.matrix.len()),
         zero_entries: after.zero_entries(own.matrix.len()),
         nodes: vec![None; next.len()],
@@ -339,72 +340,4 @@ fn kept_inside(
         && before.zeros.contains(&rate)
         && between.lasting.ratio(&other.guards[turn], &other_rate).is_some();
     is_turn.then(|| [kept(before, own, &[&rate]), kept(between, other, &[&other_rate, guard])])
-}
-
-/// h+ = 0 and h'+ = 0 with the guard h.
-fn rests(own: &ModeResidues, until: usize, after: &ZeroSpace) -> bool {
-    let guard = &own.guards[until];
-    after.contains(guard) && after.contains(&row_times(guard, &own.matrix))
-}
-
-/// h+ = 0 and h'+ = -e h' with the guard h; and all other changes are multiples of h'.
-fn is_impact(own: &ModeResidues, until: usize, zeros: &ZeroSpace, after: &ZeroSpace) -> bool {
-    let (guard, reset) = (&own.guards[until], &own.resets[until]);
-    let rate = row_times(guard, &own.matrix);
-    let changed = row_times(&rate, reset);
-    let proportional = |row: &Residues| zeros.contains(row) || zeros.ratio(row, &rate).is_some();
-    let jump = |(n, row): (usize, &Residues)| {
-        let mut jump = row.clone();
-        jump[n] = jump[n].minus(Residue::ONE);
-        jump
-    };
-    after.contains(guard)
-        && !zeros.contains(&rate)
-        && !zeros.contains(&changed)
-        && proportional(&changed)
-        && reset.iter().enumerate().map(jump).all(|row| proportional(&row))
-}
-
-impl ModeResidues {
-    fn new(mode: &Mode, states: usize) -> Option<Self> {
-        let until = mode.until.iter().map(|it| &it.guard);
-        let rows = until.chain(mode.watch.iter().map(|it| &it.guard));
-        let guards = rows.clone().map(|it| residues(it));
-        let points = rows.map(|it| points(it, states));
-        let next = |next: &[Successor]| {
-            let one = |it: &Successor| match &it.when {
-                Some(row) => residues(row).map(|row| (Some(row), it.mode)),
-                None => Some((None, it.mode)),
-            };
-            next.iter().map(one).collect()
-        };
-        Some(Self {
-            matrix: matrix(&mode.matrix)?,
-            guards: guards.collect::<Option<_>>()?,
-            points: points.collect::<Option<_>>()?,
-            changes_nothing: mode.until.iter().map(Until::changes_nothing).collect(),
-            resets: mode.exits().map(|(reset, _)| matrix(reset)).collect::<Option<_>>()?,
-            next: mode.exits().map(|(_, successors)| next(successors)).collect::<Option<_>>()?,
-        })
-    }
-}
-
-/// For each rational point at which a guard of the forcing angle is zero, the rows cos theta - p
-/// and sin theta - q; none if a coefficient has no residue.
-fn points(guard: &Row, states: usize) -> Option<[Vec<Residues>; 2]> {
-    let Some(points) = Circle::new(guard, states).and_then(|it| it.points) else {
-        return Some([Vec::new(), Vec::new()]);
-    };
-    let row = |at: usize, value: &Rational| {
-        let mut row = vec![Rational::ZERO; states + 3];
-        (row[at], row[states + 2]) = (Rational::ONE, -value);
-        residues(&row)
-    };
-    let rows = |[cos, sin]: &[Rational; 2]| Some(vec![row(states, cos)?, row(states + 1, sin)?]);
-    let [first, second] = &points;
-    Some([rows(first)?, rows(second)?])
-}
-
-fn matrix(rows: &[Row]) -> Option<Vec<Residues>> {
-    rows.iter().map(|it| residues(it)).collect()
 }

@@ -12,6 +12,8 @@ pub mod circle;
 pub mod exact;
 pub mod exact_mode;
 pub mod graph;
+pub mod impact;
+mod mode_residues;
 mod parabola;
 pub mod residue;
 pub mod space;

@@ -56,6 +56,19 @@ impl ZeroSpace {
         }
     }
 
+    /// The rows in which some entries of z, given as bits, are not.
+    pub fn without(&self, entries: u64) -> Self {
+        let given = |row: &Residues| {
+            let own = row.iter().enumerate().filter(|(n, _)| entries >> n & 1 == 1);
+            own.map(|(_, it)| *it).collect()
+        };
+        let mut space = Self::default();
+        for combination in kernel(self.rows.iter().map(given).collect()) {
+            space.insert(&combined(&combination, &self.rows));
+        }
+        space
+    }
+
     /// The rows r for which r R is in the space: what is zero after a reset.
     pub fn after(&self, reset: &[Residues]) -> Self {
         let images = reset.iter().map(|row| self.reduced(row)).collect();
