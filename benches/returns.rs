@@ -117,7 +117,7 @@ fn diagram() -> f64 {
         file.set("frequency", value, "bench")?;
         file.system()
     };
-    let (steps, took) = seconds(|| diagram.steps(&values(0.5, 1.5, VALUES), at, || ()));
+    let (steps, took) = seconds(|| diagram.steps(&values(0.5, 1.5, VALUES), at, |_| ()));
     let left_out = steps.expect("systems").iter().filter(|it| it.left_out.is_some()).count();
     assert_eq!(left_out, 0, "values that are left out cost nothing");
     took

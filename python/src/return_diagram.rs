@@ -56,7 +56,7 @@ pub(crate) fn system_bifurcation<'py>(
         file.system()
     };
     let found = interruptible(py, &Progress { told, all: u64::from(steps) }, |stop| {
-        diagram.steps(&values, at, || stop.passed(1))
+        diagram.steps(&values, at, |count| stop.passed(count))
     })?;
     let found = found.map_err(value)?;
     let places = found.iter().enumerate();

@@ -33,7 +33,7 @@ fn steps(
     parameter: &str,
     values: &[f64],
 ) -> Vec<ReturnDiagramStep> {
-    diagram.steps(values, |it| Ok(with(text, &[(parameter, it)])), || ()).unwrap()
+    diagram.steps(values, |it| Ok(with(text, &[(parameter, it)])), |_| ()).unwrap()
 }
 
 /// Motions at xi = 0.5 settle, by 0.15 a period at least, so that no rounding grows, and nothing is
@@ -87,7 +87,7 @@ fn carried_motions_go_on() {
     let set = [("frequency", 2.6), ("zeta", 0.2)];
     let rigid = |_: f64| Ok(with(RIGID, &set));
     let diagram = plan(Section::event("impact"), Follow::Carry);
-    let found = diagram.steps(&[0.125; 3], rigid, || ()).unwrap();
+    let found = diagram.steps(&[0.125; 3], rigid, |_| ()).unwrap();
     let system = rigid(0.0).unwrap();
     let solver = Solver::<f64>::new(&system).unwrap();
     let map = SectionMap::new(&solver, &Section::event("impact")).unwrap();
@@ -162,10 +162,10 @@ fn a_value_without_a_system_is_named() {
         let text = RIGID.replace("- x + A", &format!("- x/{it} + A"));
         System::parse("test.system.toml", &text)
     };
-    let error = diagram.steps(&[1.0, 0.0], read, || ()).unwrap_err();
+    let error = diagram.steps(&[1.0, 0.0], read, |_| ()).unwrap_err();
     assert_eq!(error.value, 0.0);
     assert!(error.to_string().starts_with("at 0: test.system.toml:"), "{error}");
     let diagram = plan(Section::event("bang"), Follow::Reset);
-    let error = diagram.steps(&[1.0], read, || ()).unwrap_err();
+    let error = diagram.steps(&[1.0], read, |_| ()).unwrap_err();
     assert!(error.to_string().contains("bang is no event"), "{error}");
 }

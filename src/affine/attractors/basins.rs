@@ -79,10 +79,18 @@ impl Plane {
         self.columns as usize * self.rows as usize
     }
 
-    /// All starts, row by row from the lowest on, at a start but for the two states.
-    pub(super) fn starts(&self, at: &PlaneStart<'_>) -> Result<Vec<Place<f64>>, SystemError> {
+    /// All starts, row by row from the lowest on, at a start but for the two states. `seen` hears of
+    /// no start before each row: who waits may end the work.
+    pub(super) fn starts(
+        &self,
+        at: &PlaneStart<'_>,
+        seen: &(dyn Fn(u64) + Sync),
+    ) -> Result<Vec<Place<f64>>, SystemError> {
         let [across, up] = [0, 1].map(|axis| self.centres(axis));
-        let row = |y: &f64| across.iter().map(|x| at.with(self.axes, [*x, *y])).collect();
+        let row = |y: &f64| {
+            seen(0);
+            across.iter().map(|x| at.with(self.axes, [*x, *y])).collect()
+        };
         let rows: Vec<Result<Vec<_>, _>> = parallel::map(&up, row);
         let rows: Vec<_> = rows.into_iter().collect::<Result<_, _>>()?;
         Ok(rows.concat())
@@ -180,8 +188,9 @@ impl SectionMap<'_, f64> {
         let at = PlaneStart::new(self.solver(), start, &plane.axes)?;
         let mut catalog = Catalog::new(SectionMotions::new(self), limits.into());
         let lattice = Plane { columns: LATTICE_SIDE, rows: LATTICE_SIDE, ..*plane };
-        catalog.label_all(&lattice.starts(&at)?, &|_| ());
-        let starts = plane.starts(&at)?;
+        let look = |_| seen(0);
+        catalog.label_all(&lattice.starts(&at, seen)?, &look);
+        let starts = plane.starts(&at, seen)?;
         let labels = catalog.label_all(&starts, seen);
         let known: Vec<_> = catalog.known.iter().map(|it| it.attractor.clone()).collect();
         let mut basins = ReturnBasins::sorted(*plane, &known, labels);

@@ -38,8 +38,10 @@ impl SectionMap<'_, f64> {
         seen: &(dyn Fn(u64) + Sync),
     ) -> Result<Vec<Orbit>, SystemError> {
         let motions = SectionMotions::new(self);
-        let starts = plane.starts(&PlaneStart::new(self.solver(), start, &plane.axes)?)?;
+        let starts = plane.starts(&PlaneStart::new(self.solver(), start, &plane.axes)?, seen)?;
         let reached = parallel::map(&starts, |start| {
+            // Threads that end the work by unwinding do so before they begin another start.
+            seen(0);
             let reached = motions.reached_orbits(start, period);
             seen(1);
             reached

@@ -86,9 +86,13 @@ impl std::error::Error for ValueError {
 /// Values whose systems are prepared in one go: those of two such blocks are held in memory.
 const BLOCK_VALUES: usize = 32;
 
+/// The number of returns of a value after which who waits is heard.
+const RETURNS_PER_LOOK: u64 = 1024;
+
 impl ReturnDiagram {
-    /// Makes the diagram at these values, of which each has a system; `seen` is called as values
-    /// are done, in any order. Results are the same for any number of threads.
+    /// Makes the diagram at these values, of which each has a system; `seen` is told of how many
+    /// values more are done, in any order, and of none now and then: who waits may end the work by
+    /// unwinding it. Results are the same for any number of threads.
     ///
     /// # Errors
     /// A value at which there is no system with a start, or none with this section.
@@ -96,7 +100,7 @@ impl ReturnDiagram {
         &self,
         values: &[f64],
         system: impl Fn(f64) -> Result<System, SystemError> + Sync + Send,
-        seen: impl Fn() + Sync + Send,
+        seen: impl Fn(u64) + Sync + Send,
     ) -> Result<Vec<ReturnDiagramStep>, ValueError> {
         let solver = |value: &f64| {
             let solver = system(*value).and_then(|it| Solver::<f64>::new(&it));
@@ -105,8 +109,8 @@ impl ReturnDiagram {
         match self.follow {
             Follow::Reset => {
                 let alone = |value: &f64| {
-                    let step = self.follow_value(*value, &solver(value)?, &mut None)?;
-                    seen();
+                    let step = self.follow_value(*value, &solver(value)?, &mut None, &seen)?;
+                    seen(1);
                     Ok(step)
                 };
                 let mut steps = Vec::with_capacity(values.len());
@@ -126,15 +130,15 @@ impl ReturnDiagram {
         &self,
         values: &[f64],
         solver: impl Fn(&f64) -> Result<Solver<f64>, ValueError> + Sync + Send,
-        seen: impl Fn() + Sync + Send,
+        seen: impl Fn(u64) + Sync + Send,
     ) -> Result<Vec<ReturnDiagramStep>, ValueError> {
         let mut steps = Vec::with_capacity(values.len());
         let (mut now, mut prepared): (&[f64], _) = (&[], Vec::new());
         let mut last = None;
         let mut follow = |values: &[f64], solvers: Vec<Result<Solver<f64>, ValueError>>| {
             for (value, solver) in values.iter().zip(solvers) {
-                steps.push(self.follow_value(*value, &solver?, &mut last)?);
-                seen();
+                steps.push(self.follow_value(*value, &solver?, &mut last, &seen)?);
+                seen(1);
             }
             Ok(())
         };
@@ -156,6 +160,7 @@ impl ReturnDiagram {
         value: f64,
         solver: &Solver<f64>,
         last: &mut Option<Carried>,
+        seen: &impl Fn(u64),
     ) -> Result<ReturnDiagramStep, ValueError> {
         let begun = SectionMap::new(solver, &self.section).and_then(|map| {
             let map = match self.longest {
@@ -169,7 +174,7 @@ impl ReturnDiagram {
             Ok((map, from))
         });
         let (map, from) = begun.map_err(|error| ValueError { value, error })?;
-        let (step, place) = self.step(value, &map, &from);
+        let (step, place) = self.step(value, &map, &from, seen);
         if let Some(place) = place {
             *last = Some(map.carry(&place));
         }
@@ -182,12 +187,16 @@ impl ReturnDiagram {
         value: f64,
         map: &SectionMap<'_, f64>,
         from: &Place<f64>,
+        seen: &impl Fn(u64),
     ) -> (ReturnDiagramStep, Option<Place<f64>>) {
         let mut returns = map.returns_from(from);
         let mut points = Vec::with_capacity(self.returns as usize);
         let mut left_out = None;
         let all = self.transient + u64::from(self.returns);
         for (n, point) in (0..all).zip(returns.by_ref()) {
+            if n % RETURNS_PER_LOOK == 0 {
+                seen(0);
+            }
             left_out = match &point {
                 Ok(point) if map.has_escaped(&point.state) => Some(LeftOut::Escapes),
                 Ok(_) => None,

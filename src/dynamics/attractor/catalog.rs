@@ -71,7 +71,10 @@ impl<M: Motions> Catalog<M> {
         let mut batch = 1;
         while !open.is_empty() {
             let rest = open.split_off(batch.min(open.len()));
-            let settled = parallel::map(&open, |(_, place)| self.settle(place));
+            let settled = parallel::map(&open, |(_, place)| {
+                seen(0);
+                self.settle(place)
+            });
             let before = self.known.len();
             for ((index, _), outcome) in open.iter().zip(settled) {
                 labels[*index] = self.adopt(outcome);

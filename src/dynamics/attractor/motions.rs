@@ -96,6 +96,7 @@ pub(crate) trait Motions: Sized + Sync {
         seen: &(dyn Fn(u64) + Sync),
     ) -> Vec<Result<Self::Place, StopOf<Self>>> {
         parallel::map(from, |it| {
+            seen(0);
             let outcome = self.recognise(known, it, returns);
             let label = outcome.as_ref().err().and_then(|it| it.label(self.coordinates(), known));
             seen(u64::from(label.is_some()));

@@ -34,7 +34,7 @@ pub(super) fn run(
     let diagram = diagram(arguments, returns)?;
     let values = values(arguments.from.value, arguments.to.value, arguments.steps);
     let bar = long_work::bar(u64::from(arguments.steps), "values");
-    let seen = || bar.inc(1);
+    let seen = |count| bar.inc(count);
     let steps = long_work::pool(threads)?
         .install(|| steps(&diagram, chosen, &arguments.parameter, &values, seen));
     bar.finish_and_clear();
@@ -49,13 +49,13 @@ pub(super) fn run(
     Ok(tell_left_out(&arguments.parameter, diagram.follow, &steps))
 }
 
-/// The steps of a diagram at some values of a parameter; `seen` is called as values are done.
+/// The steps of a diagram at some values of a parameter; `seen` is told of how many more are done.
 pub(in crate::cli) fn steps(
     diagram: &ReturnDiagram,
     chosen: &ChosenSystem,
     parameter: &str,
     values: &[f64],
-    seen: impl Fn() + Sync + Send,
+    seen: impl Fn(u64) + Sync + Send,
 ) -> Result<Vec<ReturnDiagramStep>> {
     let steps = diagram.steps(values, |value| chosen.system_at(parameter, value), seen);
     steps.map_err(|error| anyhow!("--parameter {parameter}: {error}"))

@@ -73,7 +73,7 @@ impl SweepVerb for SystemDiagramWork {
     fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
         let (chosen, values) = (self.swept.at(point)?, self.values(point));
         let parameter = &self.arguments.parameter;
-        let steps = system::steps(&self.diagram, &chosen, parameter, &values, || ())?;
+        let steps = system::steps(&self.diagram, &chosen, parameter, &values, |_| ())?;
         records::bytes(&self.arrays(&steps))
     }
 
