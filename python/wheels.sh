@@ -45,7 +45,7 @@ if command -v python3.14t >/dev/null; then
 fi
 
 step "source distribution"
-maturin sdist --manifest-path python/Cargo.toml --out "$folder" --quiet
+maturin sdist --manifest-path python/Cargo.toml --out "$folder"
 
 rm -rf "$venv"
 ls -l "$folder"

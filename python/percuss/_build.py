@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from percuss._run import real
+from percuss._run import pair, real
 from percuss._system import System, toml_number
 
 
@@ -85,6 +85,26 @@ class Mode:
     watch: Sequence[Watch] = field(default_factory=list)
 
 
+def _numbers(item: str, value: ArrayLike) -> NDArray[np.float64]:
+    """An array of numbers."""
+    try:
+        found = np.asarray(value)
+        if found.dtype.kind not in "biufO":
+            raise TypeError
+        return found.astype(np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{item}: {value!r} is not accepted: an array of numbers is") from None
+
+
+def _each(name: str, given: Any, kind: type) -> list[Any]:
+    """The entries of a sequence, each of one kind."""
+    entries = list(given) if isinstance(given, Iterable) else [given]
+    for it in entries:
+        if not isinstance(it, kind):
+            raise TypeError(f"{name} = {given!r} is not accepted: a list of {kind.__name__} is")
+    return entries
+
+
 class _Writer:
     """The text of a system; numbers of matrices become parameters: expressions have none."""
 
@@ -106,7 +126,7 @@ class _Writer:
 
     def form(self, name: str, row: ArrayLike, item: str) -> str:
         """A row over (states, 1) or (states, cos, sin, 1) as an expression."""
-        numbers = np.asarray(row, dtype=np.float64)
+        numbers = _numbers(item, row)
         size = len(self.states)
         if numbers.shape not in [(size + 1,), (size + 3,)]:
             shape = numbers.shape
@@ -174,7 +194,7 @@ class _Writer:
         """The lines of a mode."""
         lines = ["[[mode]]", f"name = {_quoted(mode.name)}"]
         lines.append(f"equations = {_list(self.equations(mode))}")
-        for event in mode.until:
+        for event in _each(f"until of mode {mode.name!r}", mode.until, Until):
             item, name = f"event {event.name!r}", f"{_plain(mode.name)}_{_plain(event.name)}"
             lines += ["[[mode.until]]", f"name = {_quoted(event.name)}"]
             lines.append(f"guard = {_quoted(self.condition(name, event.guard, item))}")
@@ -183,7 +203,7 @@ class _Writer:
             if event.next is not None:
                 following = [(None, event.next)] if isinstance(event.next, str) else event.next
                 lines.append(f"next = [{', '.join(_successor(*it) for it in following)}]")
-        for watch in mode.watch:
+        for watch in _each(f"watch of mode {mode.name!r}", mode.watch, Watch):
             item, name = f"event {watch.name!r}", f"{_plain(mode.name)}_{_plain(watch.name)}"
             lines += ["[[mode.watch]]", f"name = {_quoted(watch.name)}"]
             lines.append(f"guard = {_quoted(self.condition(name, watch.guard, item))}")
@@ -282,6 +302,9 @@ def build(
     array([0. , 1. , 2. , 2.5])
     """
     writer = _Writer(states, parameters or {})
+    modes = _each("modes", modes, Mode)
+    if forcing is None and (unforced := next((it for it in modes if it.B is not None), None)):
+        raise ValueError(f"B of mode {unforced.name!r} is not accepted without forcing")
     body = [line for mode in modes for line in writer.mode(mode)]
     lines = ["schema = 1", f"name = {_quoted(name)}", f"states = {_list(states)}"]
     if scales is not None:
@@ -289,7 +312,7 @@ def build(
     if time_scale is not None:
         lines.append(f"time_scale = {toml_number(real('time_scale', time_scale))}")
     if forcing is not None:
-        omega, phi = (toml_number(real("forcing", it)) for it in forcing)
+        omega, phi = (toml_number(it) for it in pair("forcing", forcing))
         lines.append(f"forcing = {{ omega = {omega}, phi = {phi} }}")
     lines.append("[parameters]")
     lines += [f"{_quoted(it)} = {toml_number(value)}" for it, value in writer.parameters.items()]

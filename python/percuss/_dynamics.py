@@ -48,6 +48,8 @@ def steps_of(values: Sequence[float] | NDArray[np.float64]) -> tuple[float, floa
     grid = np.asarray(values, dtype=np.float64)
     if grid.ndim != 1 or len(grid) == 0:
         raise ValueError("values are accepted as a list of one number or more")
+    if not np.isfinite(grid).all():
+        raise ValueError(f"values are accepted as finite numbers: {values!r} are not")
     steps = np.linspace(grid[0], grid[-1], len(grid))
     if not np.allclose(grid, steps, rtol=1e-9, atol=1e-9 * abs(grid[-1] - grid[0])):
         raise ValueError("values are accepted in equal steps, as of numpy.linspace")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from percuss import _percuss
 from percuss._pictures import axes_or_new, cells, cloud, curve, named
-from percuss._run import Floats, Texts
+from percuss._run import Floats, Texts, columns_of
 from percuss._xarray import dataset
 
 
@@ -66,7 +66,8 @@ class Returns(_Points):
         import pandas as pd
 
         columns: dict[str, Any] = {"time": self.time, "mode": self.mode}
-        columns |= {name: self.state[:, place] for place, name in enumerate(self.states)}
+        names = columns_of(self.states)
+        columns |= {name: self.state[:, place] for place, name in enumerate(names)}
         return pd.DataFrame(columns).rename_axis("n")
 
     def plot(self, ax: Any = None) -> Any:
@@ -223,7 +224,8 @@ class ReturnDiagram:
 
 def points_over(parameter: str, values: Floats, points: Floats, states: list[str]) -> Any:
     """Make a data set of the points of a diagram, along one dimension."""
-    columns = {name: (("point",), points[:, place]) for place, name in enumerate(states)}
+    names = columns_of(states, "point", parameter)
+    columns = {name: (("point",), points[:, place]) for place, name in enumerate(names)}
     return dataset(columns, {parameter: ("point", values)})
 
 
@@ -310,7 +312,7 @@ class ReturnBasins:
 
     def to_xarray(self) -> Any:
         """Make a data set of the labels over the two states; needs xarray."""
-        across, up = self.axes
+        across, up = columns_of(self.axes, "labels")
         labels = {"labels": ((up, across), self.labels)}
         return dataset(labels, {across: self.across, up: self.up})
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -79,7 +79,7 @@ class Sol:
         if times.ndim > 1:
             raise ValueError(f"t of {times.ndim} dimensions is not accepted: 0 or 1 are")
         states = self._rows.at(np.ascontiguousarray(np.atleast_1d(times)))
-        return states[0] if times.ndim == 0 else states.T
+        return states[0] if times.ndim == 0 else np.ascontiguousarray(states.T)
 
 
 class Run:
@@ -284,8 +284,7 @@ class Run:
     @property
     def columns(self) -> list[str]:
         """The names of the states' columns in tables: a state named as another column differs."""
-        others = {"n", "time", "mode", "event"}
-        return [f"state.{name}" if name in others else name for name in self.states]
+        return columns_of(self.states)
 
     def to_pandas(self) -> pd.DataFrame:
         """Make a table of the run, with the columns of the command; needs pandas."""
@@ -373,6 +372,12 @@ def _made_again(system: System, made: tuple[Any, ...], digits: int) -> Run:
     """Make a run that was pickled again: the same call gives the same numbers."""
     verb, *arguments = made
     return Run(getattr(system._native, verb)(*arguments), system, digits, made)
+
+
+def columns_of(states: Iterable[str], *others: str) -> list[str]:
+    """The columns of states: one that is named as another column has a longer name."""
+    taken = {"n", "time", "mode", "event", *others}
+    return [f"state.{name}" if name in taken else name for name in states]
 
 
 def whole(name: str, number: Any, least: int = 0, most: int = sys.maxsize) -> int:

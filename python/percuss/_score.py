@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import fnmatch
 import inspect
+import json
 import math
 import platform
 import re
@@ -310,7 +311,10 @@ def score(
         for solve, name_ in _solvers(solver, whose, setup, options or {}, name)
     ]
     paths = [baseline] if isinstance(baseline, (str, Path)) else baseline
-    earlier = [Path(path).read_text(encoding="utf-8") for path in paths]
+    earlier = [_earlier(Path(path)) for path in paths]
+    if out is not None:
+        # A folder that cannot be made is told before the work begins.
+        Path(out).mkdir(parents=True, exist_ok=True)
     chosen = _percuss.Cases(set(case_names(cases)))
     for it in declared:
         # What is wrong with it is said before the work begins.
@@ -326,6 +330,18 @@ def score(
         target = Path(out if owned is None else owned.name)  # type: ignore[arg-type]
         worse = chosen.judge([it.told() for it in answered], str(target), earlier)
     return Report(target, owned, worse)
+
+
+def _earlier(path: Path) -> str:
+    """The text of an earlier report."""
+    text = path.read_text(encoding="utf-8")
+    try:
+        is_report = "results" in json.loads(text)
+    except (ValueError, TypeError):
+        is_report = False
+    if not is_report:
+        raise ValueError(f"baseline = {str(path)!r} is not accepted: a report.json is")
+    return text
 
 
 def tolerances_of(rtol: float | Sequence[float]) -> list[float]:
@@ -386,16 +402,16 @@ def _solvers(
 ) -> list[tuple[Solver, str]]:
     """The solvers of problems, with their names: one for each set-up of a `solve_ivp`."""
     own = name or whose.name(solver)
+    setups = [setup] if isinstance(setup, str) else list(setup)
+    for it in setups:
+        if it not in SETUPS:
+            raise ValueError(f"setup = {it!r} is not accepted: {' and '.join(SETUPS)} are")
     if not _takes_solve_ivp(solver):
         if whose.method is not None or options:
             raise TypeError("method and options are accepted of a solver like solve_ivp alone")
         return [(solver, own)]
-    setups = [setup] if isinstance(setup, str) else list(setup)
     if not setups:
         raise ValueError(f"setup is empty: {' and '.join(SETUPS)} are accepted")
-    for it in setups:
-        if it not in SETUPS:
-            raise ValueError(f"setup = {it!r} is not accepted: {' and '.join(SETUPS)} are")
     has_jacobian = whose.known is not None and whose.known[2]
     names = {"experts": own, "documentation": f"{own}-default"}
     return [

@@ -126,6 +126,10 @@ class Swept:
         (3, 2)
         """
         own, system = self._of_sweep()
+        if "progress" in flags:
+            raise TypeError("progress is not accepted: a sweep goes on from its shards in out")
+        # The parameter that the verb varies has no value of its own.
+        own = {name: value for name, value in own.items() if name != flags.get("parameter")}
         fixed = {**own, **{name.rstrip("_"): value for name, value in flags.items()}}
         if system is not None and (name := next((it for it in fixed if it in _OF_SYSTEM), None)):
             raise ValueError(f"{name} is not accepted: {_OF_SYSTEM[name]} is")
@@ -147,8 +151,8 @@ def _swept(
         path.write_text(plan, encoding="utf-8")
         folder = Path(own) / "shards" if out is None else Path(out)
         where = ("--plan", str(path), "--out", str(folder))
-        _command("run", *where)
-        _command("merge", *where, "--output", str(merged))
+        _command(path, "run", *where)
+        _command(path, "merge", *where, "--output", str(merged))
         with np.load(merged) as stored:
             arrays = {name: stored[name] for name in stored.files}
     # An axis whose name is that of an array is stored under a longer one.
@@ -156,12 +160,14 @@ def _swept(
     return Sweep({name: arrays.pop(stored_as.get(name, name)) for name in axes}, arrays)
 
 
-def _command(step: str, *words: str) -> None:
+def _command(plan: Path, step: str, *words: str) -> None:
     call = [sys.executable, "-m", "percuss", "--quiet", "sweep", step, *words]
     done = subprocess.run(call, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         lines = [line for line in done.stderr.splitlines() if line.strip()]
-        raise ValueError(lines[0].removeprefix("percuss: ") if lines else "the sweep failed")
+        told = lines[0].removeprefix("percuss: ") if lines else "the sweep failed"
+        # The plan is none of the caller's files.
+        raise ValueError(told.removeprefix(f"--plan {plan}: ").removeprefix("[fixed]: "))
 
 
 def _plan(
@@ -188,6 +194,8 @@ def _toml(name: str, value: Any) -> str:
     """A value as TOML writes it."""
     if isinstance(value, (bool, str)):
         return json.dumps(value)
+    if name == "grid" and isinstance(value, (list, tuple)):
+        return json.dumps("x".join(str(it) for it in value))
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(_toml(name, it) for it in value)}]"
     if hasattr(value, "__index__"):

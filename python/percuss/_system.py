@@ -61,6 +61,8 @@ class System(Dynamics, Swept):
             return
         if not isinstance(source, (str, os.PathLike)):
             raise TypeError(f"a {type(source).__name__} is no system: a path or a text is accepted")
+        if not os.fspath(source):
+            raise ValueError("a system's path is empty: a path or a text is accepted")
         path = Path(source)
         try:
             text = path.read_text(encoding="utf-8")

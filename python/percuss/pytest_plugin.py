@@ -8,7 +8,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional
 
 import pytest
 
@@ -66,16 +66,35 @@ def _solver(name: str) -> Any:
     return found
 
 
-def _known(path: str | None) -> dict[str, str]:
+# A case at a tolerance, or at all of them.
+_Known = dict[tuple[str, Optional[float]], str]
+
+
+def _known(path: str | None) -> _Known:
     """The declared shortcomings, with their reasons."""
+    from percuss import _percuss
+
     if path is None:
         return {}
     try:
         lines = Path(path).read_text(encoding="utf-8").splitlines()
     except OSError as error:
         raise pytest.UsageError(f"--percuss-known={path}: {error.strerror}") from error
-    named = (line.split(maxsplit=1) for line in lines if line.strip() and line[0] != "#")
-    return {words[0]: words[1] if len(words) > 1 else "declared" for words in named}
+    known: _Known = {}
+    for number, line in enumerate(lines, 1):
+        words = line.split(maxsplit=1)
+        if not words or words[0].startswith("#"):
+            continue
+        case, _, tolerance = words[0].partition("@")
+        place = f"--percuss-known={path}: line {number}: {words[0]}"
+        if case not in _percuss.case_names():
+            raise pytest.UsageError(f"{place}: {case} is no case: percuss.case_names() has them")
+        try:
+            at = float(tolerance) if "@" in words[0] else None
+        except ValueError:
+            raise pytest.UsageError(f"{place}: a number is accepted after the @") from None
+        known[case, at] = words[1] if len(words) > 1 else "declared"
+    return known
 
 
 def _report(config: pytest.Config) -> Report:
@@ -152,7 +171,7 @@ class BaselineTest(_Item):
 class Rows(pytest.Collector):
     """The rows of the report, with the shortcomings that are declared."""
 
-    def __init__(self, *, report: Report, known: dict[str, str], **options: Any) -> None:
+    def __init__(self, *, report: Report, known: _Known, **options: Any) -> None:
         super().__init__(**options)
         self.report = report
         self.known = known
@@ -164,7 +183,8 @@ class Rows(pytest.Collector):
             item = Row.from_parent(
                 self, name=f"{row['case']}[{row['engine']}-{tolerance}]", row=row
             )
-            why = self.known.get(f"{row['case']}@{tolerance}", self.known.get(row["case"]))
+            everywhere = self.known.get((row["case"], None))
+            why = self.known.get((row["case"], row["tolerance"]), everywhere)
             if why is not None:
                 item.add_marker(pytest.mark.xfail(reason=why, strict=True))
             yield item

@@ -29,12 +29,21 @@ mod solvers;
 mod stream;
 mod survey;
 mod system;
+mod threads;
 
 use pyo3::prelude::pymodule;
 
 /// The native part of the package `percuss`.
 #[pymodule]
 mod _percuss {
+    use pyo3::prelude::{Bound, PyModule, PyResult};
+
+    #[pymodule_init]
+    fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        super::threads::remember_process();
+        Ok(())
+    }
+
     #[pymodule_export]
     use super::branches::{follow, system_follow};
     #[pymodule_export]

@@ -1,12 +1,13 @@
 //! Long work: done without Python's lock, ended by Ctrl-C, and told as it goes on.
 
+use crate::threads::{on_all_threads, without_lock};
 use pyo3::PyErr;
 use pyo3::prelude::{Py, PyAny, PyResult, Python};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The time between two looks at Python's signals.
@@ -141,7 +142,7 @@ pub(crate) fn interruptible<T: Send>(
         std::thread::scope(|scope| {
             scope.spawn(|| {
                 let result = catch_unwind(AssertUnwindSafe(|| {
-                    on_live_threads(|| work(&Stop { is_asked: &stop, done: &parts, here: None }))
+                    on_all_threads(|| work(&Stop { is_asked: &stop, done: &parts, here: None }))
                 }));
                 // The receiver is there until the scope ends.
                 drop(sender.send(result));
@@ -168,20 +169,6 @@ pub(crate) fn interruptible<T: Send>(
     finished(py, progress, done)
 }
 
-/// Does work with threads that are there: a forked process inherits rayon's pool without them, and
-/// gets one of its own.
-fn on_live_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    static PROCESS_OF_POOL: OnceLock<u32> = OnceLock::new();
-    let own = std::process::id();
-    if *PROCESS_OF_POOL.get_or_init(|| own) == own {
-        return work();
-    }
-    match rayon::ThreadPoolBuilder::new().build() {
-        Ok(pool) => pool.install(work),
-        Err(_) => work(),
-    }
-}
-
 /// Does work that has no threads of its own on this one, which looks at the signals after each part
 /// of it: a thread that waited would take longer to start than a short call takes.
 pub(crate) fn attended<T: Send>(
@@ -192,7 +179,7 @@ pub(crate) fn attended<T: Send>(
     let (stop, parts) = (AtomicBool::new(false), AtomicU64::new(0));
     let (last, raised) = (Mutex::new(Instant::now()), Mutex::new(None));
     let here = Here { progress, last, raised };
-    let done = py.detach(|| {
+    let done = without_lock(py, || {
         let told = Stop { is_asked: &stop, done: &parts, here: Some(&here) };
         catch_unwind(AssertUnwindSafe(|| work(&told)))
     });

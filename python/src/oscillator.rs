@@ -3,6 +3,7 @@
 use crate::arrays::table;
 use crate::failure::value;
 use crate::long_work::Patience;
+use crate::threads::without_lock;
 use numpy::{PyArray1, PyArray2};
 use percuss::{Endless, Entry, Exit, Instant, Model, Parameters, Phase, Segment, Start};
 use pyo3::IntoPyObject;
@@ -192,7 +193,7 @@ impl Oscillator {
                 ));
             }
         };
-        let rows = py.detach(|| self.rows(horizon, count))?;
+        let rows = without_lock(py, || self.rows(horizon, count))?;
         Ok(Simulated {
             phases: rows.phases,
             times: PyArray1::from_vec(py, rows.times),

@@ -7,6 +7,7 @@ use crate::derivatives::{DerivativeDigits, Derivatives, derivatives, digits};
 use crate::failure::value;
 use crate::long_work::Patience;
 use crate::motion::{Motion, beginning};
+use crate::threads::without_lock;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
 use percuss::Proved;
 use pyo3::prelude::{Bound, PyResult, Python, pyclass, pymethods};
@@ -114,7 +115,7 @@ impl Rows {
     /// This run made again with its derivatives by these names.
     fn differentiated(&self, py: Python<'_>, names: Vec<String>) -> PyResult<Self> {
         let (shared, asked) = (&self.shared, &self.asked);
-        let (numbers, end) = py.detach(|| match &self.numbers {
+        let (numbers, end) = without_lock(py, || match &self.numbers {
             Numbers::Proved(_) => all(|keep| shared.proved(asked, &names, keep))
                 .map(|(rows, end)| (Numbers::Proved(rows), end)),
             Numbers::Plain(_) => all(|keep| shared.plain(asked, &names, keep))
@@ -155,7 +156,7 @@ impl Rows {
             let (first, last) = motion.range().unwrap_or((f64::NAN, f64::NAN));
             value(format!("t = {time} is not accepted: the run goes from {first} to {last}"))
         };
-        let states: PyResult<_> = py.detach(|| {
+        let states: PyResult<_> = without_lock(py, || {
             let mut patience = Patience::new();
             let mut states = Vec::with_capacity(times.len() * columns);
             for time in times {

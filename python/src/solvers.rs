@@ -1,5 +1,6 @@
 //! The solvers of a system, each prepared when a run first needs it.
 
+use crate::threads::on_this_thread;
 use percuss::affine;
 use percuss::{DoubleDouble, Proved, Solver, System, SystemError};
 use std::sync::{Arc, OnceLock};
@@ -51,6 +52,6 @@ fn once<T>(
     if let Some(made) = cell.get() {
         return Ok(Arc::clone(made));
     }
-    let made = Arc::new(make()?);
+    let made = Arc::new(on_this_thread(make)?);
     Ok(Arc::clone(cell.get_or_init(|| made)))
 }

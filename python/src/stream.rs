@@ -3,6 +3,7 @@
 use crate::asked::{Asked, Shared};
 use crate::collect::{End, Kept};
 use crate::failure::value;
+use crate::threads::on_this_thread;
 use numpy::PyArray1;
 use percuss::{Proved, SystemError};
 use pyo3::exceptions::PyRuntimeError;
@@ -70,7 +71,7 @@ impl Stream {
         let (sender, receiver) = sync_channel(MAX_ROWS_AHEAD);
         let own = Arc::clone(&shared);
         let thread = std::thread::Builder::new().name("percuss-run".to_owned());
-        thread.spawn(move || run(&own, &asked, &sender))?;
+        thread.spawn(move || on_this_thread(|| run(&own, &asked, &sender)))?;
         let (rows, end) = (Mutex::new(receiver), Mutex::new(None));
         Ok(Self { rows, end, shared, digits })
     }

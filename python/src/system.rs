@@ -7,6 +7,7 @@ use crate::failure::{arguments, value};
 use crate::rows::{Numbers, Rows};
 use crate::section::Section;
 use crate::stream::Stream;
+use crate::threads::without_lock;
 use percuss::SystemError;
 use percuss::affine::{MAX_HORIZON, PRECISION_BITS, SystemFile};
 use percuss_validation::returns::{CountedReturns, MAX_RETURNS, Strobes, Uncounted};
@@ -264,7 +265,7 @@ impl System {
         let asked = self.asked((until, count, max_events), (digits, max_bits), backward)?;
         one_length(&[until.is_some(), count.is_some()], "until and count")?;
         let shared = &self.shared;
-        let (rows, end) = py.detach(|| all(|keep| shared.proved(&asked, &[], keep)))?;
+        let (rows, end) = without_lock(py, || all(|keep| shared.proved(&asked, &[], keep)))?;
         Ok(Rows::new(Arc::clone(shared), Numbers::Proved(rows), end, asked))
     }
 
@@ -289,7 +290,7 @@ impl System {
             asked.returning = Some(Arc::new(returning));
         }
         let (shared, asked) = (&self.shared, asked);
-        let (rows, end) = py.detach(|| all(|keep| shared.plain(&asked, &[], keep)))?;
+        let (rows, end) = without_lock(py, || all(|keep| shared.plain(&asked, &[], keep)))?;
         Ok(Rows::new(Arc::clone(shared), Numbers::Plain(rows), end, asked))
     }
 

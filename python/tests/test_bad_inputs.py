@@ -109,6 +109,24 @@ BAD = [
     (lambda: mode(c=[0, 1], until=[percuss.Until("up", [1, 2])]), ValueError, "a row of shape"),
     (lambda: mode(c=[0, 1], until=[percuss.Until("up", "x = 1")]), ValueError, "a condition"),
     (lambda: mode(c=[0, 1], until=[percuss.Until("up", "x > 1", next="off")]), ValueError, "off"),
+    (lambda: percuss.System(""), ValueError, "path is empty"),
+    (lambda: mode(A="ab"), ValueError, "an array of numbers is"),
+    (lambda: mode(c=[0, 1], until="up"), TypeError, "a list of Until is"),
+    (lambda: mode(c=[0, 1], watch=[3]), TypeError, "a list of Watch is"),
+    (lambda: mode(c=[0, 1], B=[[0, 0], [1, 0]]), ValueError, "without forcing"),
+    (lambda: built(modes={"a": 1}), TypeError, "a list of Mode is"),
+    (lambda: built(forcing=(1,)), ValueError, "two numbers"),
+    (
+        lambda: percuss.systems["rigid-impact-oscillator"].bifurcation("A", [NAN, 1], returns=1),
+        ValueError,
+        "finite numbers",
+    ),
+    (
+        lambda: percuss.Oscillator().sweep("basins", {"b": [0.1]}, grid=(2,), transient=1),
+        ValueError,
+        "'2' for '--grid",
+    ),
+    (lambda: percuss.Oscillator().sweep("lyapunov", {"b": [0.1]}, progress=True), TypeError, "out"),
     (lambda: percuss.Oscillator(xi=-1), ValueError, "1e-8 <= xi"),
     (lambda: percuss.Oscillator(xi="light"), TypeError, "xi = 'light'"),
     (lambda: percuss.Oscillator(q=0.0, p=1.0), ValueError, "p <= q"),
@@ -152,6 +170,17 @@ BAD = [
     (lambda: percuss.score(lambda it: it, stepping="fixed", cases="small-b"), ValueError, "order"),
     (lambda: percuss.score(lambda a, b, c: a, setup="odd", cases="small-b"), ValueError, "odd"),
     (lambda: percuss.score(lambda it: it, method="RK45", cases="small-b"), TypeError, "method"),
+    (lambda: percuss.score(lambda it: it, setup="odd", cases="small-b"), ValueError, "odd"),
+    (
+        lambda: percuss.score(lambda it: it, baseline=__file__, cases="small-b"),
+        ValueError,
+        "a report.json is",
+    ),
+    (
+        lambda: percuss.score(lambda it: it, out=f"{__file__}/report", cases="small-b"),
+        NotADirectoryError,
+        "report",
+    ),
     (lambda: percuss.problem("no-such"), KeyError, "no case"),
 ]
 

@@ -26,6 +26,12 @@ WORK = {
     "branch after a transient": "percuss.systems['rigid-impact-oscillator']"
     ".continue_('A', .5, .9, period=1, transient=10**8)",
     "basins": "percuss.Oscillator().basins((-1, 1), (-1, 1), grid=4000, transient=10**4)",
+    "orbits": "percuss.systems['rigid-impact-oscillator']"
+    ".orbits(50, (-1, .4), (-1, 1), grid=300)",
+    "basins of a system": "percuss.systems['rigid-impact-oscillator']"
+    ".basins((-1, .4), (-1, 1), grid=4000, transient=1000)",
+    "a value of a system's diagram": "percuss.systems['rigid-impact-oscillator']"
+    ".bifurcation('A', [.5], returns=1, transient=10**9)",
     "diagram": "percuss.Oscillator().bifurcation("
     "'b', np.linspace(0, .3, 1000), transient=10**7, periods=1)",
 }

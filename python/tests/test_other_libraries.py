@@ -40,6 +40,31 @@ def test_kinds_that_are_not_known_are_told(run):
         percuss.systems["bouncing-ball"].simulate(count=1).digits_as("decimal")
 
 
+def test_columns_of_returns_are_those_of_the_command():
+    pytest.importorskip("pandas")
+    pytest.importorskip("xarray")
+    text = """
+        schema = 1
+        name = "clocked"
+        states = ["time", "labels"]
+        forcing = { omega = 2, phi = 0 }
+        [[mode]]
+        name = "on"
+        equations = ["time' = labels", "labels' = cos - time - labels"]
+        [start]
+        mode = "on"
+        time = 0
+        labels = 1
+    """
+    clocked = percuss.System(text)
+    returns = clocked.poincare(returns=2)
+    table = returns.to_pandas()
+    assert list(table) == ["time", "mode", "state.time", "labels"]
+    assert table["time"].to_list() == returns.time.tolist()
+    basins = clocked.basins((-1, 1), (-1, 1), grid=2, transient=60)
+    assert set(basins.to_xarray().coords) == {"state.time", "state.labels"}
+
+
 def test_data_sets_hold_the_arrays(run):
     pytest.importorskip("xarray")
     times = np.linspace(0, run.time[-1], 11)
@@ -121,6 +146,16 @@ def test_flags_that_a_system_has_already_are_told(flags):
     rig = percuss.systems["rigid-impact-oscillator"]
     with pytest.raises(ValueError, match=next(iter(flags))):
         rig.sweep("lyapunov", {"A": [0.5, 0.6]}, transient=1, returns=2, **flags)
+
+
+def test_a_sweep_varies_the_parameter_of_its_verb():
+    axes = {"b": [0.1, 0.15]}
+    diagram = {"parameter": "omega", "from_": 1.0, "to": 1.1, "steps": 2, "transient": 5}
+    found = percuss.Oscillator().sweep("bifurcation", axes, **diagram, periods=3)
+    alone = percuss.Oscillator(b=0.15).bifurcation("omega", [1, 1.1], transient=5, periods=3)
+    assert found["points"][1].tobytes() == alone.points.tobytes()
+    ends = {"parameter": "omega", "from_": 1.0, "to": 1.001, "period": 1}
+    assert percuss.Oscillator().sweep("continue", axes, **ends).axes["b"].tolist() == axes["b"]
 
 
 def test_sweeps_are_data_sets():

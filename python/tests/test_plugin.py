@@ -25,10 +25,20 @@ def test_a_row_out_of_bounds_fails_with_its_reason(pytester):
 
 
 def test_declared_shortcomings_have_to_fail(pytester):
-    lines = "small-b@1e-06 steps over two events\ntable1-first-row it has none\n"
+    lines = "small-b@1e-6 steps over two events\ntable1-first-row it has none\n"
     known = f"--percuss-known={pytester.makefile('.txt', known=lines)}"
     pytester.runpytest_subprocess(SOLVER, *WRONG, known).assert_outcomes(xfailed=1)
     pytester.runpytest_subprocess(SOLVER, *ASKED, known).assert_outcomes(failed=1)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"), [("small-c it", "small-c is no case"), ("small-b@low", "a number")]
+)
+def test_a_misspelt_shortcoming_is_refused(pytester, line, told):
+    known = f"--percuss-known={pytester.makefile('.txt', known=line)}"
+    done = pytester.runpytest_subprocess(SOLVER, *WRONG, known)
+    assert done.ret == pytest.ExitCode.USAGE_ERROR
+    done.stderr.fnmatch_lines([f"*line 1: {line.split()[0]}: {told}*"])
 
 
 def test_rows_are_shown_without_being_run(pytester):

@@ -319,6 +319,27 @@ def test_a_forked_process_has_threads_of_its_own():
         assert pool.map_async(cells, [0]).get(timeout=120) == [expected]
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+def test_a_forked_process_prepares_solvers_that_its_parent_has_not():
+    expected = times(0.125)
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        assert pool.map_async(times, [0.125, 0.25]).get(timeout=120)[0] == expected
+
+
+def times(value):
+    relay = percuss.systems["relay-feedback"](delta=value)
+    returns = relay.poincare(returns=3, section="switch-down")
+    stream = [row.time for row, _ in zip(relay.iterate(), range(3))]
+    return [
+        relay.events(count=4, digits=25).digits.time.tolist(),
+        relay.simulate(count=4).time.tolist(),
+        returns.time.tolist(),
+        stream,
+        percuss.Oscillator(b=value).events(count=3).time.tolist(),
+    ]
+
+
 def cells(_):
     basins = percuss.Oscillator(xi=0.1).basins((0, 1), (0, 1), grid=8, transient=40)
     return basins.labels.tolist()
