@@ -320,3 +320,74 @@ fn a_rigid_stop_is_touched_along_the_response() {
     let places = graze.points.windows(2).map(|it| [it[0].values[1], it[1].values[1]]);
     assert!(places.into_iter().all(|[one, next]| one != next), "{:?}", graze.points);
 }
+
+/// An oscillator with an elastic stop at a clearance.
+const BILINEAR: &str = r#"
+    schema = 1
+    name = "bilinear"
+    states = ["x", "v"]
+    forcing = { omega = "w", phi = 0.3 }
+    parameters = { A = 1, w = 0.8, z = 0.05, k = 10, d = 0.5 }
+    [[mode]]
+    name = "free"
+    equations = ["x' = v", "v' = -x - 2*z*v + A*cos"]
+    [[mode.until]]
+    name = "touch"
+    guard = "x > d"
+    next = "contact"
+    [[mode]]
+    name = "contact"
+    equations = ["x' = v", "v' = -x - k*(x - d) - 2*z*v + A*cos"]
+    [[mode.until]]
+    name = "leave"
+    guard = "x < d"
+    next = "free"
+    [start]
+    mode = "free"
+    x = 0
+    v = 0
+"#;
+
+/// On this curve of flips the orbit leaves the stop at the strobe where w is 0.79426: the curve
+/// goes on, as that of a strobe far from it has it.
+#[test]
+fn a_curve_goes_on_past_an_event_at_the_strobe() {
+    let bilinear = |angle| Varied::new(BILINEAR, Section::strobe(angle), ["A", "w"], &[]);
+    let (own, beside) = (bilinear(0.0), bilinear(1.0));
+    let [ends, window] = [[0.185, 0.193], [0.792, 0.8]];
+    let guess = own.settled_return([ends[0], 0.8], None, 300);
+    let branch = own.branch(&guess, 1, ends, 0.8);
+    let curves = own.curves(&branch, [ends, window], 0.8);
+    let [curve] = &curves[..] else { panic!("{curves:?}") };
+    assert_eq!(curve.kind, BifurcationKind::Flip);
+    assert_eq!(curve.endings, [CurveEnding::Left; 2]);
+    let seconds: Vec<f64> = curve.points.iter().map(|it| it.values[1]).collect();
+    let least = seconds.iter().copied().fold(f64::INFINITY, f64::min);
+    assert_eq!(least, window[0]);
+    for point in curve.points.iter().filter(|it| it.values[1] < 0.7942).step_by(3) {
+        let [force, frequency] = point.values;
+        let guess = beside.settled_return([force - 1e-3, frequency], None, 300);
+        let branch = beside.branch(&guess, 1, [force - 1e-3, force + 1e-3], frequency);
+        let flips = branch.bifurcations.iter().filter(|it| it.kind == BifurcationKind::Flip);
+        let [flip] = &flips.collect::<Vec<_>>()[..] else { panic!("no flip at {frequency}") };
+        let apart = (flip.value - force).abs();
+        assert!(apart <= flip.error + point.error, "{apart:e} at {frequency}");
+    }
+}
+
+/// Beyond a fold the stability changes, and both points beside it may lie on one side of its value.
+#[test]
+fn a_fold_explains_the_change_of_stability_at_it() {
+    let bilinear = Varied::new(BILINEAR, Section::strobe(0.0), ["w", "A"], &[]);
+    let guess = bilinear.settled_return([0.365, 1.0], None, 300);
+    let branch = bilinear.branch(&guess, 1, [0.365, 0.376], 1.0);
+    let folds: Vec<_> =
+        branch.bifurcations.iter().filter(|it| it.kind == BifurcationKind::Fold).collect();
+    assert!(!folds.is_empty());
+    for fold in folds {
+        let sides = [fold.points_before - 1, fold.points_before].map(|n| &branch.points[n]);
+        assert_ne!(sides[0].1.is_stable(), sides[1].1.is_stable());
+        assert!(sides.iter().all(|(value, _)| (value - fold.value).abs() < 1e-2));
+    }
+    assert_eq!(branch.unnamed_changes(), [0; 0]);
+}

@@ -48,7 +48,7 @@ impl BifurcationCurve {
         let count = branch.bifurcations.len() as f64;
         for (n, found) in branch.bifurcations.iter().enumerate() {
             let mut share = |share: f64| progress((n as f64 + share) / count);
-            let tracer = Tracer { plane, sought: Sought::new(found) };
+            let tracer = Tracer { plane: plane.clone(), sought: Sought::new(found) };
             let start = traced_point(found, second);
             let is_known = curves.iter().any(|(points, curve)| {
                 (curve.kind, curve.event) == (found.kind, found.event)
@@ -95,7 +95,13 @@ fn whole_curve(
     start: Traced,
     progress: &mut dyn FnMut(f64),
 ) -> (Vec<Traced>, [CurveEnding; 2]) {
-    let Some(way) = tracer.ways(&start) else { return (vec![start], [CurveEnding::Lost; 2]) };
+    let beside = || {
+        let beside = tracer.beside(&start)?;
+        beside.ways(&beside.seen(tracer, &start)?)
+    };
+    let Some(way) = tracer.ways(&start).or_else(beside) else {
+        return (vec![start], [CurveEnding::Lost; 2]);
+    };
     let share =
         |half: f64, count: usize| half + 0.5 * count as f64 / (count as f64 + HALFWAY_POINTS);
     let Trace { points: ahead, ending: last } =

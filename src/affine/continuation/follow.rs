@@ -146,10 +146,9 @@ impl OrbitCurve for Curve<'_> {
         let Meaning { kind, event } = self.meaning(base, corner)?;
         let phase = self.phase(base, corner, event);
         let Corner { before, beyond, error, .. } = corner;
-        let (point, is_lost, turns) = (self.shown_point(before), beyond.is_none(), corner.turns());
-        let (value, orbit, error) = (before.value, point.orbit.clone(), *error);
-        let event = Some(event);
-        Some(ReturnBifurcation { kind, value, error, event, turns, orbit, point, phase, is_lost })
+        let noted = Noted { kind, point: before.clone(), error: *error, turns: corner.turns() };
+        let (event, is_lost) = (Some(event), beyond.is_none());
+        Some(ReturnBifurcation { event, phase, is_lost, ..self.bifurcation(noted) })
     }
 
     fn bifurcation(&self, noted: Noted<CurvePoint>) -> ReturnBifurcation {
@@ -157,7 +156,18 @@ impl OrbitCurve for Curve<'_> {
         let point = self.shown_point(&point);
         let (value, orbit) = (point.value, point.orbit.clone());
         let (event, phase, is_lost) = (None, None, false);
-        ReturnBifurcation { kind, value, error, event, turns, orbit, point, phase, is_lost }
+        ReturnBifurcation {
+            kind,
+            value,
+            error,
+            event,
+            turns,
+            orbit,
+            points_before: 0,
+            point,
+            phase,
+            is_lost,
+        }
     }
 
     fn kept_point(&self, point: &CurvePoint) -> (f64, Orbit) {

@@ -14,9 +14,10 @@
 //! [`corner`] the ends of pieces, [`halving`] those of a doubled branch, and [`mod@follow`] what
 //! step control asks for. Read them in this order. In two parameters, [`plane`] has the lines on
 //! which one varies, [`again`] a bifurcation on one of them, [`traced`] the steps from line to
-//! line, and [`bifurcation_curve`] whole curves.
+//! line, [`beside`] those past an event at the strobe, and [`bifurcation_curve`] whole curves.
 
 mod again;
+mod beside;
 mod bifurcation_curve;
 mod corner;
 mod corrector;
@@ -72,6 +73,8 @@ pub struct ReturnBifurcation {
     pub turns: bool,
     /// The orbit there; at a corner as the branch comes to it.
     pub orbit: Orbit,
+    /// The number of the branch's points that come before it.
+    pub points_before: usize,
     /// The bifurcation's orbit as a point of the curve that the branch is.
     point: CurvePoint,
     /// The time of the event since the strobe before it, in forcing periods.
@@ -117,8 +120,27 @@ impl ReturnBranch {
         first: CurvePoint,
         progress: &mut dyn FnMut(f64),
     ) -> Self {
-        let FollowedCurve { points, bifurcations, ending } = follow(curve, ends, first, progress);
+        let followed = follow(curve, ends, first, progress);
+        let FollowedCurve { points, mut bifurcations, before, ending } = followed;
+        bifurcations.iter_mut().zip(before).for_each(|(it, before)| it.points_before = before);
         Self { points, bifurcations, ending }
+    }
+
+    /// The pairs of neighbouring points between which the stability changes and no bifurcation is,
+    /// each by the place of its first: a multiplier passes 1 there and the branch does not turn, as
+    /// where a symmetric orbit gives way to two that are not.
+    #[must_use]
+    pub fn unnamed_changes(&self) -> Vec<usize> {
+        // A corner is a point of the branch: what it changes is seen on either side of it.
+        let is_at = |it: &ReturnBifurcation, place: usize| {
+            let before = it.points_before;
+            before == place + 1 || before == place && self.points[place].0 == it.value
+        };
+        let pairs = self.points.windows(2).enumerate().filter(|(place, pair)| {
+            pair[0].1.is_stable() != pair[1].1.is_stable()
+                && !self.bifurcations.iter().any(|it| is_at(it, *place))
+        });
+        pairs.map(|(place, _)| place).collect()
     }
 
     /// Whether the branch was followed to the value that was asked for.

@@ -7,6 +7,7 @@ use super::curve::Curve;
 use super::family::ReturnFamily;
 
 /// The return maps of a section, one for each pair of values of two parameters in a window.
+#[derive(Clone)]
 pub struct ReturnPlane<'a> {
     section: Section,
     longest: Option<f64>,
@@ -33,6 +34,11 @@ impl<'a> ReturnPlane<'a> {
     ) -> Self {
         let window = window.map(|[a, b]| [a.min(b), a.max(b)]);
         Self { section, longest, system, window }
+    }
+
+    /// The plane of the strobe of an angle that is larger by this, of a section that is a strobe.
+    pub(super) fn turned(&self, by: f64) -> Option<Self> {
+        Some(Self { section: self.section.turned(by)?, ..self.clone() })
     }
 
     /// Asks the curve of orbits on the line through `at` on which one parameter varies; none where

@@ -76,8 +76,9 @@ const FIRST_REACHES: [f64; 4] = [1.0, 4.0, 0.2, 16.0];
 const PASSING_TOLERANCE: f64 = 0.3;
 
 /// The tracer of one curve.
+#[derive(Clone)]
 pub(super) struct Tracer<'a> {
-    pub plane: &'a ReturnPlane<'a>,
+    pub plane: ReturnPlane<'a>,
     pub sought: Sought,
 }
 
@@ -88,6 +89,27 @@ struct Step<'a> {
     before: Option<&'a Traced>,
     way: Way,
     length: f64,
+}
+
+/// Where a way along a curve has come to, as the tracer sees it by which it goes on.
+struct Here<'a> {
+    /// The tracer at another strobe, if it is one.
+    beside: Option<Tracer<'a>>,
+    /// The place at which the way began.
+    start: Traced,
+    from: Traced,
+    before: Option<Traced>,
+}
+
+impl<'a> Here<'a> {
+    /// The same at another strobe, if an event is near that of the tracer.
+    fn at_another_strobe(&self, tracer: &Tracer<'a>) -> Option<Self> {
+        let beside = tracer.beside(&self.from)?;
+        let seen = |place: &Traced| beside.seen(tracer, place);
+        let (start, from) = (seen(&self.start)?, seen(&self.from)?);
+        let before = self.before.as_ref().and_then(seen);
+        Some(Self { beside: Some(beside), start, from, before })
+    }
 }
 
 impl Tracer<'_> {
@@ -108,6 +130,9 @@ impl Tracer<'_> {
     }
 
     /// Follows the curve from a place in a direction; `progress` is told how many places there are.
+    ///
+    /// Where a step fails next to an event at the strobe, the way goes on at another strobe. The
+    /// places that are given are those of this one.
     pub fn trace(&self, start: &Traced, way: Way, progress: &mut dyn FnMut(usize)) -> Trace {
         let mut way = way.map(|it| it / length(way));
         let mut points: Vec<Traced> = Vec::new();
@@ -115,31 +140,35 @@ impl Tracer<'_> {
             return Trace { points, ending: CurveEnding::Left };
         }
         let mut step = FIRST_STEP;
+        let mut here =
+            Here { beside: None, start: start.clone(), from: start.clone(), before: None };
         loop {
-            let (from, before) = match points.len() {
-                0 => (start, None),
-                1 => (&points[0], Some(start)),
-                count => (&points[count - 1], Some(&points[count - 2])),
-            };
-            let next = Step { from, before, way, length: step };
-            let Some((next, has_left)) = self.step(&next) else {
-                if step > MIN_STEP {
+            let tracer = here.beside.as_ref().unwrap_or(self);
+            let Here { from, before, .. } = &here;
+            let next = Step { from, before: before.as_ref(), way, length: step };
+            let Some((next, has_left)) = tracer.step(&next) else {
+                if let Some(beside) = here.at_another_strobe(tracer) {
+                    here = beside;
+                } else if step > MIN_STEP {
                     step *= 0.5;
-                    continue;
+                } else {
+                    let is_at_edge = self.plane.room(from.at, way) <= 10.0 * MIN_STEP;
+                    let ending = if is_at_edge { CurveEnding::Left } else { CurveEnding::Lost };
+                    return Trace { points, ending };
                 }
-                let is_at_edge = self.plane.room(from.at, way) <= 10.0 * MIN_STEP;
-                let ending = if is_at_edge { CurveEnding::Left } else { CurveEnding::Lost };
-                return Trace { points, ending };
+                continue;
             };
             let chord = self.plane.way(from.at, next.at);
-            if points.len() > 2 && self.passes([from, &next], start) {
+            if points.len() > 2 && tracer.passes([from, &next], &here.start) {
                 points.push(start.clone());
                 return Trace { points, ending: CurveEnding::Closed };
             }
             progress(points.len());
             if length(chord) > 0.0 {
                 way = chord.map(|it| it / length(chord));
-                points.push(next);
+                let own = here.beside.as_ref().and_then(|it| self.seen(it, &next));
+                points.push(own.unwrap_or_else(|| next.clone()));
+                here.before = Some(std::mem::replace(&mut here.from, next));
             }
             if has_left || points.len() >= MAX_POINTS {
                 let ending = if has_left { CurveEnding::Left } else { CurveEnding::Long };

@@ -228,7 +228,7 @@ impl Branch {
         first: ContinuationPoint,
         progress: &mut dyn FnMut(f64),
     ) -> Self {
-        let FollowedCurve { points, bifurcations, ending } =
+        let FollowedCurve { points, bifurcations, ending, .. } =
             steps::follow(curve, ends, first, progress);
         Self { points, bifurcations, ending }
     }

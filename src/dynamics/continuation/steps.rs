@@ -180,6 +180,8 @@ pub(crate) trait OrbitCurve {
 pub(crate) struct FollowedCurve<C: OrbitCurve> {
     pub(crate) points: Vec<C::Kept>,
     pub(crate) bifurcations: Vec<C::Bifurcation>,
+    /// The number of points that come before each bifurcation.
+    pub(crate) before: Vec<usize>,
     pub(crate) ending: BranchEnding,
 }
 
@@ -191,11 +193,11 @@ pub(crate) fn follow<C: OrbitCurve>(
     first: C::Point,
     progress: &mut dyn FnMut(f64),
 ) -> FollowedCurve<C> {
-    let (points, bifurcations) = (Vec::new(), Vec::new());
-    let mut follower = Follower { curve, ends, points, bifurcations };
+    let (points, bifurcations, before) = (Vec::new(), Vec::new(), Vec::new());
+    let mut follower = Follower { curve, ends, points, bifurcations, before };
     let ending = follower.follow(first, progress);
-    let Follower { points, bifurcations, .. } = follower;
-    FollowedCurve { points, bifurcations, ending }
+    let Follower { points, bifurcations, before, .. } = follower;
+    FollowedCurve { points, bifurcations, before, ending }
 }
 
 struct Follower<'a, C: OrbitCurve> {
@@ -204,6 +206,7 @@ struct Follower<'a, C: OrbitCurve> {
     ends: [f64; 2],
     points: Vec<C::Kept>,
     bifurcations: Vec<C::Bifurcation>,
+    before: Vec<usize>,
 }
 
 /// The next point, and whether the branch ends there.
@@ -250,7 +253,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
                 if next.is_on_piece_of(point) {
                     if let Some(flip) = self.curve.halving(point, &next) {
                         let ending = BranchEnding::Halved { value: flip.point.value() };
-                        self.bifurcations.push(self.curve.bifurcation(flip));
+                        self.add(self.curve.bifurcation(flip));
                         return Err(ending);
                     }
                     self.note_between(point, &next, distance);
@@ -286,7 +289,9 @@ impl<C: OrbitCurve> Follower<'_, C> {
             return Ok((end, ending));
         }
         self.note_between(point, &corner.before, self.curve.distance_along(point, &corner.before));
-        self.bifurcations.extend(self.curve.of_corner(point, &corner));
+        if let Some(found) = self.curve.of_corner(point, &corner) {
+            self.add(found);
+        }
         self.keep(&corner.before);
         let Some(beyond) = corner.beyond else {
             return Err(BranchEnding::Lost { value: corner.before.value() });
@@ -349,6 +354,11 @@ impl<C: OrbitCurve> Follower<'_, C> {
         self.points.push(self.curve.kept_point(point));
     }
 
+    fn add(&mut self, found: C::Bifurcation) {
+        self.bifurcations.push(found);
+        self.before.push(self.points.len());
+    }
+
     /// Bifurcations between two points of one piece.
     fn note_between(&mut self, point: &C::Point, next: &C::Point, distance: f64) {
         let mut found: Vec<(BifurcationKind, LocatedPoint<C::Point>)> = Vec::new();
@@ -370,7 +380,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
             let error = self.curve.error(&located);
             let turns = kind == BifurcationKind::Fold;
             let noted = Noted { kind, point: located.point, error, turns };
-            self.bifurcations.push(self.curve.bifurcation(noted));
+            self.add(self.curve.bifurcation(noted));
         }
     }
 }

@@ -78,7 +78,7 @@ pub(super) fn run(
     let told = json(&first, parameter, branch.as_ref().ok());
     let figure = || drawing(arguments, chosen, &first, &shown, branch.as_ref().ok());
     outputs.data_and_figure(&arguments.picture, |_, out| output::json(out, &told), figure)?;
-    for [from, to] in branch.iter().flat_map(crossings) {
+    for [from, to] in branch.iter().flat_map(unnamed_changes) {
         say(&format!(
             "--parameter {parameter}: between {from:?} and {to:?} a multiplier passes 1 and the \
              branch does not turn, as where a symmetric orbit gives way to two that are not. \
@@ -94,17 +94,10 @@ pub(super) fn run(
     Ok(OUT_OF_BOUNDS)
 }
 
-/// The intervals between points of a branch in which its stability changes and nothing is listed.
-fn crossings(branch: &ReturnBranch) -> Vec<[f64; 2]> {
-    let changes = branch.points.windows(2).filter_map(|pair| match pair {
-        [(from, one), (to, other)] if one.is_stable() != other.is_stable() => {
-            let [low, high] = [from.min(*to), from.max(*to)];
-            let within = |it: &ReturnBifurcation| low <= it.value && it.value <= high;
-            (!branch.bifurcations.iter().any(within)).then_some([*from, *to])
-        }
-        _ => None,
-    });
-    changes.collect()
+/// The values between which a branch changes its stability and nothing is listed.
+fn unnamed_changes(branch: &ReturnBranch) -> Vec<[f64; 2]> {
+    let ends = |place: usize| [place, place + 1].map(|n| branch.points[n].0);
+    branch.unnamed_changes().into_iter().map(ends).collect()
 }
 
 /// Refuses flags that do not fit a system.

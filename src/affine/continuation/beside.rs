@@ -1,0 +1,28 @@
+//! A curve of bifurcations at another strobe, where an event of its orbits comes to this one.
+//!
+//! An event that passes the strobe makes another piece of the map, on which a bifurcation that was
+//! known on the piece before is not found again. No bifurcation hangs on the strobe's angle.
+
+use super::strobe::angle_beside;
+use super::traced::{Traced, Tracer};
+
+impl Tracer<'_> {
+    /// The tracer at another strobe, if an event of the orbit at a place is near this one.
+    pub(super) fn beside(&self, place: &Traced) -> Option<Self> {
+        let phases: Option<Vec<f64>> = self.plane.on_line(place.axis, place.at, |curve| {
+            let period = curve.family.at(place.point.value, |map| map.forcing_period())?;
+            let crossings = curve.crossings(place.point.value, &place.point.shots)?;
+            Some(crossings.iter().map(|it| (it.time / period).rem_euclid(1.0)).collect())
+        });
+        let plane = self.plane.turned(angle_beside(&phases?)?)?;
+        Some(Self { plane, sought: self.sought })
+    }
+
+    /// A place of another tracer's curve as one of this one's, where the strobes differ.
+    pub(super) fn seen(&self, by: &Self, place: &Traced) -> Option<Traced> {
+        let point = by.plane.on_line(place.axis, place.at, |curve| {
+            self.plane.on_line(place.axis, place.at, |own| curve.seen_on(own, &place.point))
+        })?;
+        Some(Traced { point, ..place.clone() })
+    }
+}
