@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from percuss._run import pair, real
 from percuss._system import System, toml_number
+
+
+_Kind = TypeVar("_Kind")
 
 
 @dataclass
@@ -96,7 +99,7 @@ def _numbers(item: str, value: ArrayLike) -> NDArray[np.float64]:
         raise ValueError(f"{item}: {value!r} is not accepted: an array of numbers is") from None
 
 
-def _each(name: str, given: Any, kind: type) -> list[Any]:
+def _each(name: str, given: Any, kind: type[_Kind]) -> list[_Kind]:
     """The entries of a sequence, each of one kind."""
     entries = list(given) if isinstance(given, Iterable) else [given]
     for it in entries:
@@ -158,11 +161,10 @@ class _Writer:
         found = {}
         for name, shape in shapes.items():
             given = getattr(mode, name)
-            found[name] = np.zeros(shape) if given is None else np.asarray(given, dtype=np.float64)
+            item = f"mode {mode.name!r}: {name}"
+            found[name] = np.zeros(shape) if given is None else _numbers(item, given)
             if found[name].shape != shape:
-                raise ValueError(
-                    f"mode {mode.name!r}: {name} of shape {found[name].shape}: {shape} is accepted"
-                )
+                raise ValueError(f"{item} of shape {found[name].shape}: {shape} is accepted")
         if mode.A is None and mode.c is None and mode.B is None:
             raise TypeError(f"mode {mode.name!r} has no motion: equations or A, c, B are accepted")
         forced = [found["B"]] if found["B"].any() else []

@@ -31,7 +31,7 @@ WORK = {
     "basins of a system": "percuss.systems['rigid-impact-oscillator']"
     ".basins((-1, .4), (-1, 1), grid=4000, transient=1000)",
     "a value of a system's diagram": "percuss.systems['rigid-impact-oscillator']"
-    ".bifurcation('A', [.5], returns=1, transient=10**9)",
+    ".bifurcation('A', [.5], returns=1, transient=10**9 - 1)",
     "diagram": "percuss.Oscillator().bifurcation("
     "'b', np.linspace(0, .3, 1000), transient=10**7, periods=1)",
 }
