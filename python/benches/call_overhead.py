@@ -63,7 +63,7 @@ def calls() -> dict[str, tuple[Callable[[], Any], Callable[[], Any] | None]]:
         return native.events(None, 1, 17, None, None, False)
 
     def plain() -> Any:
-        return native.simulate(None, 1, None, False)
+        return native.simulate(None, 1, None, False, None)
 
     return {
         "ball.events(count=1)": (lambda: ball.events(count=1), proved),

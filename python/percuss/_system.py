@@ -292,21 +292,22 @@ class System(Dynamics, Swept):
         """
         left_out = whole("transient", transient)
         wanted = None if returns is None else whole("returns", returns, 1)
-        text = None if section is None else name_of("section", section)
-        cut = section_of(text, every, max_time)
+        is_measured = wanted is not None or left_out > 0
+        is_plain = section is None and type(every) is int and every == 1 and max_time is None
+        measured = None
+        if is_measured or not is_plain:
+            text = None if section is None else name_of("section", section)
+            measured = wanted, left_out, section_of(text, every, max_time)
         until, count, most = self._length(until, count, max_events, wanted)
-        if wanted is None and left_out == 0:
+        if not (is_measured or is_plain):
             flags = {"section": section, "every": None if every == 1 else every}
-            for name, given in {**flags, "max_time": max_time}.items():
-                if given is not None:
-                    accepted = "it is accepted with returns and with transient"
-                    raise ValueError(f"{name} = {given!r} has no effect here: {accepted}")
-            measured = None
-        elif backward:
-            name, given = ("returns", wanted) if wanted is not None else ("transient", left_out)
-            raise ValueError(f"{name} = {given} is not accepted of a run back in time: until is")
-        else:
-            measured = (wanted, left_out, cut)
+            given = {**flags, "max_time": max_time}
+            name = next(name for name, value in given.items() if value is not None)
+            accepted = "it is accepted with returns and with transient"
+            raise ValueError(f"{name} = {given[name]!r} has no effect here: {accepted}")
+        if is_measured and backward:
+            name, number = ("returns", wanted) if wanted is not None else ("transient", left_out)
+            raise ValueError(f"{name} = {number} is not accepted of a run back in time: until is")
         asked = until, count, most, bool(backward), measured
         return Run(self._native.simulate(*asked), self, 17, ("simulate", *asked))
 
