@@ -260,6 +260,28 @@ fn a_branch_ends_where_an_event_comes_earlier() {
     assert_eq!(graze.event.unwrap().name(&varied.at(1.9).unwrap()), "spike@leak");
 }
 
+/// A neuron of one state: the branch ends where a spike's threshold is touched from the side of
+/// the spike, and a multiplier grows without bound. The value is that of two equations for the two
+/// spikes and one for the touch, solved in 30 digits by another program from the closed form.
+#[test]
+fn a_branch_ends_where_a_spike_becomes_a_touch() {
+    let text = "schema = 1\nname = \"neuron\"\nstates = [\"u\"]\n\
+                forcing = { omega = 2.2, phi = 0 }\n[parameters]\nI = 1\n[[mode]]\n\
+                name = \"rest\"\nequations = [\"u' = -u/2 + I + cos/2\"]\n\
+                until = [{ name = \"spike\", guard = \"u > 1\", reset = [\"u = 0\"] }]\n\
+                [start]\nmode = \"rest\"\nu = 0.2\n";
+    for angle in [0.0, 1.0, 2.0, 3.0, 5.0] {
+        let varied = Varied::new(text, Section::strobe(angle), "I", &[]);
+        let branch = varied.follow(&varied.settled_return(1.0, 300), 1, [1.0, 0.3]);
+        only_bifurcation(&branch, BifurcationKind::Fold);
+        let graze = only_bifurcation(&branch, BifurcationKind::Grazing);
+        let apart = (graze.value - 0.975_507_101_985_535).abs();
+        assert!(apart <= graze.error && graze.error <= 1e-9, "{apart:e}, {:e}", graze.error);
+        assert_eq!(branch.ending, BranchEnding::Lost { value: graze.value });
+        assert_eq!(graze.event.unwrap().name(&varied.at(1.0).unwrap()), "spike@rest");
+    }
+}
+
 /// Unstable orbits are followed past it, too, and orbits that a reset changes there.
 #[test]
 fn no_angle_of_the_strobe_changes_a_branch() {

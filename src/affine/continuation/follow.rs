@@ -7,6 +7,7 @@ use super::curve::Curve;
 use super::family::is_near_touch;
 use super::point::{CurvePoint, are_on_one_piece};
 use super::refusal::Refusal;
+use super::touch::TouchAhead;
 use super::words::Meaning;
 use crate::dynamics::continuation::steps::{Accepts, Corner, Noted, OrbitCurve, OrbitPoint};
 use crate::dynamics::linear::ReIm;
@@ -143,12 +144,19 @@ impl OrbitCurve for Curve<'_> {
         base: &CurvePoint,
         corner: &Corner<CurvePoint>,
     ) -> Option<ReturnBifurcation> {
-        let Meaning { kind, event } = self.meaning(base, corner)?;
+        let is_end = corner.beyond.is_none() && !corner.is_of_section;
+        let touch = if is_end { self.touch_ahead(base, &corner.before) } else { None };
+        let meaning = touch.as_ref().map(|it| Meaning::of_touch(it.event));
+        let Meaning { kind, event } = meaning.or_else(|| self.meaning(base, corner))?;
         let phase = self.phase(base, corner, event);
         let Corner { before, beyond, error, .. } = corner;
         let noted = Noted { kind, point: before.clone(), error: *error, turns: corner.turns() };
         let (event, is_lost) = (Some(event), beyond.is_none());
-        Some(ReturnBifurcation { event, phase, is_lost, ..self.bifurcation(noted) })
+        let found = ReturnBifurcation { event, phase, is_lost, ..self.bifurcation(noted) };
+        Some(match touch {
+            Some(TouchAhead { value, error, .. }) => ReturnBifurcation { value, error, ..found },
+            None => found,
+        })
     }
 
     fn bifurcation(&self, noted: Noted<CurvePoint>) -> ReturnBifurcation {

@@ -121,8 +121,13 @@ impl ReturnBranch {
         progress: &mut dyn FnMut(f64),
     ) -> Self {
         let followed = follow(curve, ends, first, progress);
-        let FollowedCurve { points, mut bifurcations, before, ending } = followed;
+        let FollowedCurve { points, mut bifurcations, before, mut ending } = followed;
         bifurcations.iter_mut().zip(before).for_each(|(it, before)| it.points_before = before);
+        if let (BranchEnding::Lost { value }, Some(last)) = (&mut ending, bifurcations.last())
+            && last.is_lost
+        {
+            *value = last.value;
+        }
         Self { points, bifurcations, ending }
     }
 

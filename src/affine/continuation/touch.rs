@@ -24,6 +24,18 @@ const STEPS_TO_TOUCH: [f64; 3] = [1e-10, 1e-8, 1e-6];
 /// A touch is expected within so many times the distance in which an event has become slower.
 const MAX_SHARE_TO_TOUCH: f64 = 4.0;
 
+/// The orbits through which a touch is extrapolated.
+const ORBITS_TO_TOUCH: u32 = 5;
+/// The share of its distance from the last orbit up to which the error of such a touch is accepted.
+const MAX_ERROR_SHARE: f64 = 0.1;
+
+/// A touch ahead of the last orbit that was found, with a bound of the error of its value.
+pub(super) struct TouchAhead {
+    pub value: f64,
+    pub error: f64,
+    pub event: Guard,
+}
+
 /// A touch as two orbits with the event tell it.
 struct Expected {
     /// The parameter's value.
@@ -32,8 +44,9 @@ struct Expected {
     rest: f64,
     /// The touch lies as many times further along than these orbits are apart.
     share: f64,
-    /// The event.
+    /// The event, and its place among those of the orbit.
     event: Guard,
+    place: usize,
 }
 
 impl Curve<'_> {
@@ -75,11 +88,46 @@ impl Curve<'_> {
         let [from, to] = [base, last].map(|it| self.crossings(it.value, &it.shots));
         let (to, from) = same_events(to?, from?)?;
         let slowed = from.iter().zip(&to).map(|(from, to)| (from.rate, to.rate, to.guard));
-        let slowed = slowed.filter(|(from, to, _)| *to > 0.0 && to < from && from.is_finite());
-        let (from, to, event) = slowed.min_by(|a, b| (a.1 / a.0).total_cmp(&(b.1 / b.0)))?;
+        let slowed = slowed.enumerate();
+        let slowed = slowed.filter(|(_, (from, to, _))| *to > 0.0 && to < from && from.is_finite());
+        let (place, (from, to, event)) =
+            slowed.min_by(|(_, a), (_, b)| (a.1 / a.0).total_cmp(&(b.1 / b.0)))?;
         let share = to / (from - to);
         let rest = share * (last.value - base.value);
-        Some(Expected { value: last.value + rest, rest, share, event })
+        Some(Expected { value: last.value + rest, rest, share, event, place })
+    }
+
+    /// The touch ahead of the last orbit that was found, to which an event becomes slow, where no
+    /// orbit is found beyond.
+    ///
+    /// The closer the touch, the shorter is the step by which the next orbit is found. But along
+    /// the curve the parameter is a smooth function of the event's rate, and is extrapolated to a
+    /// rate of zero: through orbits that are as far apart as the touch is from the last one. They
+    /// are found from the base, whose direction is known better.
+    pub(super) fn touch_ahead(&self, base: &CurvePoint, last: &CurvePoint) -> Option<TouchAhead> {
+        if !is_near_touch(&last.shots) {
+            return None;
+        }
+        let far = self.point_before(base);
+        let expected = self.expected_touch(&far, last);
+        let Expected { share, event, place, .. } =
+            expected.filter(|it| it.share <= MAX_SHARE_TO_TOUCH)?;
+        let apart = share * self.distance_along(last, far.value, &far.shots)?.abs();
+        let rate_and_value = |orbit: &CurvePoint| {
+            let crossing = self.crossings(orbit.value, &orbit.shots)?.into_iter().nth(place)?;
+            (crossing.guard == event).then_some((crossing.rate, orbit.value))
+        };
+        let back = base.turned();
+        let before = (1..ORBITS_TO_TOUCH).map(|n| {
+            let length = f64::from(n) * apart;
+            rate_and_value(&self.approach_within(&back, length, length).last)
+        });
+        let known = [rate_and_value(last)].into_iter().chain(before).collect::<Option<Vec<_>>>()?;
+        let value = at_zero(&known);
+        let change = (value - at_zero(&known[..known.len() - 1])).abs();
+        let ahead = (value - last.value) * last.tangent.rate.signum();
+        let error = change + self.least_error(last, self.blurs(base, last));
+        (change <= MAX_ERROR_SHARE * ahead).then_some(TouchAhead { value, error, event })
     }
 
     /// A bound of the distance in the parameter from the last orbit that was found to a touch, if
@@ -125,6 +173,18 @@ impl Curve<'_> {
             further.is_some_and(|it| count(&it) > count(&orbit.shots))
         })
     }
+}
+
+/// The value at zero of the polynomial through points (Neville's scheme).
+fn at_zero(points: &[(f64, f64)]) -> f64 {
+    let mut values: Vec<f64> = points.iter().map(|(_, value)| *value).collect();
+    for span in 1..points.len() {
+        for n in 0..points.len() - span {
+            let [near, far] = [points[n].0, points[n + span].0];
+            values[n] = (far * values[n] - near * values[n + 1]) / (far - near);
+        }
+    }
+    values[0]
 }
 
 fn count_events(shots: &OrbitShots, event: Guard) -> usize {

@@ -19,6 +19,15 @@ pub(super) struct Meaning {
     pub event: Guard,
 }
 
+impl Meaning {
+    /// That of the touch by which an orbit loses an event.
+    pub fn of_touch(event: Guard) -> Self {
+        let is_watched = event.is_watched;
+        let kind = if is_watched { BifurcationKind::EventLost } else { BifurcationKind::Grazing };
+        Self { kind, event }
+    }
+}
+
 /// The crossings of one side of a corner, near to it and far from it.
 pub(super) type Sides = (Vec<Crossing>, Vec<Crossing>);
 
@@ -89,9 +98,7 @@ impl Curve<'_> {
         });
         let (near, far) = same_events(near?, far?)?;
         let event = touched_event(&near, &far, &before.orbit.events, MIN_FALL_TO_TOUCH)?;
-        let is_watched = event.is_watched;
-        let kind = if is_watched { BifurcationKind::EventLost } else { BifurcationKind::Grazing };
-        Some(Meaning { kind, event })
+        Some(Meaning::of_touch(event))
     }
 
     /// An orbit so far before a corner that the fall of a rate towards it is seen: a short last
