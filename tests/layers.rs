@@ -153,6 +153,7 @@ const PACKAGES: [Package; 10] = [
         sources: "python/src",
         rooms: &[
             "failure",
+            "threads",
             "long_work",
             "arrays",
             "gradient",

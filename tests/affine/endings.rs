@@ -215,17 +215,17 @@ fn a_tie_and_a_successor_that_are_open_are_not_passed() {
     }
 }
 
-/// The impacts of a ball that counts them are not proved to accumulate: a run in f64 ends once 64
-/// of them come within the clock's last digit.
+/// The impacts of a ball whose count of them moves another state are not proved to accumulate: a
+/// run in f64 ends once 64 of them come within the clock's last digit.
 #[test]
 fn impacts_below_the_clocks_last_digit_make_no_progress() {
     let counting = "
 schema = 1
 name = \"counting\"
-states = [\"x\", \"v\", \"n\"]
+states = [\"x\", \"v\", \"n\", \"y\"]
 [[mode]]
 name = \"flight\"
-equations = [\"x' = v\", \"v' = -1\", \"n' = 0\"]
+equations = [\"x' = v\", \"v' = -1\", \"n' = 0\", \"y' = n\"]
 [[mode.until]]
 name = \"impact\"
 guard = \"x < 0\"
@@ -235,6 +235,7 @@ mode = \"flight\"
 x = 1
 v = 0
 n = 0
+y = 0
 ";
     let all = events::<f64>(&system(counting), 9.0);
     let end = all.last().unwrap();

@@ -79,8 +79,8 @@ impl Plane {
         self.columns as usize * self.rows as usize
     }
 
-    /// All starts, row by row from the lowest on, at a start but for the two states. `seen` hears of
-    /// no start before each row: who waits may end the work.
+    /// All starts, row by row from the lowest on, at a start but for the two states. `seen` hears
+    /// of no start before each row: who waits may end the work.
     pub(super) fn starts(
         &self,
         at: &PlaneStart<'_>,

@@ -290,7 +290,8 @@ impl<T: Number> Run<'_, T> {
 
 /// The bounds that hold from a state on, after an impact with the coefficient of restitution e that
 /// leaves the gap at this rate, and the tube in which they hold: the state is not known better than
-/// by `off`, and the last impact has changed it by `jump`. Idle states, given as bits, may go anywhere.
+/// by `off`, and the last impact has changed it by `jump`. Idle states, given as bits, may go
+/// anywhere.
 fn settled<T: Number>(
     legs: &[Leg<'_, T>; 2],
     z: &Vector<T>,
