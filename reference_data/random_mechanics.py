@@ -186,6 +186,32 @@ def pressed_mass(c: Chance) -> Draft:
     )  # fmt: skip
 
 
+def beside_impacts(c: Chance) -> Draft:
+    """What chatters until it sticks, with timers and counts of the impacts beside."""
+    draft = sticking(c)
+    hit = draft.modes[0]["events"][0]
+    kinds = ["since", "left", "hits", "worn", "gone"]
+    for name in [it for it in kinds if c.happens(0.4)] or [c.one_of(*kinds)]:
+        rates = {"since": "1", "left": "-2", "hits": "0", "worn": "1 - worn/4", "gone": "v"}
+        jumps = {
+            "since": "0", "left": "5", "hits": "hits + 1", "worn": "worn/3 + 1", "gone": "gone + 2"
+        }  # fmt: skip
+        draft.states = [*draft.states, name]
+        for one in draft.modes:
+            rate = rates[name] if one is draft.modes[0] else c.one_of("0", rates[name])
+            one["equations"] = [*one["equations"], f"{name}' = {rate}"]
+        hit["reset"].append(f"{name} = {jumps[name]}")
+        reset, follows = hit["limit"]
+        # A sum that the limit does not set ends the run there.
+        if name in ("since", "left") or c.happens(0.15):
+            reset = [*reset, *c.one_of([], [f"{name} = 1"])]
+        else:
+            reset = [*reset, f"{name} = {c.one_of('0', '1/3')}"]
+        hit["limit"] = (reset, follows)
+        draft.start |= {name: c.one_of(0, 1, 0.3)}
+    return draft
+
+
 def chains(c: Chance) -> Draft:
     """Two to four masses in a row on springs and dashpots, with a stop or knocking together."""
     n = c.count(2, 4)

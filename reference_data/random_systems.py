@@ -30,6 +30,7 @@ KINDS = {
     "on-guards": aimed.on_guards,
     "chattering": mechanics.chattering,
     "sticking": mechanics.sticking,
+    "beside-impacts": mechanics.beside_impacts,
     "chains": mechanics.chains,
     "stick-slip": mechanics.stick_slip,
     "relays": mechanics.relays,
