@@ -130,9 +130,14 @@ class Walker:
         )
         course.sample([t for t in at if t < course.span], at.get)
         if solved.status == 1:
-            t, place = next(it for it in sorted(states) if events[it[1]].ends)
+            ending = (it for it in sorted(states) if events[it[1]].ends)
+            t, place = next(ending, (np.nan, -1))
+            if place < 0:
+                raise _program.Failure("status is 1, and no event in t_events has a state")
             course.pass_event(t, place, states[t, place], switch)
             return place
+        if course.span not in at:
+            raise _program.Failure(f"no state at {course.span!r}, the end of the span")
         course.t, course.z = course.span, at[course.span]
         return None
 

@@ -40,7 +40,9 @@ WORK = {
 @pytest.mark.parametrize("name", WORK)
 def test_ctrl_c_ends_long_work(name):
     """Each of these would take minutes to hours."""
-    code = f"import numpy as np, percuss\nprint('begun', flush=True)\n{WORK[name]}"
+    # A job in the background inherits that it ignores the signal.
+    heard = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)"
+    code = f"{heard}\nimport numpy as np, percuss\nprint('begun', flush=True)\n{WORK[name]}"
     work = subprocess.Popen(
         [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )

@@ -235,3 +235,21 @@ def test_the_walk_is_that_of_the_programs(repository):
     program = repository / "validation/programs/python/percuss_program.py"
     own_module = repository / "python/percuss/_program.py"
     assert own_module.read_bytes() == program.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"y_events": lambda it: [np.empty((0, 4)) for _ in it.t_events]}, "no event in t_events"),
+        ({"t": lambda it: 0 * it.t, "status": lambda _: 0}, "the end of the span"),
+    ],
+)
+def test_what_a_result_lacks_is_the_reason(changes, why):
+    def solve(fun, t_span, y0, method="RK45", **options):
+        found = scipy_integrate.solve_ivp(fun, t_span, y0, method=method, **options)
+        for name, change in changes.items():
+            found[name] = change(found)
+        return found
+
+    rows = percuss.score(solve, rtol=1e-6, cases="small-b", name="own").rows
+    assert all(row["verdict"] == "error" and why in row["why"] for row in rows)
