@@ -14,7 +14,7 @@ macro_rules! system {
 }
 
 /// A mass that meets a spring with clearance.
-const BILINEAR: &str = r#"
+pub const BILINEAR: &str = r#"
 schema = 1
 name = "bilinear"
 states = ["x", "v"]

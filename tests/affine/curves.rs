@@ -1,6 +1,7 @@
 //! Curves of bifurcations in two parameters, held against closed forms, and against branches in one
 //! parameter at the other's value.
 
+use super::branches::BILINEAR;
 use percuss::affine::{Place, SectionMap, Solver, System, SystemError};
 use percuss::dynamics::continuation::BifurcationKind;
 use percuss::system::{
@@ -321,39 +322,13 @@ fn a_rigid_stop_is_touched_along_the_response() {
     assert!(places.into_iter().all(|[one, next]| one != next), "{:?}", graze.points);
 }
 
-/// An oscillator with an elastic stop at a clearance.
-const BILINEAR: &str = r#"
-    schema = 1
-    name = "bilinear"
-    states = ["x", "v"]
-    forcing = { omega = "w", phi = 0.3 }
-    parameters = { A = 1, w = 0.8, z = 0.05, k = 10, d = 0.5 }
-    [[mode]]
-    name = "free"
-    equations = ["x' = v", "v' = -x - 2*z*v + A*cos"]
-    [[mode.until]]
-    name = "touch"
-    guard = "x > d"
-    next = "contact"
-    [[mode]]
-    name = "contact"
-    equations = ["x' = v", "v' = -x - k*(x - d) - 2*z*v + A*cos"]
-    [[mode.until]]
-    name = "leave"
-    guard = "x < d"
-    next = "free"
-    [start]
-    mode = "free"
-    x = 0
-    v = 0
-"#;
-
 /// On this curve of flips the orbit leaves the stop at the strobe where w is 0.79426: the curve
 /// goes on, as that of a strobe far from it has it.
 #[test]
 fn a_curve_goes_on_past_an_event_at_the_strobe() {
-    let bilinear = |angle| Varied::new(BILINEAR, Section::strobe(angle), ["A", "w"], &[]);
-    let (own, beside) = (bilinear(0.0), bilinear(1.0));
+    let names = ["A", "frequency"];
+    let bilinear = |angle| Varied::new(BILINEAR, Section::strobe(angle), names, &[("k", 10.0)]);
+    let (own, beside) = (bilinear(0.3), bilinear(1.3));
     let [ends, window] = [[0.185, 0.193], [0.792, 0.8]];
     let guess = own.settled_return([ends[0], 0.8], None, 300);
     let branch = own.branch(&guess, 1, ends, 0.8);
@@ -378,7 +353,8 @@ fn a_curve_goes_on_past_an_event_at_the_strobe() {
 /// Beyond a fold the stability changes, and both points beside it may lie on one side of its value.
 #[test]
 fn a_fold_explains_the_change_of_stability_at_it() {
-    let bilinear = Varied::new(BILINEAR, Section::strobe(0.0), ["w", "A"], &[]);
+    let names = ["frequency", "A"];
+    let bilinear = Varied::new(BILINEAR, Section::strobe(0.3), names, &[("k", 10.0)]);
     let guess = bilinear.settled_return([0.365, 1.0], None, 300);
     let branch = bilinear.branch(&guess, 1, [0.365, 0.376], 1.0);
     let folds: Vec<_> =
