@@ -270,13 +270,16 @@ fn a_branch_ends_where_a_spike_becomes_a_touch() {
                 name = \"rest\"\nequations = [\"u' = -u/2 + I + cos/2\"]\n\
                 until = [{ name = \"spike\", guard = \"u > 1\", reset = [\"u = 0\"] }]\n\
                 [start]\nmode = \"rest\"\nu = 0.2\n";
-    for angle in [0.0, 1.0, 2.0, 3.0, 5.0] {
+    let ends = [0.9, 0.5].map(|to| (0.0, to));
+    let angles = [0.0, 1.0, 2.0, 3.0, 5.0].map(|angle| (angle, 0.3));
+    for (angle, to) in ends.into_iter().chain(angles) {
         let varied = Varied::new(text, Section::strobe(angle), "I", &[]);
-        let branch = varied.follow(&varied.settled_return(1.0, 300), 1, [1.0, 0.3]);
+        let branch = varied.follow(&varied.settled_return(1.0, 300), 1, [1.0, to]);
         only_bifurcation(&branch, BifurcationKind::Fold);
         let graze = only_bifurcation(&branch, BifurcationKind::Grazing);
         let apart = (graze.value - 0.975_507_101_985_535).abs();
-        assert!(apart <= graze.error && graze.error <= 1e-9, "{apart:e}, {:e}", graze.error);
+        // Of 54 sections and ranges the errors said are at most 1.1e-8, and those made 1e-10.
+        assert!(apart <= graze.error && graze.error <= 2e-8, "{apart:e}, {:e}", graze.error);
         assert_eq!(branch.ending, BranchEnding::Lost { value: graze.value });
         assert_eq!(graze.event.unwrap().name(&varied.at(1.0).unwrap()), "spike@rest");
     }

@@ -25,7 +25,9 @@ const STEPS_TO_TOUCH: [f64; 3] = [1e-10, 1e-8, 1e-6];
 const MAX_SHARE_TO_TOUCH: f64 = 4.0;
 
 /// The orbits through which a touch is extrapolated.
-const ORBITS_TO_TOUCH: u32 = 5;
+const ORBITS_TO_TOUCH: usize = 5;
+/// Those of the parabola that tells how far the extrapolation is to be trusted.
+const ORBITS_OF_PARABOLA: usize = 3;
 /// The share of its distance from the last orbit up to which the error of such a touch is accepted.
 const MAX_ERROR_SHARE: f64 = 0.1;
 
@@ -103,7 +105,7 @@ impl Curve<'_> {
     /// The closer the touch, the shorter is the step by which the next orbit is found. But along
     /// the curve the parameter is a smooth function of the event's rate, and is extrapolated to a
     /// rate of zero: through orbits that are as far apart as the touch is from the last one. They
-    /// are found from the base, whose direction is known better.
+    /// are found from the base on, each from the one before, whose direction is known better.
     pub(super) fn touch_ahead(&self, base: &CurvePoint, last: &CurvePoint) -> Option<TouchAhead> {
         if !is_near_touch(&last.shots) {
             return None;
@@ -117,17 +119,19 @@ impl Curve<'_> {
             let crossing = self.crossings(orbit.value, &orbit.shots)?.into_iter().nth(place)?;
             (crossing.guard == event).then_some((crossing.rate, orbit.value))
         };
-        let back = base.turned();
-        let before = (1..ORBITS_TO_TOUCH).map(|n| {
-            let length = f64::from(n) * apart;
-            rate_and_value(&self.approach_within(&back, length, length).last)
-        });
+        let further = |orbit: &CurvePoint| Some(self.approach_within(orbit, apart, apart).last);
+        let before = std::iter::successors(further(&base.turned()), further);
+        let before = before.take(ORBITS_TO_TOUCH - 1).map(|it| rate_and_value(&it));
         let known = [rate_and_value(last)].into_iter().chain(before).collect::<Option<Vec<_>>>()?;
-        let value = at_zero(&known);
-        let change = (value - at_zero(&known[..known.len() - 1])).abs();
+        let (rates, values): (Vec<f64>, Vec<f64>) = known.into_iter().unzip();
+        let value = value_at_zero(&rates, &values);
+        // The parabola is off by more than the polynomial: by what it leaves out, and by rounding,
+        // which is large where the rate is small.
+        let near = 0..ORBITS_OF_PARABOLA;
+        let unknown = (value - value_at_zero(&rates[near.clone()], &values[near])).abs();
         let ahead = (value - last.value) * last.tangent.rate.signum();
-        let error = change + self.least_error(last, self.blurs(base, last));
-        (change <= MAX_ERROR_SHARE * ahead).then_some(TouchAhead { value, error, event })
+        let error = unknown + self.least_error(last, self.blurs(base, last));
+        (unknown <= MAX_ERROR_SHARE * ahead).then_some(TouchAhead { value, error, event })
     }
 
     /// A bound of the distance in the parameter from the last orbit that was found to a touch, if
@@ -175,16 +179,13 @@ impl Curve<'_> {
     }
 }
 
-/// The value at zero of the polynomial through points (Neville's scheme).
-fn at_zero(points: &[(f64, f64)]) -> f64 {
-    let mut values: Vec<f64> = points.iter().map(|(_, value)| *value).collect();
-    for span in 1..points.len() {
-        for n in 0..points.len() - span {
-            let [near, far] = [points[n].0, points[n + span].0];
-            values[n] = (far * values[n] - near * values[n + 1]) / (far - near);
-        }
-    }
-    values[0]
+/// The value at zero of the polynomial that has these values at these arguments.
+fn value_at_zero(arguments: &[f64], values: &[f64]) -> f64 {
+    let weight = |own: &f64| -> f64 {
+        let others = arguments.iter().filter(|it| *it != own);
+        others.map(|it| it / (it - own)).product()
+    };
+    arguments.iter().zip(values).map(|(it, value)| weight(it) * value).sum()
 }
 
 fn count_events(shots: &OrbitShots, event: Guard) -> usize {
