@@ -81,13 +81,14 @@ def _known(path: str | None) -> _Known:
     except OSError as error:
         raise pytest.UsageError(f"--percuss-known={path}: {error.strerror}") from error
     known: _Known = {}
+    cases = _percuss.case_names()
     for number, line in enumerate(lines, 1):
         words = line.split(maxsplit=1)
         if not words or words[0].startswith("#"):
             continue
         case, _, tolerance = words[0].partition("@")
         place = f"--percuss-known={path}: line {number}: {words[0]}"
-        if case not in _percuss.case_names():
+        if case not in cases:
             raise pytest.UsageError(f"{place}: {case} is no case: percuss.case_names() has them")
         try:
             at = float(tolerance) if "@" in words[0] else None

@@ -110,8 +110,8 @@ fn a_count_that_the_limit_keeps_ends_the_run() {
     }
 }
 
-/// What depends on a count happens at its impact: with e = 1/2 the time left is proved to be below
-/// 2^-30 from about the thirtieth on.
+/// An event that depends on a count happens at its impact: with e = 1/2 the time left is proved to
+/// be below 2^-30 from about the thirtieth on.
 #[test]
 fn a_condition_that_counts_impacts_comes_before_their_limit() {
     let text = text(NUMBERS, LIMIT).replace("v > 0", "n < 81/2");

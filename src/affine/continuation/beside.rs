@@ -9,12 +9,11 @@ use super::traced::{Traced, Tracer};
 impl Tracer<'_> {
     /// The tracer at another strobe, if an event of the orbit at a place is near this one.
     pub(super) fn beside(&self, place: &Traced) -> Option<Self> {
-        let phases: Option<Vec<f64>> = self.plane.on_line(place.axis, place.at, |curve| {
-            let period = curve.family.at(place.point.value, |map| map.forcing_period())?;
-            let crossings = curve.crossings(place.point.value, &place.point.shots)?;
-            Some(crossings.iter().map(|it| (it.time / period).rem_euclid(1.0)).collect())
-        });
-        let plane = self.plane.turned(angle_beside(&phases?)?)?;
+        let crossings = self
+            .plane
+            .on_line(place.axis, place.at, |curve| curve.crossings_with_phases(&place.point))?;
+        let phases: Vec<f64> = crossings.iter().map(|(phase, _)| *phase).collect();
+        let plane = self.plane.turned(angle_beside(&phases)?)?;
         Some(Self { plane, sought: self.sought })
     }
 

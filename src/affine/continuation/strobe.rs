@@ -5,6 +5,7 @@
 //! its angle. So a branch on which an event that is touched, gained or lost comes near to the
 //! strobe is followed at another angle, and its orbits are shown at the one that was asked for.
 
+use super::super::returns::crossings::Crossing;
 use super::super::returns::section::Guard;
 use super::super::returns::shooting::{ReturnMap, Shots};
 use super::curve::Curve;
@@ -40,12 +41,20 @@ impl Curve<'_> {
     ) -> Option<f64> {
         let sides = [corner.beyond.as_ref(), Some(&corner.before), Some(base)];
         sides.into_iter().flatten().find_map(|side| {
-            let period = self.family.at(side.value, |map| map.forcing_period())?;
-            let crossings = self.crossings(side.value, &side.shots)?;
-            let slowest = crossings.iter().filter(|it| it.guard == event);
-            let slowest = slowest.min_by(|a, b| a.rate.abs().total_cmp(&b.rate.abs()))?;
-            Some((slowest.time / period).rem_euclid(1.0))
+            let crossings = self.crossings_with_phases(side)?;
+            let own = crossings.iter().filter(|(_, it)| it.guard == event);
+            let slowest = own.min_by(|(_, a), (_, b)| a.rate.abs().total_cmp(&b.rate.abs()))?;
+            Some(slowest.0)
         })
+    }
+
+    /// The events of an orbit, each with its time since the strobe before it, in forcing periods
+    /// from 0 to 1.
+    pub(super) fn crossings_with_phases(&self, orbit: &CurvePoint) -> Option<Vec<(f64, Crossing)>> {
+        let period = self.family.at(orbit.value, |map| map.forcing_period())?;
+        let phase = |it: &Crossing| (it.time / period).rem_euclid(1.0);
+        let crossings = self.crossings(orbit.value, &orbit.shots)?;
+        Some(crossings.into_iter().map(|it| (phase(&it), it)).collect())
     }
 
     /// A point of this curve as one of that by which it is shown; itself where there is none.

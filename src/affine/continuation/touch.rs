@@ -110,10 +110,7 @@ impl Curve<'_> {
         if !is_near_touch(&last.shots) {
             return None;
         }
-        let far = self.point_before(base);
-        let expected = self.expected_touch(&far, last);
-        let Expected { share, event, place, .. } =
-            expected.filter(|it| it.share <= MAX_SHARE_TO_TOUCH)?;
+        let (far, Expected { share, event, place, .. }) = self.near_touch(base, last)?;
         let apart = share * self.distance_along(last, far.value, &far.shots)?.abs();
         let rate_and_value = |orbit: &CurvePoint| {
             let crossing = self.crossings(orbit.value, &orbit.shots)?.into_iter().nth(place)?;
@@ -134,13 +131,18 @@ impl Curve<'_> {
         (unknown <= MAX_ERROR_SHARE * ahead).then_some(TouchAhead { value, error, event })
     }
 
+    /// An orbit before the last one that was found, and the touch that both expect near to it.
+    fn near_touch(&self, base: &CurvePoint, last: &CurvePoint) -> Option<(CurvePoint, Expected)> {
+        let far = self.point_before(base);
+        let expected = self.expected_touch(&far, last)?;
+        (expected.share <= MAX_SHARE_TO_TOUCH).then_some((far, expected))
+    }
+
     /// A bound of the distance in the parameter from the last orbit that was found to a touch, if
     /// an event becomes so slow towards it; zero otherwise. The square of the event's rate falls in
     /// proportion to that distance; twice what follows leaves room for higher orders.
     pub(super) fn distance_to_touch(&self, base: &CurvePoint, last: &CurvePoint) -> f64 {
-        let far = self.point_before(base);
-        let expected = self.expected_touch(&far, last).filter(|it| it.share <= MAX_SHARE_TO_TOUCH);
-        expected.map_or(0.0, |it| {
+        self.near_touch(base, last).map_or(0.0, |(far, it)| {
             let slowed = 1.0 + 1.0 / it.share;
             2.0 * (last.value - far.value).abs() / (slowed * slowed - 1.0)
         })

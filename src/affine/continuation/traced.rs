@@ -102,7 +102,7 @@ struct Here<'a> {
 }
 
 impl<'a> Here<'a> {
-    /// The same at another strobe, if an event is near that of the tracer.
+    /// This place as a tracer at another strobe sees it, if an event is near that of the tracer.
     fn at_another_strobe(&self, tracer: &Tracer<'a>) -> Option<Self> {
         let beside = tracer.beside(&self.from)?;
         let seen = |place: &Traced| beside.seen(tracer, place);

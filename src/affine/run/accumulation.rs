@@ -38,7 +38,7 @@ pub(super) struct Impact<'a, T: Number> {
     pub errors_before: &'a Vector<T::Bound>,
     /// The turn by which impacts come back to their mode; none where they stay in it.
     pub turn: Option<Turn>,
-    /// What it and those that follow change.
+    /// The changes by this impact and by those that follow.
     pub impacts: Impacts,
 }
 

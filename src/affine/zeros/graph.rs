@@ -68,7 +68,7 @@ pub struct Arrival {
     /// For each successor: the order of its condition's first derivative that is not a structural
     /// zero; none if there is none, or no condition.
     pub orders: Arc<[Option<usize>]>,
-    /// What the event and those that follow it change, if it is an impact.
+    /// The changes by the event and by those that follow it, if it is an impact.
     pub impacts: Option<Impacts>,
     /// Whether the event leaves its guard and the rate of that at zero.
     pub rests: bool,

@@ -9,7 +9,7 @@ use super::mode_residues::ModeResidues;
 use super::residue::{Residue, Residues, row_times};
 use super::space::ZeroSpace;
 
-/// What impacts that follow one another change.
+/// The changes by impacts that follow one another.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Impacts {
     /// The states that have the same value after each of them, as bits.
