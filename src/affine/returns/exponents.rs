@@ -180,7 +180,7 @@ impl<'a> Frame<'a> {
     /// Carries the frame from one event to the next one.
     fn pass(&mut self, from: &Event<f64>, to: &Event<f64>) {
         if is_at_once(from, to) {
-            return self.variation.reset(self.solver, to);
+            return self.variation.reset_at_once(self.solver, from, to);
         }
         if matches!(to.what, What::Limit(..)) {
             return self.variation.pass(self.solver, from, to);

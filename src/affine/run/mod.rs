@@ -7,8 +7,8 @@
 //! carries the errors along in a run that follows them. [`horizon`] has the errors at a time that
 //! is given, and [`given_up`] the motion that is known where such a run is not decided. [`follow`]
 //! continues the records of a run that someone else has made, [`place`] is where a run may be cut
-//! and go on with another state, [`variation`] carries small changes of the state along, and
-//! [`variation_at_limit`] does so across limits. Read this file first, then `crossed` and
+//! and go on with another state, [`variation`] carries small changes of the state along,
+//! [`variation_at_limit`] does so across limits, and [`parameter`] has what a parameter adds. Read this file first, then `crossed` and
 //! `transition`.
 
 mod accumulation;
@@ -23,6 +23,7 @@ mod given_up;
 mod horizon;
 mod limit;
 mod origins;
+pub mod parameter;
 pub mod place;
 mod reduction;
 mod repeated;

@@ -39,5 +39,12 @@ impl RepeatedImpact {
 #[derive(Clone, Debug)]
 pub struct SinceImpact<T> {
     pub impacts: RepeatedImpact,
-    pub gained: Vec<Vector<T>>,
+    pub gained: Gained<T>,
+}
+
+/// What the state and its changes have gained since an impact.
+#[derive(Clone, Debug)]
+pub struct Gained<T> {
+    pub state: Vector<T>,
+    pub columns: Vec<Vector<T>>,
 }

@@ -109,14 +109,26 @@ pub(super) fn gain<T: Number>(
     elapsed: T,
 ) -> Vector<T> {
     let mut term = *z;
+    series(elapsed, 1, |factor| {
+        term = solver.rates_of(mode, &term).map(|it| it * factor);
+        term
+    })
+}
+
+/// The sum of terms, at least so many, each of which follows from the one before and the time over
+/// its number.
+pub(super) fn series<T: Number>(
+    elapsed: T,
+    at_least: usize,
+    mut next: impl FnMut(T) -> Vector<T>,
+) -> Vector<T> {
     let mut all = [T::zero(); LARGEST_DIMENSION];
     for n in 1..=2 * T::TERMS {
-        let factor = elapsed / T::exact(n as f64);
-        term = solver.rates_of(mode, &term).map(|it| it * factor);
+        let term = next(elapsed / T::exact(n as f64));
         all = sum(&all, &term, T::one());
         let is_rounding =
             |(term, all): (&T, &T)| term.bound().abs() <= all.bound().abs() * T::unit();
-        if term.iter().zip(&all).all(is_rounding) {
+        if n >= at_least && term.iter().zip(&all).all(is_rounding) {
             break;
         }
     }

@@ -10,7 +10,9 @@
 //! The forcing angle has no change of its own at a fixed time, and so the entries of cos theta, sin
 //! theta and 1 stay zero there.
 
+use super::parameter::CoefficientRates;
 use super::repeated::SinceImpact;
+use super::series::sum;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::{Vector, add_product, dot};
 use crate::affine::closed_form::propagator::Propagator;
@@ -18,6 +20,7 @@ use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::Solver;
 use crate::affine::solver::event::{Event, What};
 use crate::numeric::number::Number;
+use std::sync::Arc;
 
 /// Changes of the state along a run, as columns.
 #[derive(Clone, Debug)]
@@ -28,13 +31,43 @@ pub struct Variation<T> {
     pub delays: Option<Vec<T>>,
     /// What the changes have gained since an impact, where they are at a turn after it.
     pub(super) since_impact: Option<SinceImpact<T>>,
+    /// The parameter by which the last column is a change, if one is: that of a unit of it.
+    pub(super) parameter: Option<Arc<CoefficientRates<T>>>,
 }
+
+/// A column of changes, with the derivatives of the coefficients if it is that of a parameter.
+pub(super) type Varied<'a, T> = (&'a mut Vector<T>, Option<&'a CoefficientRates<T>>);
 
 impl<T: Number> Variation<T> {
     /// Changes at a fixed time.
     #[must_use]
     pub fn at_fixed_time(columns: Vec<Vector<T>>) -> Self {
-        Self { columns, delays: None, since_impact: None }
+        Self { columns, delays: None, since_impact: None, parameter: None }
+    }
+
+    /// The change by a parameter of a motion that begins with a state z at a fixed angle of the
+    /// forcing, at this time.
+    #[must_use]
+    pub fn by_parameter(
+        solver: &Solver<T>,
+        rates: Arc<CoefficientRates<T>>,
+        time: &Time<T>,
+    ) -> Self {
+        let (mut column, mut delay) = ([T::zero(); LARGEST_DIMENSION], T::zero());
+        if let Some(clock) = solver.phase() {
+            let (sin, cos) = solver.sin_cos(time);
+            (column[clock], column[clock + 1]) = (-sin * rates.phi, cos * rates.phi);
+            delay = solver.delay_at_fixed_angle(&rates, time.value());
+        }
+        let parameter = Some(rates);
+        Self { columns: vec![column], delays: Some(vec![delay]), since_impact: None, parameter }
+    }
+
+    /// Each column, with the derivatives of the coefficients where it is that of a parameter.
+    pub(super) fn varied(&mut self) -> impl Iterator<Item = Varied<'_, T>> {
+        let (last, rates) = (self.columns.len().checked_sub(1), self.parameter.as_deref());
+        let own = move |n| rates.filter(|_| Some(n) == last);
+        self.columns.iter_mut().enumerate().map(move |(n, it)| (it, own(n)))
     }
 
     /// A change of each state alone.
@@ -56,10 +89,12 @@ impl<T: Number> Variation<T> {
         let Some(delays) = self.delays.take() else { return };
         let rates = solver.rates_of(at.mode, z);
         let states = at.state.len();
-        for (column, delay) in self.columns.iter_mut().zip(delays) {
+        for ((column, parameter), delay) in self.varied().zip(delays) {
             column.iter_mut().zip(&rates).for_each(|(it, rate)| *it = *it - *rate * delay);
-            // The angle is that of the time, which is fixed.
-            column[states..].fill(T::zero());
+            if parameter.is_none() {
+                // The angle is that of the time, which is fixed.
+                column[states..].fill(T::zero());
+            }
         }
     }
 
@@ -81,8 +116,11 @@ impl<T: Number> Variation<T> {
             What::Watch(mode, index) => (mode, solver.system.modes[mode].until.len() + index),
             What::Start | What::Limit(..) | What::End(_) => return,
         };
-        self.delay(solver, mode, guard, &before());
-        self.reset(solver, to);
+        let z = before();
+        self.delay(solver, mode, guard, &z);
+        if let What::Until(mode, until) = to.what {
+            self.reset_by(solver, mode, until, &z);
+        }
     }
 
     /// Delays changes to the crossing of a guard, at which the state z is given.
@@ -92,24 +130,36 @@ impl<T: Number> Variation<T> {
         let dimension = own.flow.dimension;
         let rates = solver.rates_of(mode, z);
         let slope = dot(row, &rates, dimension);
-        let delayed = |column: &mut Vector<T>| {
-            let delay = -dot(row, column, dimension) / slope;
+        let delayed = |(column, parameter): Varied<'_, T>| {
+            let own = parameter.map_or_else(T::zero, |it| it.guard(mode, guard, z));
+            let delay = -(dot(row, column, dimension) + own) / slope;
             column.iter_mut().zip(&rates).for_each(|(it, rate)| *it = *it + *rate * delay);
             delay
         };
-        self.delays = Some(self.columns.iter_mut().map(delayed).collect());
+        self.delays = Some(self.varied().map(delayed).collect());
     }
 
-    /// Resets changes as an `until` resets the state.
-    pub fn reset(&mut self, solver: &Solver<T>, event: &Event<T>) {
-        if let What::Until(mode, until) = event.what {
-            self.reset_by(solver, mode, until);
+    /// Resets changes as an event that fires at once resets the state of the one before.
+    pub fn reset_at_once(&mut self, solver: &Solver<T>, from: &Event<T>, to: &Event<T>) {
+        if let What::Until(mode, until) = to.what {
+            self.reset_by(solver, mode, until, &solver.complete(&from.state, &from.time));
         }
     }
 
-    /// Resets changes as the reset of this number of a mode resets the state.
-    pub(super) fn reset_by(&mut self, solver: &Solver<T>, mode: usize, number: usize) {
-        self.columns.iter_mut().for_each(|it| solver.reset(mode, number, it));
+    /// Resets changes as the reset of this number of a mode resets a state z.
+    pub(super) fn reset_by(
+        &mut self,
+        solver: &Solver<T>,
+        mode: usize,
+        number: usize,
+        z: &Vector<T>,
+    ) {
+        for (column, parameter) in self.varied() {
+            solver.reset(mode, number, column);
+            if let Some(rates) = parameter {
+                *column = sum(column, &rates.reset(mode, number, z), T::one());
+            }
+        }
     }
 }
 
@@ -120,6 +170,17 @@ pub fn is_at_once<T: Number>(from: &Event<T>, to: &Event<T>) -> bool {
 }
 
 impl<T: Number> Solver<T> {
+    /// The delay by a parameter of the instant, at this time, of a fixed angle of the forcing's
+    /// omega t.
+    pub(in crate::affine) fn delay_at_fixed_angle(
+        &self,
+        rates: &CoefficientRates<T>,
+        time: T,
+    ) -> T {
+        let omega = self.system.forcing.as_ref().map(|it| T::exact(it.omega.to_f64()));
+        omega.map_or_else(T::zero, |omega| -time * rates.omega / omega)
+    }
+
     /// The rates M z of a state in a mode.
     pub(in crate::affine) fn rates(&self, mode: usize, time: &Time<T>, state: &[T]) -> Vector<T> {
         self.rates_of(mode, &self.complete(state, time))

@@ -15,9 +15,10 @@
 //! of an impact of unit speed times the change of that sum. What is left out is of the order of the
 //! time to the limit, beside the unit of time: impacts go on until that is a rounding.
 
-use super::repeated::{RepeatedImpact, SinceImpact};
+use super::parameter::{CoefficientRates, gain_by_parameter};
+use super::repeated::{Gained, RepeatedImpact, SinceImpact};
 use super::series::{MAX_SERIES_ARGUMENT, gain, landing, short_root, sum};
-use super::variation::{Variation, is_at_once};
+use super::variation::{Variation, Varied, is_at_once};
 use crate::affine::arithmetic::vector::{Vector, dot};
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::affine::solver::Solver;
@@ -41,7 +42,7 @@ impl<T: Number> Variation<T> {
     /// Carries the changes from one event of a run to the next one, or to the horizon.
     pub fn pass(&mut self, solver: &Solver<T>, from: &Event<T>, to: &Event<T>) {
         if is_at_once(from, to) {
-            return self.reset(solver, to);
+            return self.reset_at_once(solver, from, to);
         }
         if matches!(to.what, What::Limit(..)) {
             return self.pass_limit(solver, from, to);
@@ -54,6 +55,11 @@ impl<T: Number> Variation<T> {
         self.settle_at(solver, from, &state);
         let motion = solver.modes[from.mode].flow.propagator(elapsed);
         self.flow(&motion);
+        for (column, parameter) in self.varied() {
+            if let Some(rates) = parameter {
+                *column = sum(column, &rates.added(solver, from.mode, &state, elapsed), T::one());
+            }
+        }
         self.arrive(solver, to, || motion.after(&state));
     }
 
@@ -86,34 +92,43 @@ impl<T: Number> Variation<T> {
         }
         let Some(turn) = impacts.turn(solver, to) else { return false };
         let (row, mut gained) = (&solver.modes[impacts.after].rows[turn], self.nothing_gained());
-        self.turn(solver, impacts, row, state, elapsed, &mut gained);
+        let of_row =
+            |rates: &CoefficientRates<T>, z: &Vector<T>| rates.guard(impacts.after, turn, z);
+        self.turn(solver, impacts, (row, &of_row), state, elapsed, &mut gained);
         self.since_impact = Some(SinceImpact { impacts, gained });
         true
     }
 
-    fn nothing_gained(&self) -> Vec<Vector<T>> {
-        vec![[T::zero(); LARGEST_DIMENSION]; self.columns.len()]
+    fn nothing_gained(&self) -> Gained<T> {
+        let nothing = [T::zero(); LARGEST_DIMENSION];
+        Gained { state: nothing, columns: vec![nothing; self.columns.len()] }
     }
 
-    /// Carries changes from an impact to the zero of a row, which turns the motion back; returns
-    /// what the state has gained.
+    /// Carries changes from an impact to the zero of a row, which turns the motion back; `of_row`
+    /// is the value at a state of the row's derivative by a parameter.
     fn turn(
         &mut self,
         solver: &Solver<T>,
         impacts: RepeatedImpact,
-        row: &Vector<T>,
+        (row, of_row): (&Vector<T>, &dyn Fn(&CoefficientRates<T>, &Vector<T>) -> T),
         state: &Vector<T>,
         elapsed: T,
-        gained: &mut [Vector<T>],
-    ) -> Vector<T> {
+        gained: &mut Gained<T>,
+    ) {
         let dimension = solver.modes[impacts.after].flow.dimension;
         let own = gain(solver, impacts.after, state, elapsed);
-        let rates = solver.rates_of(impacts.after, &sum(state, &own, T::one()));
-        let slope = dot(row, &rates, dimension);
-        self.leg(solver, impacts.after, elapsed, &rates, gained, |column, _| {
-            -dot(row, column, dimension) / slope
-        });
-        own
+        let there = sum(state, &own, T::one());
+        let slope = dot(row, &solver.rates_of(impacts.after, &there), dimension);
+        self.leg(
+            solver,
+            impacts.after,
+            (state, elapsed, &own),
+            gained,
+            |(column, parameter), _| {
+                let own = parameter.map_or_else(T::zero, |it| of_row(it, &there));
+                -(dot(row, column, dimension) + own) / slope
+            },
+        );
     }
 
     /// Carries changes along a mode to the next impact, and across it.
@@ -123,41 +138,59 @@ impl<T: Number> Variation<T> {
         impacts: RepeatedImpact,
         state: &Vector<T>,
         elapsed: T,
-        gained: &mut [Vector<T>],
+        gained: &mut Gained<T>,
     ) -> Impact<T> {
         let own = &solver.modes[impacts.mode];
         let (row, dimension) = (&own.rows[impacts.until], own.flow.dimension);
-        let before = sum(state, &gain(solver, impacts.mode, state, elapsed), T::one());
-        let rates = solver.rates_of(impacts.mode, &before);
-        let arrival = dot(row, &rates, dimension);
-        self.leg(solver, impacts.mode, elapsed, &rates, gained, |_, gained| {
-            -dot(row, gained, dimension) / arrival
-        });
-        self.reset_by(solver, impacts.mode, impacts.until);
+        let own_gain = gain(solver, impacts.mode, state, elapsed);
+        let before = sum(state, &own_gain, T::one());
+        let arrival = dot(row, &solver.rates_of(impacts.mode, &before), dimension);
+        let since_impact = sum(&gained.state, &own_gain, T::one());
+        self.leg(
+            solver,
+            impacts.mode,
+            (state, elapsed, &own_gain),
+            gained,
+            |(_, parameter), gained| {
+                let guard =
+                    |it: &CoefficientRates<T>| it.guard(impacts.mode, impacts.until, &since_impact);
+                let own = parameter.map_or_else(T::zero, guard);
+                -(dot(row, gained, dimension) + own) / arrival
+            },
+        );
+        self.reset_by(solver, impacts.mode, impacts.until, &before);
         let mut after = before;
         solver.reset(impacts.mode, impacts.until, &mut after);
         Impact { state: after, jump: sum(&after, &before, -T::one()), arrival }
     }
 
-    /// Carries changes along a mode to an event at which the state has these rates. Its delay
-    /// follows from a change there and from what that has gained since the impact.
+    /// Carries changes along a mode from a state on, which gains this in a time, to an event. Its
+    /// delay follows from a change there and from what that has gained since the impact.
     fn leg(
         &mut self,
         solver: &Solver<T>,
         mode: usize,
-        elapsed: T,
-        rates: &Vector<T>,
-        gained: &mut [Vector<T>],
-        delay: impl Fn(&Vector<T>, &Vector<T>) -> T,
+        (state, elapsed, own): (&Vector<T>, T, &Vector<T>),
+        gained: &mut Gained<T>,
+        delay: impl Fn(Varied<'_, T>, &Vector<T>) -> T,
     ) {
-        let delays = self.delays.iter_mut().flatten();
-        for ((column, all), total) in self.columns.iter_mut().zip(gained).zip(delays) {
-            let own = gain(solver, mode, column, elapsed);
+        let rates = solver.rates_of(mode, &sum(state, own, T::one()));
+        gained.state = sum(&gained.state, own, T::one());
+        let mut delays = self.delays.take();
+        let totals = delays.iter_mut().flatten();
+        for (((column, parameter), all), total) in
+            self.varied().zip(&mut gained.columns).zip(totals)
+        {
+            let own = match parameter {
+                Some(by) => gain_by_parameter(solver, by, mode, (column, state), elapsed),
+                None => gain(solver, mode, column, elapsed),
+            };
             (*column, *all) = (sum(column, &own, T::one()), sum(all, &own, T::one()));
-            let later = delay(column, all);
-            (*column, *all) = (sum(column, rates, later), sum(all, rates, later));
+            let later = delay((column, parameter), all);
+            (*column, *all) = (sum(column, &rates, later), sum(all, &rates, later));
             *total = *total + later;
         }
+        self.delays = delays;
     }
 
     /// Carries changes from the last impact of a run before a limit to that, and across it. Where
@@ -170,31 +203,42 @@ impl<T: Number> Variation<T> {
         let impacts =
             RepeatedImpact::of(solver, from).filter(|it| (it.mode, it.until) == (mode, until));
         let state = solver.complete(&from.state, &from.time);
-        let is_carried = self.delays.is_some()
-            && (is_at_once || impacts.is_some_and(|it| self.approach(solver, it, state).is_some()));
-        if !is_carried {
+        let last = if is_at_once {
+            Some(state)
+        } else {
+            impacts.and_then(|it| self.approach(solver, it, state))
+        };
+        let last = last.filter(|_| self.delays.is_some()).unwrap_or_else(|| {
             let none = T::zero() / T::zero();
             self.columns.iter_mut().for_each(|it| *it = [none; LARGEST_DIMENSION]);
             self.delays = Some(vec![none; self.columns.len()]);
-        }
-        self.keep_on_guard(solver, mode, until);
-        self.reset_by(solver, mode, exit);
+            state
+        });
+        self.keep_on_guard(solver, mode, until, &last);
+        self.reset_by(solver, mode, exit, &last);
     }
 
     /// Takes away what rounding has made of the changes of a guard and of its rate, which are zero
-    /// at a limit: by the states alone, since the time has its own changes.
-    fn keep_on_guard(&mut self, solver: &Solver<T>, mode: usize, until: usize) {
+    /// at a limit: by the states alone, since the time has its own changes. The state there is
+    /// given, as is that at an impact so near to it that the rest is rounding.
+    fn keep_on_guard(&mut self, solver: &Solver<T>, mode: usize, until: usize, z: &Vector<T>) {
         let states = solver.system.states.len();
         let guard = solver.modes[mode].rows[until];
         let rate = solver.rate_row(mode, &guard);
         let share = dot(&rate, &guard, states) / dot(&guard, &guard, states);
-        for row in [guard, sum(&rate, &guard, -share)] {
-            let square = dot(&row, &row, states);
+        let of_guard = |it: &CoefficientRates<T>| it.guard(mode, until, z);
+        let of_rate = |it: &CoefficientRates<T>| {
+            it.guard_rate(solver, (mode, until), mode, z) - share * of_guard(it)
+        };
+        let of_rows: [&dyn Fn(&CoefficientRates<T>) -> T; 2] = [&of_guard, &of_rate];
+        for (row, of_row) in [guard, sum(&rate, &guard, -share)].iter().zip(of_rows) {
+            let square = dot(row, row, states);
             // A guard of the forcing alone has no states; a comparison with NaN is false.
             if square > T::zero() {
-                for column in &mut self.columns {
-                    let factor = dot(&row, column, solver.system.dimension()) / square;
-                    column[..states].iter_mut().zip(&row).for_each(|(it, own)| {
+                for (column, parameter) in self.varied() {
+                    let own = parameter.map_or_else(T::zero, of_row);
+                    let factor = (dot(row, column, solver.system.dimension()) + own) / square;
+                    column[..states].iter_mut().zip(row).for_each(|(it, own)| {
                         *it = *it - factor * *own;
                     });
                 }
@@ -202,15 +246,20 @@ impl<T: Number> Variation<T> {
         }
     }
 
-    /// Carries changes from an impact to the limit.
+    /// Carries changes from an impact to the limit. Returns the state after the last impact on the
+    /// way.
     fn approach(
         &mut self,
         solver: &Solver<T>,
         impacts: RepeatedImpact,
         mut state: Vector<T>,
-    ) -> Option<()> {
+    ) -> Option<Vector<T>> {
+        self.delays.as_ref()?;
         let row = &solver.modes[impacts.mode].rows[impacts.until];
         let along = |it: &Vector<T>| dot(row, it, solver.system.dimension());
+        let of_rate = |it: &CoefficientRates<T>, z: &Vector<T>| {
+            it.guard_rate(solver, (impacts.mode, impacts.until), impacts.after, z)
+        };
         let one = T::one();
         let scale = T::Bound::from_f64(solver.system.time_scale);
         let enough = T::unit() * ROUNDINGS_LEFT * scale.to_f64();
@@ -234,15 +283,17 @@ impl<T: Number> Variation<T> {
             if (speed * (way_back + way_on)).bound() > enough {
                 continue;
             }
-            let delays = self.delays.iter_mut().flatten();
-            for (column, delay) in self.columns.iter_mut().zip(delays) {
-                let more = -along(&solver.rates_of(impacts.after, column));
+            let mut delays = self.delays.take();
+            for ((column, parameter), delay) in self.varied().zip(delays.iter_mut().flatten()) {
+                let own = parameter.map_or_else(T::zero, |it| of_rate(it, &state));
+                let more = -(along(&solver.rates_of(impacts.after, column)) + own);
                 *column = sum(column, &back, more * way_back);
                 *column = sum(column, &on, more * way_on);
                 *column = sum(column, &jump, more * faster * share / arrival);
                 *delay = *delay + more * (way_back + way_on);
             }
-            return Some(());
+            self.delays = delays;
+            return Some(state);
         }
         None
     }
@@ -255,14 +306,18 @@ impl<T: Number> Variation<T> {
         state: &Vector<T>,
     ) -> Option<Impact<T>> {
         let row = &solver.modes[impacts.mode].rows[impacts.until];
-        let mut gained = self.nothing_gained();
+        let (guard, mut gained) = ((impacts.mode, impacts.until), self.nothing_gained());
         if impacts.after == impacts.mode {
             let elapsed = next_impact(solver, impacts, state)?;
             return Some(self.land(solver, impacts, state, elapsed, &mut gained));
         }
         let rate = solver.rate_row(impacts.after, row);
         let elapsed = time_to_turn(solver, impacts.after, row, state)?;
-        let own = self.turn(solver, impacts, &rate, state, elapsed, &mut gained);
+        let of_rate = |it: &CoefficientRates<T>, z: &Vector<T>| {
+            it.guard_rate(solver, guard, impacts.after, z)
+        };
+        self.turn(solver, impacts, (&rate, &of_rate), state, elapsed, &mut gained);
+        let own = gained.state;
         let (gap, here) = (dot(row, &own, solver.system.dimension()), sum(state, &own, T::one()));
         let elapsed = landing(solver, impacts.mode, row, gap, &here)?;
         Some(self.land(solver, impacts, &here, elapsed, &mut gained))
