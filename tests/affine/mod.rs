@@ -6,6 +6,7 @@ mod branches;
 mod brute;
 mod built;
 mod by_hand;
+mod by_parameter;
 mod close_rates;
 mod curves;
 mod decided;

@@ -94,7 +94,12 @@ fn check(text: &str, section: &Section, skips: &[usize]) {
 }
 
 /// The changes of a passage's state and time for a change of the place's.
-fn changes_along(passage: &Passage<f64>, change: &[f64], delay: f64, rates: &[f64]) -> Vec<f64> {
+pub fn changes_along(
+    passage: &Passage<f64>,
+    change: &[f64],
+    delay: f64,
+    rates: &[f64],
+) -> Vec<f64> {
     let fixed: Vec<f64> = change.iter().zip(rates).map(|(it, rate)| it - rate * delay).collect();
     let sum = |entry: &dyn Fn(usize) -> f64| {
         fixed.iter().enumerate().map(|(j, it)| it * entry(j)).sum::<f64>()

@@ -70,7 +70,7 @@ impl Curve<'_> {
             return None;
         }
         let error = self.error(&located);
-        Some(OnLine { point: self.refreshed(located.point), error })
+        Some(OnLine { point: located.point, error })
     }
 
     /// The end of the piece on which a point lies, if it is the corner that is sought.

@@ -209,7 +209,7 @@ impl Curve<'_> {
         let value = before.value + step * before.tangent.rate;
         let mut bases = Vec::new();
         for probe in self.probes(before, step) {
-            let slopes = self.family.slopes(value, &probe, self.unit.min(1.0));
+            let slopes = self.family.slopes(value, &probe);
             let tangent = self.tangent(&probe, &slopes, &before.tangent);
             let base =
                 self.on_piece_of(&probe, CurvePoint { slopes, tangent, ..before.clone() }, step);
@@ -241,7 +241,7 @@ impl Curve<'_> {
                 break;
             }
             let value = base.value + step * base.tangent.rate;
-            base.slopes = self.family.slopes(value, &shots, self.unit.min(1.0));
+            base.slopes = self.family.slopes(value, &shots);
             let tangent = self.tangent(&shots, &base.slopes, &base.tangent);
             let is_back = self.product(&tangent, &base.tangent, &base.shots) < 0.0;
             base.tangent = if is_back { tangent.turned() } else { tangent };

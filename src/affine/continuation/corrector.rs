@@ -1,12 +1,10 @@
-//! The corrector: the orbit a step along the curve's tangent, by Newton's method, and the
-//! parameter's derivative as its steps show it.
+//! The corrector: the orbit a step along the curve's tangent, by Newton's method.
 
 use super::super::returns::shooting::{Change, MAX_COORDINATES, ReturnMap, Shots};
-use super::super::run::place::Place;
 use super::curve::{BORDERED_DIMENSION, Curve, spread_changes, sum};
 use super::family::OrbitShots;
-use super::point::{CurvePoint, Direction, are_on_one_piece};
-use crate::dynamics::linear::{apply, solve};
+use super::point::{CurvePoint, Direction};
+use crate::dynamics::linear::solve;
 
 /// Newton's iterations of a corrector: more, and the step was too long.
 const ITERATIONS: usize = 10;
@@ -19,12 +17,8 @@ const MIN_STEEP_RATE: f64 = 0.3;
 const MIN_ALONG_STEP: f64 = 0.5;
 const MAX_LENGTH_OF_STEP: f64 = 2.0;
 
-/// The least change of the parameter, in units, from which its derivative is learned.
-const MIN_PARAMETER_CHANGE: f64 = 1e-6;
-
 impl Curve<'_> {
-    /// The orbit at a distance along the tangent of `base`, with the parameter's derivative as the
-    /// corrector learned it.
+    /// The orbit at a distance along the tangent of `base`.
     pub fn corrected_point(&self, base: &CurvePoint, distance: f64) -> Option<CurvePoint> {
         let is_steep = (base.tangent.rate / self.unit).abs() >= MIN_STEEP_RATE;
         let at_value = is_steep.then(|| self.corrected(base, distance, true)).flatten();
@@ -49,8 +43,7 @@ impl Curve<'_> {
     fn corrected(&self, base: &CurvePoint, distance: f64, holds_value: bool) -> Option<CurvePoint> {
         let mut value = base.value + distance * base.tangent.rate;
         let mut shots = self.shifted(base, &base.tangent, distance)?;
-        let mut slopes = base.slopes.clone();
-        let mut best: Option<(f64, OrbitShots, Vec<Change>)> = None;
+        let mut best: Option<(f64, OrbitShots)> = None;
         for _ in 0..ITERATIONS {
             let left = match holds_value {
                 true => 0.0,
@@ -59,10 +52,14 @@ impl Curve<'_> {
             let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
             let closed = in_place && shots.is_closed();
             match &best {
-                Some((_, before, _)) if !closed || shots.residual >= before.residual => break,
+                Some((_, before)) if !closed || shots.residual >= before.residual => break,
                 None if !closed => {}
-                _ => best = Some((value, shots.clone(), slopes.clone())),
+                _ => best = Some((value, shots.clone())),
             }
+            let slopes = match holds_value {
+                true => base.slopes.clone(),
+                false => self.family.slopes(value, &shots),
+            };
             let mut bordered = self.bordered_system(&shots, &slopes, &base.tangent, &base.shots);
             if holds_value {
                 bordered.matrix[MAX_COORDINATES][..MAX_COORDINATES].fill(0.0);
@@ -75,23 +72,14 @@ impl Curve<'_> {
                 shots.defects.iter().zip(&slopes).map(|(a, b)| sum(a, b, step)).collect();
             let changes = spread_changes(&shots, first, &added);
             let next = self.moved(value, &shots, &changes, step)?;
-            self.learn(&mut slopes, [value, step], [&shots, &next], &changes);
             (value, shots) = (value + step, next);
         }
-        let (value, shots, mut slopes) = best?;
+        let (value, shots) = best?;
         let moved = self.moved_from(base, value, &shots)?;
         if distance.abs() > f64::EPSILON && !self.is_step(base, &moved, distance) {
             return None;
         }
-        if holds_value {
-            let shots = [&base.shots, &shots];
-            self.learn(&mut slopes, [base.value, moved.rate], shots, &moved.points);
-            // What has been learned holds midway.
-            for (own, from) in slopes.iter_mut().zip(&base.slopes) {
-                *own = std::array::from_fn(|n| 2.0 * own[n] - from[n]);
-            }
-        }
-        self.point_with(value, shots, slopes, &base.tangent)
+        self.point(value, shots, &base.tangent)
     }
 
     /// The changes of all points and of the parameter from those of an orbit.
@@ -120,34 +108,6 @@ impl Curve<'_> {
             });
             Shots::new(map, moved.collect())
         })
-    }
-
-    /// Makes the parameter's derivatives those that a step has shown.
-    fn learn(
-        &self,
-        slopes: &mut [Change],
-        [value, step]: [f64; 2],
-        [before, after]: [&OrbitShots; 2],
-        changes: &[Change],
-    ) {
-        if step.abs() < MIN_PARAMETER_CHANGE * self.unit || !are_on_one_piece(before, after) {
-            return;
-        }
-        let images: Vec<Place<f64>> = before.images.iter().map(|it| it.point.clone()).collect();
-        let apart = self.family.carry(value, &images).and_then(|images| {
-            self.family.at(value + step, |map| {
-                let pairs = images.iter().zip(&after.images);
-                Some(
-                    pairs
-                        .map(|(a, b)| map.change_between(&map.take_up(a), &b.point))
-                        .collect::<Vec<_>>(),
-                )
-            })
-        });
-        for (k, apart) in apart.into_iter().flatten().enumerate() {
-            let [from, to] = [before, after].map(|it| apply(&it.images[k].derivative, &changes[k]));
-            slopes[k] = std::array::from_fn(|n| (apart[n] - 0.5 * (from[n] + to[n])) / step);
-        }
     }
 
     /// The distance along the tangent of `base` at which shots lie.

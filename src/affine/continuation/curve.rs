@@ -126,7 +126,7 @@ impl<'a> Curve<'a> {
     /// A closed iterate with the curve's direction, which is that of `along` as far as there is a
     /// choice.
     pub fn point(&self, value: f64, shots: OrbitShots, along: &Direction) -> Option<CurvePoint> {
-        let slopes = self.family.slopes(value, &shots, self.unit.min(1.0));
+        let slopes = self.family.slopes(value, &shots);
         self.point_with(value, shots, slopes, along)
     }
 

@@ -196,11 +196,4 @@ impl OrbitCurve for Curve<'_> {
         distance(point, start).min(distance(next, start)) <= distance(point, next)
             && self.product(&next.tangent, &start.tangent, &start.shots) > 0.0
     }
-
-    /// The corrector learns the parameter's derivative on its way; the next step begins with the
-    /// difference.
-    fn refreshed(&self, point: CurvePoint) -> CurvePoint {
-        let CurvePoint { value, shots, tangent, .. } = point.clone();
-        self.point(value, shots, &tangent).unwrap_or(point)
-    }
 }

@@ -143,11 +143,6 @@ pub(crate) trait OrbitCurve {
     /// Whether a step passes where the branch began, in the same direction.
     fn is_back(&self, step: [&Self::Point; 2], start: &Self::Point) -> bool;
 
-    /// An accepted point with a direction that the next step can begin with.
-    fn refreshed(&self, point: Self::Point) -> Self::Point {
-        point
-    }
-
     /// The zero of `test` on the curve between `base` and a distance along its tangent.
     fn located(
         &self,
@@ -258,7 +253,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
                     }
                     self.note_between(point, &next, distance);
                     *step = (1.5 * distance).min(MAX_STEP);
-                    return Ok((self.curve.refreshed(next), ending));
+                    return Ok((next, ending));
                 }
             }
             let last = distance <= if is_on_piece { MIN_STEP_OF_TURN } else { MIN_STEP };
