@@ -37,6 +37,8 @@ const REFINEMENTS: usize = 4;
 /// The distance to where a multiplier would be 1 is part of a corner's error up to this multiple of
 /// what rounding leaves uncertain of the orbit: rounding then decides where the piece seems to end.
 const MAX_BLURS: f64 = 100.0;
+/// The way to such a corner is halved at most so often.
+const MAX_HALVINGS_TO_CORNER: usize = 50;
 /// The length along the curve over which a multiplier's way to 1 is measured, at least.
 const LENGTH_TO_MULTIPLIER: f64 = 1e-2;
 
@@ -78,12 +80,18 @@ impl Curve<'_> {
     /// The corner's error is what the halving leaves, and the distance at which the corner is found
     /// from the other side if it is, but at least what is looked for.
     pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
+        // On the way to a touch steps become short, and lead to other orbits in the end.
+        if is_near_touch(&base.shots)
+            && let Some(touch) = self.touch_from_beyond(&self.point_before(base), base)
+        {
+            return touch;
+        }
         self.corner_at(base, self.approach(base, distance))
     }
 
     /// The corner at the end of a piece that was followed from a point.
     pub(super) fn corner_at(&self, base: &CurvePoint, end: Approach) -> Corner<CurvePoint> {
-        let (own, before) = (end.error(), end.last);
+        let (own, is_lost, before) = (end.error(), end.is_lost, end.last);
         let blurs = self.blurs(base, &before);
         let least = self.least_error(&before, blurs);
         if let Some(beyond) = self.past_strobe(&before) {
@@ -91,7 +99,7 @@ impl Curve<'_> {
             return Corner { before, beyond, error, is_of_section: true };
         }
         // Where another piece follows, the end is found to roundings; else more is left.
-        if own > RELATIVE_ERROR_TOLERANCE * before.value.abs()
+        if (is_lost || own > RELATIVE_ERROR_TOLERANCE * before.value.abs())
             && let Some(touch) = self.touch_from_beyond(base, &before)
         {
             return touch;
@@ -118,7 +126,8 @@ impl Curve<'_> {
             best.beyond = self.striking(&best.before);
         }
         // Where rounding decides, the end is no touch that an event would tell.
-        let is_told = best.beyond.is_none() && blurs.to_unit == 0.0;
+        let is_lost = is_lost && is_near_touch(&best.before.shots);
+        let is_told = (is_lost || best.beyond.is_none()) && blurs.to_unit == 0.0;
         let to_touch = if is_told { self.distance_to_touch(base, &best.before) } else { 0.0 };
         best.error = error.max(least).max(to_touch);
         best
@@ -145,7 +154,32 @@ impl Curve<'_> {
         }
         // From next to the end the multiplier's own rounding would decide.
         let far = self.approach_within(&base.turned(), LENGTH_TO_MULTIPLIER, LENGTH_TO_MULTIPLIER);
+        let own = self.blur_from_afar(before, &far.last.turned(), own);
         Blurs { own, to_unit: distance_to_unit_multiplier(&far.last, before) }
+    }
+
+    /// The blur of a corner at which a multiplier comes to 1, on the way to it from an orbit far
+    /// before: at most what the last orbit itself says.
+    ///
+    /// There the blur b is R/x at a distance x from the corner, with some R. If the corner lies e
+    /// beyond where it was found, e is at most R/e, since rounding has ended the way. From an orbit
+    /// at the distance L before that place b = R/(L + e), so that e is at most the larger one of L
+    /// and 2 b.
+    fn blur_from_afar(&self, before: &CurvePoint, far: &CurvePoint, own: f64) -> f64 {
+        let (mut least, mut point) = (own, far.clone());
+        for _ in 0..MAX_HALVINGS_TO_CORNER {
+            let apart = (before.value - point.value).abs();
+            let blur = self.blur(&point, &point.tangent);
+            least = least.min(apart.max(2.0 * blur));
+            let rest = self.distance_along(&point, before.value, &before.shots);
+            let Some(rest) = rest.filter(|_| apart > blur) else { break };
+            let next = self.approach_within(&point, 0.5 * rest, 0.5 * rest);
+            if next.length == 0.0 {
+                break;
+            }
+            point = next.last;
+        }
+        least
     }
 
     /// The distance in the parameter between the corner and where it is found from beyond: zero
@@ -322,7 +356,12 @@ impl Curve<'_> {
     }
 
     /// The largest distance between points of shots and those of an orbit, relative to their sizes.
-    fn distance(&self, value: f64, shots: &OrbitShots, from: &CurvePoint) -> Option<f64> {
+    pub(super) fn distance(
+        &self,
+        value: f64,
+        shots: &OrbitShots,
+        from: &CurvePoint,
+    ) -> Option<f64> {
         self.family.at(value, |map| {
             let pairs = shots.points.iter().zip(&from.carried);
             let sizes =

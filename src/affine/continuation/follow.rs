@@ -145,6 +145,9 @@ impl OrbitCurve for Curve<'_> {
         corner: &Corner<CurvePoint>,
     ) -> Option<ReturnBifurcation> {
         let is_end = corner.beyond.is_none() && !corner.is_of_section;
+        if is_end && self.is_rest(&corner.before) {
+            return None;
+        }
         let touch = if is_end { self.touch_ahead(base, &corner.before) } else { None };
         let meaning = touch.as_ref().map(|it| Meaning::of_touch(it.event));
         let Meaning { kind, event } = meaning.or_else(|| self.meaning(base, corner))?;

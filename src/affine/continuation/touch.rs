@@ -6,23 +6,41 @@
 //! impact, so that two of its points tell roughly where the touch is. The orbit without the event
 //! is looked for there, and followed back to where it touches.
 
+use super::super::returns::map::SectionMap;
 use super::super::returns::section::Guard;
 use super::super::returns::shooting::{MAX_COORDINATES, ReturnMap, Shots};
+use super::super::run::place::Place;
 use super::curve::Curve;
 use super::family::{OrbitShots, is_near_touch};
 use super::point::{CurvePoint, Direction};
-use super::words::same_events;
+use super::words::{LENGTH_FROM_TOUCH, same_events};
 use crate::dynamics::continuation::steps::Corner;
 use crate::dynamics::orbit::newton::solve;
 
 /// Distances from where a touch is held to be at which the orbit without the event is looked for,
 /// as multiples of the distance to the last orbit with it: it may be on either side.
 const DISTANCES: [f64; 8] = [1.0, -1.0, 4.0, -4.0, 16.0, -16.0, 64.0, -64.0];
+/// Distances aside of where a touch is held to be from which the orbit without the event is looked
+/// for too, as multiples of that to the last orbit: next to it motions may have the event still.
+const SIDES: [f64; 4] = [1.0, -1.0, 4.0, -4.0];
 /// Steps of the curve beyond a touch at which the event has to be there.
 const STEPS_TO_TOUCH: [f64; 3] = [1e-10, 1e-8, 1e-6];
 
+/// The lengths of the way back to an orbit whose event is so much faster that the touch is known.
+const LENGTHS_FROM_TOUCH: [f64; 4] = [
+    LENGTH_FROM_TOUCH,
+    4.0 * LENGTH_FROM_TOUCH,
+    16.0 * LENGTH_FROM_TOUCH,
+    64.0 * LENGTH_FROM_TOUCH,
+];
 /// A touch is expected within so many times the distance in which an event has become slower.
 const MAX_SHARE_TO_TOUCH: f64 = 4.0;
+
+/// The largest derivative of an orbit through which a touch is extrapolated: rounding of the map
+/// is magnified by so much in the event's rate, which falls as the derivative grows.
+const MAX_DERIVATIVE_OF_EXTRAPOLATED: f64 = 4000.0;
+/// The first length of the way back to such an orbit.
+const FIRST_LENGTH_BACK: f64 = 1e-6;
 
 /// The orbits through which a touch is extrapolated.
 const ORBITS_TO_TOUCH: usize = 5;
@@ -110,17 +128,14 @@ impl Curve<'_> {
         if !is_near_touch(&last.shots) {
             return None;
         }
-        let (far, Expected { share, event, place, .. }) = self.near_touch(base, last)?;
-        let apart = share * self.distance_along(last, far.value, &far.shots)?.abs();
-        let rate_and_value = |orbit: &CurvePoint| {
-            let crossing = self.crossings(orbit.value, &orbit.shots)?.into_iter().nth(place)?;
-            (crossing.guard == event).then_some((crossing.rate, orbit.value))
-        };
+        let clear = self.clear_of_touch(last);
+        let (base, last) = clear.as_ref().map_or((base, last), |it| (it, it));
+        let (far, expected) = self.near_touch(base, last)?;
+        let apart = expected.share * self.distance_along(last, far.value, &far.shots)?.abs();
         let further = |orbit: &CurvePoint| Some(self.approach_within(orbit, apart, apart).last);
         let before = std::iter::successors(further(&base.turned()), further);
-        let before = before.take(ORBITS_TO_TOUCH - 1).map(|it| rate_and_value(&it));
-        let known = [rate_and_value(last)].into_iter().chain(before).collect::<Option<Vec<_>>>()?;
-        let (rates, values): (Vec<f64>, Vec<f64>) = known.into_iter().unzip();
+        let orbits = [last.clone()].into_iter().chain(before).take(ORBITS_TO_TOUCH);
+        let (rates, values) = self.rates_and_values(orbits, &expected)?;
         let value = value_at_zero(&rates, &values);
         // The parabola is off by more than the polynomial: by what it leaves out, and by rounding,
         // which is large where the rate is small.
@@ -128,24 +143,87 @@ impl Curve<'_> {
         let unknown = (value - value_at_zero(&rates[near.clone()], &values[near])).abs();
         let ahead = (value - last.value) * last.tangent.rate.signum();
         let error = unknown + self.least_error(last, self.blurs(base, last));
-        (unknown <= MAX_ERROR_SHARE * ahead).then_some(TouchAhead { value, error, event })
+        (unknown <= MAX_ERROR_SHARE * ahead).then_some(TouchAhead {
+            value,
+            error,
+            event: expected.event,
+        })
+    }
+
+    /// An orbit before the last one that was found, if the touch leaves that too few digits.
+    fn clear_of_touch(&self, last: &CurvePoint) -> Option<CurvePoint> {
+        let (mut point, mut length) = (None::<CurvePoint>, FIRST_LENGTH_BACK);
+        loop {
+            let here = point.as_ref().unwrap_or(last);
+            if here.shots.largest_derivative() <= MAX_DERIVATIVE_OF_EXTRAPOLATED {
+                return point;
+            }
+            let back = self.approach_within(&here.turned(), length, length);
+            if back.length == 0.0 {
+                return point;
+            }
+            (point, length) = (Some(back.last.turned()), 2.0 * length);
+        }
+    }
+
+    /// Whether an orbit has shrunk to a state of rest.
+    pub(super) fn is_rest(&self, point: &CurvePoint) -> bool {
+        let first = &point.shots.points[0];
+        let is_rest =
+            |map: &SectionMap<'_, f64>| map.is_rest(first.mode, &first.state, point.orbit.time);
+        self.family.at(point.value, |map| Some(is_rest(map))).unwrap_or(false)
     }
 
     /// An orbit before the last one that was found, and the touch that both expect near to it.
     fn near_touch(&self, base: &CurvePoint, last: &CurvePoint) -> Option<(CurvePoint, Expected)> {
-        let far = self.point_before(base);
-        let expected = self.expected_touch(&far, last)?;
-        (expected.share <= MAX_SHARE_TO_TOUCH).then_some((far, expected))
+        LENGTHS_FROM_TOUCH.iter().find_map(|length| {
+            let far = self.approach_within(&base.turned(), *length, *length).last;
+            let expected = self.expected_touch(&far, last)?;
+            (expected.share <= MAX_SHARE_TO_TOUCH).then_some((far, expected))
+        })
+    }
+
+    /// The rates at which orbits have an event, and their values of the parameter.
+    fn rates_and_values(
+        &self,
+        orbits: impl Iterator<Item = CurvePoint>,
+        expected: &Expected,
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let all = orbits.map(|orbit| {
+            let crossings = self.crossings(orbit.value, &orbit.shots)?;
+            let crossing = crossings.into_iter().nth(expected.place)?;
+            (crossing.guard == expected.event).then_some((crossing.rate, orbit.value))
+        });
+        all.collect()
     }
 
     /// A bound of the distance in the parameter from the last orbit that was found to a touch, if
-    /// an event becomes so slow towards it; zero otherwise. The square of the event's rate falls in
-    /// proportion to that distance; twice what follows leaves room for higher orders.
+    /// an event becomes so slow towards it; zero otherwise. The distance falls as a power of the
+    /// event's rate, as the square mostly: as which one two orbits before tell. Twice what follows
+    /// leaves room for higher orders.
     pub(super) fn distance_to_touch(&self, base: &CurvePoint, last: &CurvePoint) -> f64 {
-        self.near_touch(base, last).map_or(0.0, |(far, it)| {
-            let slowed = 1.0 + 1.0 / it.share;
-            2.0 * (last.value - far.value).abs() / (slowed * slowed - 1.0)
-        })
+        let Some((far, expected)) = self.near_touch(base, last) else { return 0.0 };
+        // A straight line leads too far rather than too near.
+        let power = self.power_of_rate(last, &far, &expected).unwrap_or(1.0);
+        let slowed = libm::pow(1.0 + 1.0 / expected.share, power);
+        2.0 * (last.value - far.value).abs() / (slowed - 1.0)
+    }
+
+    /// The power of an event's rate as which the distance to a touch grows, from the last orbit
+    /// over one before to another as far behind that.
+    fn power_of_rate(
+        &self,
+        last: &CurvePoint,
+        far: &CurvePoint,
+        expected: &Expected,
+    ) -> Option<f64> {
+        let apart = self.distance_along(last, far.value, &far.shots)?.abs();
+        let further = self.approach_within(far, apart, apart).last;
+        let orbits = [far.clone(), further].into_iter();
+        let (rates, values) = self.rates_and_values(orbits, expected)?;
+        let [from, to] = [0, 1].map(|n| (values[n] - last.value).abs());
+        let power = libm::log(to / from) / libm::log(rates[1] / rates[0]);
+        (power > 0.0).then_some(power)
     }
 
     /// The orbit at a value next to a touch that has not the event.
@@ -156,19 +234,33 @@ impl Curve<'_> {
         expected: &Expected,
         value: f64,
     ) -> Option<OrbitShots> {
-        let found = self.family.at(value, |map| {
+        let is_without = |shots: &OrbitShots| {
+            count_events(shots, expected.event) < count_events(&last.shots, expected.event)
+        };
+        let length = (value - last.value).abs().max(expected.rest.abs()) / self.unit;
+        self.family.at(value, |map| {
             let pairs = base.carried.iter().zip(&last.carried);
-            let places = pairs.map(|(base, last)| {
+            let moved = pairs.map(|(base, last)| {
                 let [base, last] = [base, last].map(|it| map.take_up(it));
                 let change = map.change_between(&base, &last);
                 map.moved(&last, &change.map(|it| expected.share * it), &last)
             });
-            solve(map, Shots::new(map, places.collect())?).ok()
-        })?;
-        let count = |shots: &OrbitShots| count_events(shots, expected.event);
-        let is_other = count(&found) < count(&last.shots);
-        (is_other && self.is_near(value, &found, last, (value - last.value).abs() / self.unit))
-            .then_some(found)
+            let guess: Vec<Place<f64>> = moved.collect();
+            let reach = self.distance(value, &Shots::new(map, guess.clone())?, last)?;
+            let aside =
+                SIDES.iter().flat_map(|side| (0..guess[0].state.len()).map(move |n| (side, n)));
+            let aside = aside.filter_map(|(side, n)| {
+                let mut change = [0.0; MAX_COORDINATES];
+                change[n] = side * reach * self.scales()[n];
+                let moved = guess.iter().map(|it| map.moved(it, &change, it));
+                Shots::new(map, moved.collect()).filter(is_without)
+            });
+            let all = Shots::new(map, guess.clone()).into_iter().chain(aside);
+            let found = all.filter_map(|it| solve(map, it).ok());
+            let mut found =
+                found.filter(|it| is_without(it) && self.is_near(value, it, last, length));
+            found.next()
+        })
     }
 
     /// Whether an orbit has an event more a step further along its curve.

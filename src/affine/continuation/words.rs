@@ -42,7 +42,7 @@ const MIN_GROWTH_FACTOR: f64 = 2.0;
 const MIN_JUMP: f64 = 1e-3;
 
 /// The length along the curve from which the fall of a rate to a touch is looked at, at least.
-const LENGTH_FROM_TOUCH: f64 = 1e-4;
+pub(super) const LENGTH_FROM_TOUCH: f64 = 1e-4;
 
 /// A rate that falls by more from the last step to the end of its piece, whose distance is smaller
 /// by orders of magnitude, vanishes there; no rate falls so much in a step otherwise.
