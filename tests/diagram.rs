@@ -31,7 +31,7 @@ fn each_value_is_a_run_of_its_own_when_reset() {
         (Parameter::Phi, 0.0, 6.0),
     ] {
         let plan = diagram(parameter, from, to, Follow::Reset);
-        let steps = plan.steps(|| {}).unwrap();
+        let steps = plan.steps(|_| {}).unwrap();
         assert_eq!(steps.len(), 7);
         assert_eq!((steps[0].value, steps[6].value), (from, to));
         for step in &steps {
@@ -68,13 +68,13 @@ fn a_carried_diagram_stays_on_its_attractor() {
     let orbit_at_first = (0..400).map(f64::from).find_map(|k| {
         let start = Start { p: start.p - 0.001 * k, ..start };
         let first = Diagram { steps: 1, ..plan(1.5, 1.5, Follow::Reset, start) };
-        let points = first.steps(|| {}).unwrap().remove(0).points;
+        let points = first.steps(|_| {}).unwrap().remove(0).points;
         repeats_after_four(&points).then_some(start)
     });
     let start = orbit_at_first.expect("the basin is met");
-    let carried = plan(1.5, 1.42, Follow::Carry, start).steps(|| {}).unwrap();
+    let carried = plan(1.5, 1.42, Follow::Carry, start).steps(|_| {}).unwrap();
     assert!(carried.iter().all(|step| repeats_after_four(&step.points)));
-    let reset = plan(1.5, 1.42, Follow::Reset, start).steps(|| {}).unwrap();
+    let reset = plan(1.5, 1.42, Follow::Reset, start).steps(|_| {}).unwrap();
     assert!(reset.iter().any(|step| !repeats_after_four(&step.points)));
 }
 
@@ -95,7 +95,7 @@ fn a_value_that_escapes_is_left_out_and_not_carried_on() {
     };
     for (from, to) in [(-0.05, 0.5), (0.5, -0.05)] {
         for follow in [Follow::Carry, Follow::Reset] {
-            let steps = plan(from, to, follow).steps(|| {}).unwrap();
+            let steps = plan(from, to, follow).steps(|_| {}).unwrap();
             assert_eq!(steps.len(), 400);
             for step in &steps {
                 assert_eq!(step.escapes, step.value < 0.0, "{}", step.value);
@@ -107,7 +107,7 @@ fn a_value_that_escapes_is_left_out_and_not_carried_on() {
         }
     }
     // Above b = 1 the slider never stops: its speed grows, its state does not.
-    let fast = plan(0.9, 1.1, Follow::Carry).steps(|| {}).unwrap();
+    let fast = plan(0.9, 1.1, Follow::Carry).steps(|_| {}).unwrap();
     assert!(!fast[0].escapes && fast[399].escapes && fast[399].points.is_empty());
 }
 
@@ -126,11 +126,11 @@ fn what_follows_an_escape_starts_from_the_last_that_stayed() {
         follow: Follow::Carry,
     };
     // b = 0.1, -0.05, -0.2: only the first stays.
-    let there = plan(0.1, -0.2, 3, Start::default()).steps(|| {}).unwrap();
+    let there = plan(0.1, -0.2, 3, Start::default()).steps(|_| {}).unwrap();
     assert_eq!(there.iter().map(|it| it.escapes).collect::<Vec<_>>(), [false, true, true]);
     // b = -0.2, -0.05, 0.1: the last starts from the start given.
-    let back = plan(-0.2, 0.1, 3, Start::default()).steps(|| {}).unwrap();
-    let alone = plan(0.1, 0.1, 1, Start::default()).steps(|| {}).unwrap();
+    let back = plan(-0.2, 0.1, 3, Start::default()).steps(|_| {}).unwrap();
+    let alone = plan(0.1, 0.1, 1, Start::default()).steps(|_| {}).unwrap();
     assert_eq!(back[2].points, alone[0].points);
     assert_eq!(back[2].points, there[0].points);
 }
@@ -151,7 +151,7 @@ fn drifts_have_the_errors_of_their_scatter() {
         periods: 100,
         follow: Follow::Reset,
     };
-    let step = plan.steps(|| {}).unwrap().remove(0);
+    let step = plan.steps(|_| {}).unwrap().remove(0);
     let model = Model::new(parameters).unwrap();
     let spectrum = Spectrum::new(&model, model.start(&plan.start).unwrap(), 200, 100);
     let pairs = [
@@ -161,7 +161,7 @@ fn drifts_have_the_errors_of_their_scatter() {
     for (found, expected) in pairs {
         assert!(expected > 0.1 && (found - expected).abs() < 1e-10, "{found} {expected}");
     }
-    let single = Diagram { periods: 1, ..plan }.steps(|| {}).unwrap().remove(0);
+    let single = Diagram { periods: 1, ..plan }.steps(|_| {}).unwrap().remove(0);
     assert!(single.drift_standard_error.is_nan());
 }
 

@@ -66,7 +66,7 @@ pub(crate) fn bifurcation<'py>(
     let diagram =
         Diagram { parameters, start, parameter, from, to, steps, transient, periods, follow };
     let found = interruptible(py, &Progress { told, all: u64::from(steps) }, |stop| {
-        diagram.steps(|| stop.passed(1))
+        diagram.steps(|more| stop.passed(more))
     })?
     .map_err(value)?;
     let each = |value: &dyn Fn(usize) -> f64| (0..found.len()).map(value).collect::<Vec<f64>>();

@@ -87,12 +87,13 @@ impl Diagram {
         value(self.from, self.to, self.steps, step)
     }
 
-    /// Makes the diagram; `seen` is called as values are done, in any order.
+    /// Makes the diagram; `seen` is told how many more values are done, in any order, and of none
+    /// now and then on the way to a value.
     ///
     /// # Errors
     /// [`InputError`] names what is out of range; with [`Follow::Reset`] also a start that some
     /// value does not admit.
-    pub fn steps(&self, seen: impl Fn() + Sync + Send) -> Result<Vec<DiagramStep>, InputError> {
+    pub fn steps(&self, seen: impl Fn(u64) + Sync + Send) -> Result<Vec<DiagramStep>, InputError> {
         let steps: Vec<u32> = (0..self.steps).collect();
         match self.follow {
             Follow::Reset => {
@@ -136,7 +137,7 @@ impl Diagram {
     fn reset(
         &self,
         steps: &[u32],
-        seen: &(impl Fn() + Sync),
+        seen: &(impl Fn(u64) + Sync),
     ) -> Result<Vec<DiagramStep>, InputError> {
         let begun = |step: &u32| {
             let model = self.model(*step)?;
@@ -157,7 +158,7 @@ impl Diagram {
         &self,
         model: &'a Model,
         entry: Entry,
-        seen: &'a (dyn Fn() + Sync),
+        seen: &'a (dyn Fn(u64) + Sync),
     ) -> Member<'a, KeptStrobes<'a>> {
         let first = entry.instant.after_periods(self.transient, 1);
         let horizon = Some(first.after_periods(u64::from(self.periods), 1));

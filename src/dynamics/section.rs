@@ -96,22 +96,27 @@ pub fn sections(
         let entry = starts[number];
         let first = entry.instant.after_periods(transient, 1).first_at_angle(angle);
         let horizon = Some(first.after_periods(count as u64, 1));
-        Member { model, entry, first, horizon, watcher: KeptStrobes::new(count, &|| ()) }
+        Member { model, entry, first, horizon, watcher: KeptStrobes::new(count, &|_| ()) }
     });
     kept.into_iter().map(|it| it.strobes).collect()
 }
+
+/// The phases of a motion after which its work is told of: a fraction of a millisecond.
+const PHASES_TO_TELL: u32 = 4096;
 
 /// A watcher that keeps the first strobes of a motion.
 pub(super) struct KeptStrobes<'a> {
     wanted: usize,
     pub strobes: Vec<Entry>,
-    /// Called once, when all wanted strobes are kept.
-    done: &'a (dyn Fn() + Sync),
+    /// The phases since it was told of the last ones.
+    phases: u32,
+    /// Told of one more motion when all wanted strobes are kept, and now and then before of none.
+    done: &'a (dyn Fn(u64) + Sync),
 }
 
 impl<'a> KeptStrobes<'a> {
-    pub fn new(wanted: usize, done: &'a (dyn Fn() + Sync)) -> Self {
-        Self { wanted, strobes: Vec::new(), done }
+    pub fn new(wanted: usize, done: &'a (dyn Fn(u64) + Sync)) -> Self {
+        Self { wanted, strobes: Vec::new(), phases: 0, done }
     }
 }
 
@@ -121,7 +126,15 @@ impl Watcher for KeptStrobes<'_> {
         if self.strobes.len() < self.wanted {
             return ControlFlow::Continue(());
         }
-        (self.done)();
+        (self.done)(1);
         ControlFlow::Break(())
+    }
+
+    fn enter(&mut self, _: &Entry) {
+        self.phases += 1;
+        if self.phases == PHASES_TO_TELL {
+            self.phases = 0;
+            (self.done)(0);
+        }
     }
 }

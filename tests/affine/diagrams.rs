@@ -64,7 +64,7 @@ fn the_oscillators_diagram_is_its_own() {
                 periods,
                 follow,
             };
-            let own = own.steps(|| ()).unwrap();
+            let own = own.steps(|_| ()).unwrap();
             let as_system =
                 ReturnDiagram { transient, returns: periods, ..plan(Section::strobe(0.0), follow) };
             let as_system = steps(&as_system, &text, name, &values(from, to, steps_of));

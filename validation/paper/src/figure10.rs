@@ -71,7 +71,7 @@ fn diagram(
         periods: PERIODS,
         follow,
     };
-    diagram.steps(|| {}).map_err(Failure::new)
+    diagram.steps(|_| {}).map_err(Failure::new)
 }
 
 /// Carried from where the attractor is known, to both sides.

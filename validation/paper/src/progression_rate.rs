@@ -104,7 +104,7 @@ impl Rate {
             periods: PERIODS,
             follow: Follow::Reset,
         };
-        diagram.steps(|| {}).map_err(Failure::new)
+        diagram.steps(|_| {}).map_err(Failure::new)
     }
 
     fn per_time(&self, step: &DiagramStep) -> f64 {

@@ -77,7 +77,7 @@ fn carried(from: f64, point: [f64; 3], frame: &Frame) -> Result<Option<usize>, F
         periods: 48,
         follow: Follow::Carry,
     };
-    let steps = diagram.steps(|| {}).map_err(Failure::new)?;
+    let steps = diagram.steps(|_| {}).map_err(Failure::new)?;
     let Some(last) = steps.last() else { return Ok(None) };
     let distance = |points: &[[f64; 3]]| {
         let nearest = |it: &[f64; 3]| {

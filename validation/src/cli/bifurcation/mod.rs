@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     arguments.model.check_varied(diagram.parameter)?;
     check_size(arguments, ("--periods", diagram.periods), most_rows(&outputs))?;
     let bar = long_work::bar(u64::from(arguments.steps), "values");
-    let steps = long_work::pool(threads)?.install(|| diagram.steps(|| bar.inc(1)));
+    let steps = long_work::pool(threads)?.install(|| diagram.steps(|more| bar.inc(more)));
     bar.finish_and_clear();
     let steps =
         steps.map_err(|error| anyhow!("--parameter {}: {error}", diagram.parameter.as_str()))?;

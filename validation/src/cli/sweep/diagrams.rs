@@ -109,7 +109,7 @@ impl SweepVerb for DiagramWork {
 
     fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
         let diagram = self.diagram(point)?;
-        let steps = diagram.steps(|| {});
+        let steps = diagram.steps(|_| {});
         let name = diagram.parameter.as_str();
         let steps = steps.map_err(|error| anyhow!("parameter {name}: {error}"))?;
         records::bytes(&self.arrays(&diagram, &steps))
