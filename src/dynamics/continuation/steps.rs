@@ -48,6 +48,31 @@ pub(crate) trait OrbitPoint: Clone {
         re
     }
 
+    /// The product over all pairs of the product of two multipliers less one: zero where two are
+    /// conjugate on the unit circle, and where two real ones are reciprocal.
+    fn pair_test(&self) -> f64 {
+        // The imaginary parts of conjugate factors vanish.
+        let all = self.multipliers();
+        let pairs = all.iter().enumerate().flat_map(|(n, a)| all[..n].iter().map(move |b| (a, b)));
+        let [re, _] = pairs.fold([1.0, 0.0], |[re, im], (a, b)| {
+            let [x, y] = [a[0] * b[0] - a[1] * b[1] - 1.0, a[0] * b[1] + a[1] * b[0]];
+            [re * x - im * y, re * y + im * x]
+        });
+        re
+    }
+
+    /// Whether a complex pair is nearer to the unit circle than two real multipliers are to being
+    /// reciprocal.
+    fn has_pair_on_circle(&self) -> bool {
+        let least = |it: &mut dyn Iterator<Item = f64>| it.fold(f64::INFINITY, f64::min);
+        let squares = self.multipliers().iter().filter(|it| it[1] > 0.0);
+        let complex = least(&mut squares.map(|it| (modulus(*it).powi(2) - 1.0).abs()));
+        let real: Vec<f64> =
+            self.multipliers().iter().filter(|it| it[1] == 0.0).map(|it| it[0]).collect();
+        let pairs = (0..real.len()).flat_map(|n| (0..n).map(move |k| (n, k)));
+        complex < least(&mut pairs.map(|(n, k)| (real[n] * real[k] - 1.0).abs()))
+    }
+
     /// The product over complex pairs of their modulus less one, zero at a Neimark-Sacker point,
     /// and the number of pairs.
     fn neimark_sacker_test(&self) -> (f64, usize) {
@@ -364,16 +389,19 @@ impl<C: OrbitCurve> Follower<'_, C> {
         };
         seek(BifurcationKind::Fold, &OrbitPoint::rate);
         seek(BifurcationKind::Flip, &OrbitPoint::flip_test);
-        // With another number of pairs it is another function.
-        let (_, pairs) = point.neimark_sacker_test();
-        seek(BifurcationKind::NeimarkSacker, &|it| match it.neimark_sacker_test() {
-            (test, count) if count == pairs => test,
-            _ => f64::NAN,
-        });
+        seek(BifurcationKind::NeimarkSacker, &OrbitPoint::pair_test);
+        let is_other = |it: &(BifurcationKind, LocatedPoint<C::Point>)| {
+            it.0 == BifurcationKind::NeimarkSacker && !it.1.point.has_pair_on_circle()
+        };
+        found.retain(|it| !is_other(it));
         found.sort_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
         for (kind, located) in found {
             let error = self.curve.error(&located);
             let turns = kind == BifurcationKind::Fold;
+            // Where a multiplier grows without bound, the sign of a test may be that of rounding.
+            if !turns && error > (next.value() - point.value()).abs() {
+                continue;
+            }
             let noted = Noted { kind, point: located.point, error, turns };
             self.add(self.curve.bifurcation(noted));
         }
