@@ -306,6 +306,39 @@ fn an_orbit_between_two_stops_becomes_the_free_motion() {
     assert_eq!(branch.bifurcations.len(), 2, "{:?}", bifurcation_rows(&branch));
 }
 
+/// A mass that strikes another one: of the four multipliers a pair leaves and enters the unit circle
+/// while the others become real, and one grows without bound where the stop is touched: at the
+/// value at which the free motion is as wide as the gap, from either side. The circle's values were
+/// computed in 25 digits by another program, from the closed form.
+#[test]
+fn a_pair_passes_the_circle_where_another_one_becomes_real() {
+    let text = "schema = 1\nname = \"two-dof\"\nstates = [\"x\", \"v\", \"y\", \"u\"]\n\
+                forcing = { omega = \"w\", phi = 0 }\n[parameters]\nw = 2.6\n[let]\n\
+                spring = \"(x - y)/2\"\nmean = \"(2*v + u)/3\"\napart = \"v - u\"\n[[mode]]\n\
+                name = \"free\"\nequations = [\"x' = v\", \"v' = cos - x - v/10 - spring\", \
+                \"y' = u\", \"u' = 2*(spring - y - u/10)\"]\nuntil = [{ name = \"hit\", \
+                guard = \"x - y > 1/2\", reset = [\"v = mean - 4/15*apart\", \
+                \"u = mean + 8/15*apart\"] }]\n\
+                [start]\nmode = \"free\"\nx = 0\nv = 0\ny = 0\nu = 0\n";
+    let varied = Varied::new(text, Section::strobe(0.0), "w", &[]);
+    for ends in [[4.0, 1.7], [1.7, 4.0]] {
+        let branch = varied.follow(&varied.settled_return(ends[0], 2000), 1, ends);
+        assert!(branch.is_complete() && branch.unnamed_changes().is_empty(), "{}", branch.ending);
+        let on_circle = |it: &&ReturnBifurcation| it.kind == BifurcationKind::NeimarkSacker;
+        let mut found: Vec<f64> =
+            branch.bifurcations.iter().filter(on_circle).map(|it| it.value).collect();
+        found.sort_by(f64::total_cmp);
+        let known = [1.724_488_362_142_647, 1.822_928_825_764_8];
+        let pairs = found.iter().zip(known);
+        assert!(
+            found.len() == 2 && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-12),
+            "{found:?}"
+        );
+        let graze = only_bifurcation(&branch, BifurcationKind::Grazing);
+        assert_value(graze, 2.192_080_576_123_025);
+    }
+}
+
 /// Unstable orbits are followed past it, too, and orbits that a reset changes there.
 #[test]
 fn no_angle_of_the_strobe_changes_a_branch() {

@@ -82,7 +82,7 @@ impl Curve<'_> {
     pub fn corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
         // On the way to a touch steps become short, and lead to other orbits in the end.
         if is_near_touch(&base.shots)
-            && let Some(touch) = self.touch_from_beyond(&self.point_before(base), base)
+            && let Some(touch) = self.touch_from_beyond(base, base)
         {
             return touch;
         }
@@ -91,17 +91,16 @@ impl Curve<'_> {
 
     /// The corner at the end of a piece that was followed from a point.
     pub(super) fn corner_at(&self, base: &CurvePoint, end: Approach) -> Corner<CurvePoint> {
-        let (own, is_lost, before) = (end.error(), end.is_lost, end.last);
+        let (own, before) = (end.error(), end.last);
         let blurs = self.blurs(base, &before);
         let least = self.least_error(&before, blurs);
         if let Some(beyond) = self.past_strobe(&before) {
             let (beyond, error) = (Some(beyond), own.max(least));
             return Corner { before, beyond, error, is_of_section: true };
         }
-        // Where another piece follows, the end is found to roundings; else more is left.
-        if (is_lost || own > RELATIVE_ERROR_TOLERANCE * before.value.abs())
-            && let Some(touch) = self.touch_from_beyond(base, &before)
-        {
+        // Next to a touch a short step may lead to the piece beyond, or nowhere.
+        let is_near_touch = is_near_touch(&before.shots);
+        if is_near_touch && let Some(touch) = self.touch_from_beyond(base, &before) {
             return touch;
         }
         let error = f64::INFINITY;
@@ -126,8 +125,7 @@ impl Curve<'_> {
             best.beyond = self.striking(&best.before);
         }
         // Where rounding decides, the end is no touch that an event would tell.
-        let is_lost = is_lost && is_near_touch(&best.before.shots);
-        let is_told = (is_lost || best.beyond.is_none()) && blurs.to_unit == 0.0;
+        let is_told = (is_near_touch || best.beyond.is_none()) && blurs.to_unit == 0.0;
         let to_touch = if is_told { self.distance_to_touch(base, &best.before) } else { 0.0 };
         best.error = error.max(least).max(to_touch);
         best
@@ -136,7 +134,10 @@ impl Curve<'_> {
     /// The end of a piece of the curve as a corner beyond which no orbit is looked for.
     pub fn lost_corner(&self, base: &CurvePoint, distance: f64) -> Corner<CurvePoint> {
         let end = self.approach(base, distance);
-        let error = end.error().max(self.least_error(&end.last, self.blurs(base, &end.last)));
+        let is_near_touch = is_near_touch(&end.last.shots);
+        let to_touch = if is_near_touch { self.distance_to_touch(base, &end.last) } else { 0.0 };
+        let least = self.least_error(&end.last, self.blurs(base, &end.last));
+        let error = end.error().max(least).max(to_touch);
         Corner { before: end.last, beyond: None, error, is_of_section: false }
     }
 
@@ -222,8 +223,7 @@ impl Curve<'_> {
     /// The orbit at the parameter's value a step along the curve, by Newton's method there.
     ///
     /// The corrector does not close where a multiplier comes to 1 and the orbit's change with the
-    /// parameter vanishes with it: the derivative by the parameter is a difference, whose error is
-    /// no small share of it then.
+    /// parameter vanishes with it.
     fn at_value(&self, base: &CurvePoint, step: f64) -> Option<CurvePoint> {
         let value = base.value + step * base.tangent.rate;
         let shots = self.shifted(base, &base.tangent, step)?;
@@ -232,8 +232,8 @@ impl Curve<'_> {
         if !shots.is_closed() || !is_forward || !self.is_near(value, &shots, base, step) {
             return None;
         }
-        // A direction that rests on such a difference is no better than that of the point before.
-        let point = self.point_with(value, shots, base.slopes.clone(), &base.tangent)?;
+        // The direction there is known no better than that of the point before.
+        let point = self.point(value, shots, &base.tangent)?;
         Some(CurvePoint { tangent: base.tangent.clone(), ..point })
     }
 

@@ -77,14 +77,10 @@ impl Curve<'_> {
         base: &CurvePoint,
         last: &CurvePoint,
     ) -> Option<Corner<CurvePoint>> {
-        // Elsewhere the orbit is found to its last digits until it touches.
-        if !is_near_touch(&last.shots) {
-            return None;
-        }
-        let expected = self.expected_touch(base, last)?;
+        let (far, expected) = self.near_touch(base, last)?;
         DISTANCES.iter().find_map(|distance| {
             let value = expected.value + distance * expected.rest.abs();
-            let shots = self.without_event(base, last, &expected, value)?;
+            let shots = self.without_event(&far, last, &expected, value)?;
             let points = vec![[0.0; MAX_COORDINATES]; shots.points.len()];
             let back = Direction { points, rate: self.unit * (expected.value - value).signum() };
             let point = self.point(value, shots, &back)?;
