@@ -20,7 +20,10 @@ pub(super) struct Sought {
 /// A bifurcation on a line.
 pub(super) struct OnLine {
     pub point: CurvePoint,
-    /// Bound on the error of the value of the line's parameter.
+    /// The value of the line's parameter; next to a touch the point's own is that of the last
+    /// orbit that was found.
+    pub value: f64,
+    /// Bound on the error of the value.
     pub error: f64,
 }
 
@@ -70,7 +73,7 @@ impl Curve<'_> {
             return None;
         }
         let error = self.error(&located);
-        Some(OnLine { point: located.point, error })
+        Some(OnLine { value: located.point.value, point: located.point, error })
     }
 
     /// The end of the piece on which a point lies, if it is the corner that is sought.
@@ -95,6 +98,7 @@ impl Curve<'_> {
         };
         let found = self.of_corner(start, &corner)?;
         let is_same = found.kind == sought.kind && found.event == sought.event;
-        is_same.then_some(OnLine { point: corner.before, error: corner.error })
+        let ReturnBifurcation { value, error, .. } = found;
+        is_same.then_some(OnLine { point: corner.before, value, error })
     }
 }

@@ -127,17 +127,6 @@ impl<'a> Curve<'a> {
     /// choice.
     pub fn point(&self, value: f64, shots: OrbitShots, along: &Direction) -> Option<CurvePoint> {
         let slopes = self.family.slopes(value, &shots);
-        self.point_with(value, shots, slopes, along)
-    }
-
-    /// A closed iterate with these derivatives by the parameter.
-    pub fn point_with(
-        &self,
-        value: f64,
-        shots: OrbitShots,
-        slopes: Vec<Change>,
-        along: &Direction,
-    ) -> Option<CurvePoint> {
         let tangent = self.tangent(&shots, &slopes, along);
         let orbit = self.family.at(value, |map| map.of_shots(&shots))?;
         let carried = self.family.carry(value, &shots.points)?;

@@ -211,9 +211,10 @@ impl Tracer<'_> {
             let expected = self.expected(curve, step, from, target, axis);
             reaches.iter().find_map(|reach| {
                 let reach = reach * step.length;
-                let OnLine { point, error } = curve.find_again(&self.sought, &expected, reach)?;
+                let found = curve.find_again(&self.sought, &expected, reach)?;
+                let OnLine { point, value, error } = found;
                 let mut at = target;
-                at[axis] = point.value;
+                at[axis] = value;
                 let chord = self.plane.way(step.from.at, at);
                 let is_ahead = step.before.is_none() || cosine(chord, step.way) >= MIN_TURN_COSINE;
                 is_ahead.then_some(Traced { at, axis, error, point })
