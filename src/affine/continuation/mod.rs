@@ -141,8 +141,13 @@ impl ReturnBranch {
             let before = it.points_before;
             before == place + 1 || before == place && self.points[place].0 == it.value
         };
+        let beyond_one = |orbit: &Orbit| {
+            orbit.multipliers.iter().filter(|[re, im]| *im == 0.0 && *re > 1.0).count()
+        };
         let pairs = self.points.windows(2).enumerate().filter(|(place, pair)| {
-            pair[0].1.is_stable() != pair[1].1.is_stable()
+            let [from, to] = [&pair[0].1, &pair[1].1];
+            from.is_stable() != to.is_stable()
+                && beyond_one(from) != beyond_one(to)
                 && !self.bifurcations.iter().any(|it| is_at(it, *place))
         });
         pairs.map(|(place, _)| place).collect()

@@ -6,6 +6,7 @@
 //! strobe is followed at another angle, and its orbits are shown at the one that was asked for.
 
 use super::super::returns::crossings::Crossing;
+use super::super::returns::orbit::Orbit;
 use super::super::returns::section::Guard;
 use super::super::returns::shooting::{ReturnMap, Shots};
 use super::curve::Curve;
@@ -62,19 +63,29 @@ impl Curve<'_> {
         self.shown.and_then(|it| self.seen_on(it, point)).unwrap_or_else(|| point.clone())
     }
 
-    /// A point of this curve as one of another, at the strobes that come after its points.
+    /// A point of this curve as one of another, at the strobes that come after its points. Its
+    /// orbit keeps its events and multipliers: next to a touch rounding on the way to those strobes
+    /// decides whether the event is there.
     pub(super) fn seen_on(&self, shown: &Curve<'_>, point: &CurvePoint) -> Option<CurvePoint> {
         let strobe = shown.family.section().clone().every(1);
         let pairs = point.shots.points.iter().zip(&point.tangent.points);
+        let mut passed = None;
         let (places, points) = self.family.at_section(point.value, &strobe, |map| {
             pairs
                 .map(|(place, change)| {
                     let image = map.image(place).ok()?;
+                    passed.get_or_insert(image.way.events.len());
                     Some((map.rebased(&image.point), apply(&image.derivative, change)))
                 })
                 .collect::<Option<(Vec<_>, Vec<_>)>>()
         })?;
         let shots = shown.family.at(point.value, |map| Shots::new(map, places))?;
-        shown.point(point.value, shots, &Direction { points, rate: point.tangent.rate })
+        let along = Direction { points, rate: point.tangent.rate };
+        let mut seen = shown.point(point.value, shots, &along)?;
+        let points = std::mem::take(&mut seen.orbit.points);
+        seen.orbit = Orbit { points, ..point.orbit.clone() };
+        let passed = passed.unwrap_or(0).min(seen.orbit.events.len());
+        seen.orbit.events.rotate_left(passed);
+        Some(seen)
     }
 }
