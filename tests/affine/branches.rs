@@ -306,10 +306,10 @@ fn an_orbit_between_two_stops_becomes_the_free_motion() {
     assert_eq!(branch.bifurcations.len(), 2, "{:?}", bifurcation_rows(&branch));
 }
 
-/// A mass that strikes another one: of the four multipliers a pair leaves and enters the unit circle
-/// while the others become real, and one grows without bound where the stop is touched: at the
-/// value at which the free motion is as wide as the gap, from either side. The circle's values were
-/// computed in 25 digits by another program, from the closed form.
+/// A mass that strikes another one: of the four multipliers a pair leaves and enters the unit
+/// circle while the others become real, and one grows without bound where the stop is touched: at
+/// the value at which the free motion is as wide as the gap, from either side. The circle's values
+/// were computed in 25 digits by another program, from the closed form.
 #[test]
 fn a_pair_passes_the_circle_where_another_one_becomes_real() {
     let text = "schema = 1\nname = \"two-dof\"\nstates = [\"x\", \"v\", \"y\", \"u\"]\n\

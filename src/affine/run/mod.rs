@@ -8,8 +8,8 @@
 //! is given, and [`given_up`] the motion that is known where such a run is not decided. [`follow`]
 //! continues the records of a run that someone else has made, [`place`] is where a run may be cut
 //! and go on with another state, [`variation`] carries small changes of the state along,
-//! [`variation_at_limit`] does so across limits, and [`parameter`] has what a parameter adds. Read this
-//! file first, then `crossed` and `transition`.
+//! [`variation_at_limit`] does so across limits, and [`parameter`] has what a parameter adds. Read
+//! this file first, then `crossed` and `transition`.
 
 mod accumulation;
 mod ahead;
