@@ -30,6 +30,9 @@ const ROUNDINGS_LEFT: f64 = 256.0;
 /// The most impacts that are followed to a limit.
 const MAX_IMPACTS: usize = 1_000_000;
 
+/// The value at a state of a row's derivative by a parameter.
+type OfRow<'a, T> = &'a dyn Fn(&CoefficientRates<T>, &Vector<T>) -> T;
+
 /// An impact of a run: the state just after it, and the speed of its arrival.
 struct Impact<T> {
     state: Vector<T>,
@@ -110,7 +113,7 @@ impl<T: Number> Variation<T> {
         &mut self,
         solver: &Solver<T>,
         impacts: RepeatedImpact,
-        (row, of_row): (&Vector<T>, &dyn Fn(&CoefficientRates<T>, &Vector<T>) -> T),
+        (row, of_row): (&Vector<T>, OfRow<'_, T>),
         state: &Vector<T>,
         elapsed: T,
         gained: &mut Gained<T>,
@@ -226,17 +229,17 @@ impl<T: Number> Variation<T> {
         let guard = solver.modes[mode].rows[until];
         let rate = solver.rate_row(mode, &guard);
         let share = dot(&rate, &guard, states) / dot(&guard, &guard, states);
-        let of_guard = |it: &CoefficientRates<T>| it.guard(mode, until, z);
-        let of_rate = |it: &CoefficientRates<T>| {
-            it.guard_rate(solver, (mode, until), mode, z) - share * of_guard(it)
+        let of_guard = |it: &CoefficientRates<T>, z: &Vector<T>| it.guard(mode, until, z);
+        let of_rate = |it: &CoefficientRates<T>, z: &Vector<T>| {
+            it.guard_rate(solver, (mode, until), mode, z) - share * of_guard(it, z)
         };
-        let of_rows: [&dyn Fn(&CoefficientRates<T>) -> T; 2] = [&of_guard, &of_rate];
+        let of_rows: [OfRow<'_, T>; 2] = [&of_guard, &of_rate];
         for (row, of_row) in [guard, sum(&rate, &guard, -share)].iter().zip(of_rows) {
             let square = dot(row, row, states);
             // A guard of the forcing alone has no states; a comparison with NaN is false.
             if square > T::zero() {
                 for (column, parameter) in self.varied() {
-                    let own = parameter.map_or_else(T::zero, of_row);
+                    let own = parameter.map_or_else(T::zero, |it| of_row(it, z));
                     let factor = (dot(row, column, solver.system.dimension()) + own) / square;
                     column[..states].iter_mut().zip(row).for_each(|(it, own)| {
                         *it = *it - factor * *own;
