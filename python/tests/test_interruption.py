@@ -35,7 +35,7 @@ WORK = {
     "diagram": "percuss.Oscillator().bifurcation("
     "'b', np.linspace(0, .3, 1000), transient=10**7, periods=1)",
     "a value of a diagram": "percuss.Oscillator().bifurcation("
-    "'b', [0, .3], transient=10**9, periods=1)",
+    "'b', [0, .3], transient=10**9 - 1, periods=1)",
 }
 
 
