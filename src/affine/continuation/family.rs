@@ -22,7 +22,7 @@ pub struct ReturnFamily<'a> {
     section: Section,
     longest: Option<f64>,
     system: &'a dyn Fn(f64) -> Result<System, SystemError>,
-    /// What was prepared last, by the values' bits.
+    /// The values that were prepared last, newest first.
     prepared: RefCell<VecDeque<Rc<Prepared>>>,
 }
 

@@ -1,4 +1,4 @@
-//! What a parameter adds to small changes of a run's state.
+//! The part that a parameter has in small changes of a run's state.
 //!
 //! A parameter that changes by dp changes the matrix M of a mode, its guards w and its resets R by
 //! dM dp, dw dp and dR dp. The change s of the state, per dp, obeys s' = M s + dM z; an event comes
@@ -99,12 +99,12 @@ impl<T: Number> CoefficientRates<T> {
         applied(&self.modes[mode].matrix, z)
     }
 
-    /// What the derivative of a reset makes of a state.
+    /// The product of a reset's derivative and a state.
     pub fn reset(&self, mode: usize, number: usize, z: &Vector<T>) -> Vector<T> {
         applied(&self.modes[mode].resets[number], z)
     }
 
-    /// What the parameter adds to a change along a mode, from a state on and for a time.
+    /// The part of a change that the parameter adds along a mode, from a state on and for a time.
     ///
     /// For a time h with F = exp(M h), and with what is added D, both as matrices, those of 2 h are
     /// F F and F D + D F.
@@ -139,8 +139,8 @@ impl<T: Number> CoefficientRates<T> {
     }
 }
 
-/// What a change and what a parameter adds to it gain along a mode, from a state on: the series of
-/// s' = M s + dM z, less what it begins with.
+/// The gain of a change by a parameter along a mode, from a state on: the series of
+/// s' = M s + dM z, less its beginning.
 pub fn gain_by_parameter<T: Number>(
     solver: &Solver<T>,
     rates: &CoefficientRates<T>,

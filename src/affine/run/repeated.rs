@@ -42,7 +42,7 @@ pub struct SinceImpact<T> {
     pub gained: Gained<T>,
 }
 
-/// What the state and its changes have gained since an impact.
+/// The gains of the state and of its changes since an impact.
 #[derive(Clone, Debug)]
 pub struct Gained<T> {
     pub state: Vector<T>,
