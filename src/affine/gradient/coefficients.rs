@@ -19,8 +19,7 @@ impl<T: Number> ModeJets<T> {
             row.iter().zip(rate).map(|(a, b)| Jet::new(a, b)).collect()
         };
         let rows = |a: &[Row], b: &[Row]| a.iter().zip(b).map(row).collect::<Vec<_>>();
-        let guards = (0..mode.until.len() + mode.watch.len())
-            .map(|n| row((guard_of(mode, n), guard_of(rates, n))));
+        let guards = mode.guards().zip(rates.guards()).map(row);
         let resets = mode.until.iter().zip(&rates.until).map(|(a, b)| rows(&a.reset, &b.reset));
         Self {
             matrix: rows(&mode.matrix, &rates.matrix),

@@ -127,8 +127,7 @@ impl Mode {
     /// The place in this mode, which has this index, that depends on where a state is.
     fn dependent_on(&self, n: usize, mode: usize, states: usize) -> Option<Place> {
         let equation = self.matrix.iter().take(states).position(|row| has(row, n));
-        let watched = self.watch.iter().map(|it| &it.guard);
-        let guard = self.until.iter().map(|it| &it.guard).chain(watched).position(|it| has(it, n));
+        let guard = self.guards().position(|it| has(it, n));
         let events = self.until.iter().enumerate();
         let reset = events.clone().find_map(|(until, it)| {
             reset_on(&it.reset, n, states).map(|state| Place::Reset { mode, until, state })

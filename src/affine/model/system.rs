@@ -158,6 +158,12 @@ pub struct Mode {
 }
 
 impl Mode {
+    /// The guards: those of `until`, then those of `watch`.
+    pub(in crate::affine) fn guards(&self) -> impl Iterator<Item = &Row> + Clone {
+        let watched = self.watch.iter().map(|it| &it.guard);
+        self.until.iter().map(|it| &it.guard).chain(watched)
+    }
+
     /// The resets and the successors by which the mode is left: those of each `until`, then in the
     /// same order those of their limits, which are empty where a run ends there.
     pub(in crate::affine) fn exits(&self) -> impl Iterator<Item = (&[Row], &[Successor])> + Clone {

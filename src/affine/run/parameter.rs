@@ -68,7 +68,7 @@ impl<T: Number> CoefficientRates<T> {
             ModeRates {
                 moves: matrix.iter().flatten().any(|it| *it != T::zero()),
                 matrix,
-                rows: guards(mode).map(&mut row).collect(),
+                rows: mode.guards().map(&mut row).collect(),
                 resets: mode.exits().map(|(it, _)| it.iter().map(&mut row).collect()).collect(),
             }
         };
@@ -158,16 +158,11 @@ pub fn gain_by_parameter<T: Number>(
     })
 }
 
-/// The rows of a mode's guards: those of `until`, then those of `watch`.
-fn guards(mode: &Mode) -> impl Iterator<Item = &Row> {
-    mode.until.iter().map(|it| &it.guard).chain(mode.watch.iter().map(|it| &it.guard))
-}
-
 /// All coefficients of a system in one list: those of its modes, then frequency and phase.
 fn coefficients(system: &System) -> Vec<&Rational> {
     let rows = system.modes.iter().flat_map(|mode| {
         let resets = mode.exits().flat_map(|(reset, _)| reset);
-        mode.matrix.iter().chain(guards(mode)).chain(resets)
+        mode.matrix.iter().chain(mode.guards()).chain(resets)
     });
     let forcing = system.forcing.iter().flat_map(|it| [&it.omega, &it.phi]);
     rows.flatten().chain(forcing).collect()

@@ -99,8 +99,7 @@ impl<T: Number> Solver<T> {
         let row = |row: &Row, mode: usize| ModalRow::new(row, &flows[mode], &blocks[mode]);
         let mode = |n: &usize| {
             let (n, mode) = (*n, &system.modes[*n]);
-            let until = mode.until.iter().map(|it| &it.guard);
-            let guards: Vec<_> = until.chain(mode.watch.iter().map(|it| &it.guard)).collect();
+            let guards: Vec<_> = mode.guards().collect();
             let guard = |guard: &&Row| {
                 let twin = guards.iter().position(|it| it == guard).unwrap_or_default();
                 ModalRow { twin, ..row(guard, n) }

@@ -53,8 +53,7 @@ impl ExactMode {
     /// The rows of a system's mode.
     pub fn new(system: &System, mode: &Mode) -> Self {
         let states = system.states.len();
-        let until = mode.until.iter().map(|it| &it.guard);
-        let guards = until.chain(mode.watch.iter().map(|it| &it.guard));
+        let guards = mode.guards();
         let condition = |it: &Successor| {
             it.when.as_ref().map(|when| Chain::new(when, &system.modes[it.mode].matrix))
         };

@@ -27,8 +27,7 @@ pub struct ModeResidues {
 impl ModeResidues {
     /// The rows of a mode; none if a coefficient has no residue.
     pub fn new(mode: &Mode, states: usize) -> Option<Self> {
-        let until = mode.until.iter().map(|it| &it.guard);
-        let rows = until.chain(mode.watch.iter().map(|it| &it.guard));
+        let rows = mode.guards();
         let guards = rows.clone().map(|it| residues(it));
         let points = rows.map(|it| points(it, states));
         let next = |next: &[Successor]| {
