@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from percuss._run import Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Successor:
     """A mode that may follow an event: the first whose row `when` is positive, or is None, does."""
 
@@ -21,7 +21,7 @@ class Successor:
     mode: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class EventRule:
     """An event of a mode: where its guard crosses zero in its direction.
 
@@ -49,7 +49,7 @@ class EventRule:
     successors: tuple[Successor, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ModeRule:
     """A mode: z' = A z + c + B (cos theta, sin theta), and its events."""
 
@@ -60,7 +60,7 @@ class ModeRule:
     events: tuple[EventRule, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ModeRates:
     """The derivatives of a mode's coefficients, in the places of :class:`ModeRule`.
 
@@ -81,7 +81,7 @@ class ModeRates:
     resets: tuple[Floats | None, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rates:
     """The derivatives of a problem's coefficients by a parameter or by a state of the start.
 

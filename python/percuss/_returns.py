@@ -70,6 +70,12 @@ class Returns(_Points):
         columns |= {name: self.state[:, place] for place, name in enumerate(names)}
         return pd.DataFrame(columns).rename_axis("n")
 
+    def to_xarray(self) -> Any:
+        """Make a data set of the states over the times of the returns; needs xarray."""
+        names = columns_of(self.states)
+        states = {name: (("time",), self.state[:, place]) for place, name in enumerate(names)}
+        return dataset(states | {"mode": (("time",), self.mode)}, {"time": self.time})
+
     def plot(self, ax: Any = None) -> Any:
         """Draw the second state over the first; needs matplotlib. Returns the axes.
 
@@ -412,6 +418,25 @@ class Branch:
 
     def __len__(self) -> int:
         return len(self.values)
+
+    def to_pandas(self) -> Any:
+        """Make a table of the orbits in order, by their first points; needs pandas."""
+        import pandas as pd
+
+        columns: dict[str, Any] = {self.parameter: self.values}
+        names = columns_of(self.states, "stable", self.parameter)
+        columns |= {name: self.points[:, place] for place, name in enumerate(names)}
+        if self.mode:
+            columns |= {"mode": self.mode, "time": self.time}
+        return pd.DataFrame(columns | {"stable": self.stable}).rename_axis("n")
+
+    def to_xarray(self) -> Any:
+        """Make a data set of the orbits in order, by their first points; needs xarray."""
+        names = columns_of(self.states, "point", "multipliers", "stable", self.parameter)
+        columns = {name: (("point",), self.points[:, place]) for place, name in enumerate(names)}
+        columns["stable"] = (("point",), self.stable)
+        columns["multipliers"] = (("point", "multiplier"), self.multipliers)
+        return dataset(columns, {self.parameter: ("point", self.values)}, ending=self.ending)
 
     def plot(self, ax: Any = None) -> Any:
         """Draw the first state over the parameter; needs matplotlib. Returns the axes.

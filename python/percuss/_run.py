@@ -75,6 +75,8 @@ class Sol:
         ndarray, shape (d,) or (d, m)
             The states.
         """
+        if np.iscomplexobj(t):
+            raise TypeError("t is not accepted: it is complex, and times are real")
         times = np.asarray(t, dtype=np.float64)
         if times.ndim > 1:
             raise ValueError(f"t of {times.ndim} dimensions is not accepted: 0 or 1 are")

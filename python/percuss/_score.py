@@ -428,6 +428,8 @@ def _takes_solve_ivp(solver: Callable[..., Any]) -> bool:
         return True
     plain = [it for it in parameters if it.kind in (it.POSITIONAL_ONLY, it.POSITIONAL_OR_KEYWORD)]
     wanted = [it for it in plain if it.default is it.empty]
+    if len(wanted) == 1:  # a problem, whatever may follow it
+        return False
     return len(wanted) >= 3 or any(it.kind is it.VAR_POSITIONAL for it in parameters)
 
 

@@ -35,6 +35,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     group.addoption("--percuss-kind", metavar="CLASS", help="explicit, implicit, multistep, taylor")
     group.addoption("--percuss-order", metavar="N", type=int, help="the order of the method")
+    group.addoption(
+        "--percuss-stepping",
+        metavar="STEPPING",
+        default="adaptive",
+        help="the rule of its steps: adaptive, per-step or fixed",
+    )
     group.addoption("--percuss-out", metavar="DIR", help="a folder for the files of the report")
     group.addoption(
         "--percuss-baseline",
@@ -115,6 +121,7 @@ def _report(config: pytest.Config) -> Report:
             setup=option("--percuss-setup").split(","),
             kind=option("--percuss-kind"),
             order=option("--percuss-order"),
+            stepping=option("--percuss-stepping"),
             out=option("--percuss-out"),
             baseline=option("--percuss-baseline"),
         )

@@ -57,6 +57,9 @@ impl Motion {
             |it: &Event<DoubleDouble>| direction * it.time.high.to_f64() <= direction * time;
         let begun = self.events.partition_point(has_begun);
         let event = &self.events[begun.checked_sub(1)?];
+        if event.time.high.to_f64() == time {
+            return Some(event.state.iter().map(|it| it.to_f64()).collect());
+        }
         let time = Time { high: DoubleDouble::new(time, 0.0), low: DoubleDouble::default() };
         Some(self.forms.state_at(event, &time).into_iter().map(DoubleDouble::to_f64).collect())
     }

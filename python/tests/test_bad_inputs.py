@@ -73,6 +73,7 @@ BAD = [
     (lambda: BALL.events(1.0).sol(2.0), ValueError, "the run goes from 0 to 1"),
     (lambda: BALL.events(1.0).sol(NAN), ValueError, "t = NaN"),
     (lambda: BALL.events(1.0).sol([[0.5]]), ValueError, "dimensions"),
+    (lambda: BALL.events(1.0).sol(0.5 + 1j), TypeError, "complex"),
     (lambda: BALL.simulate(), TypeError, "one of until, count and returns"),
     (lambda: BALL.simulate(count=2, returns=3), TypeError, "one of until, count and returns"),
     (lambda: BALL.simulate(returns=3), ValueError, "is not forced"),

@@ -61,6 +61,9 @@ def test_columns_of_returns_are_those_of_the_command():
     table = returns.to_pandas()
     assert list(table) == ["time", "mode", "state.time", "labels"]
     assert table["time"].to_list() == returns.time.tolist()
+    found = returns.to_xarray()
+    assert found["state.time"].values.tolist() == table["state.time"].to_list()
+    assert found["mode"].values.tolist() == ["on", "on"]
     basins = clocked.basins((-1, 1), (-1, 1), grid=2, transient=60)
     assert set(basins.to_xarray().coords) == {"state.time", "state.labels"}
 
@@ -81,6 +84,21 @@ def test_data_sets_hold_the_arrays(run):
     found = rig.basins((-1, 0.1), (-1, 1), grid=3, transient=20).to_xarray()
     assert found["labels"].dims == ("v", "x")
     assert rig.bifurcation("A", [0.5, 0.6], returns=2).to_xarray()["x"].sizes == {"point": 4}
+
+
+def test_branches_are_tables_and_data_sets():
+    pytest.importorskip("pandas")
+    pytest.importorskip("xarray")
+    buck = percuss.systems["buck-converter"].continue_(
+        "Vin", 24, 25, section="clock", transient=200, period=1
+    )
+    table, found = buck.to_pandas(), buck.to_xarray()
+    assert list(table) == ["Vin", *buck.states, "mode", "time", "stable"]
+    assert table["stable"].to_list() == found["stable"].values.tolist() == buck.stable.tolist()
+    assert table["v"].to_list() == found["v"].values.tolist() == buck.points[:, 0].tolist()
+    assert found["multipliers"].values.tolist() == buck.multipliers.tolist()
+    own = percuss.Oscillator().continue_("b", 0.1, 0.1001, period=1).to_pandas()
+    assert list(own) == ["b", "p", "y", "q", "stable"]
 
 
 def test_sweeps_are_those_of_single_runs(tmp_path):

@@ -41,6 +41,14 @@ def test_a_misspelt_shortcoming_is_refused(pytester, line, told):
     done.stderr.fnmatch_lines([f"*line 1: {line.split()[0]}: {told}*"])
 
 
+def test_the_rule_of_steps_is_that_of_score(pytester):
+    done = pytester.runpytest_subprocess(SOLVER, *ASKED, "--percuss-stepping=per-step")
+    done.assert_outcomes(passed=1)
+    done = pytester.runpytest_subprocess(SOLVER, *ASKED, "--percuss-stepping=sometimes")
+    assert done.ret == pytest.ExitCode.USAGE_ERROR
+    done.stderr.fnmatch_lines(["*stepping = *sometimes*per-step and fixed are*"])
+
+
 def test_rows_are_shown_without_being_run(pytester):
     done = pytester.runpytest_subprocess(SOLVER, *ASKED, "--collect-only")
     done.stdout.fnmatch_lines(["*table1-first-row?scipy-rk45-1e-06*", "*1 test collected*"])
