@@ -73,8 +73,10 @@ class Returns(_Points):
     def to_xarray(self) -> Any:
         """Make a data set of the states over the times of the returns; needs xarray."""
         names = columns_of(self.states)
-        states = {name: (("time",), self.state[:, place]) for place, name in enumerate(names)}
-        return dataset(states | {"mode": (("time",), self.mode)}, {"time": self.time})
+        columns: dict[str, tuple[tuple[str, ...], Any]] = {
+            name: (("time",), self.state[:, place]) for place, name in enumerate(names)
+        }
+        return dataset(columns | {"mode": (("time",), self.mode)}, {"time": self.time})
 
     def plot(self, ax: Any = None) -> Any:
         """Draw the second state over the first; needs matplotlib. Returns the axes.
@@ -433,7 +435,9 @@ class Branch:
     def to_xarray(self) -> Any:
         """Make a data set of the orbits in order, by their first points; needs xarray."""
         names = columns_of(self.states, "point", "multipliers", "stable", self.parameter)
-        columns = {name: (("point",), self.points[:, place]) for place, name in enumerate(names)}
+        columns: dict[str, tuple[tuple[str, ...], Any]] = {
+            name: (("point",), self.points[:, place]) for place, name in enumerate(names)
+        }
         columns["stable"] = (("point",), self.stable)
         columns["multipliers"] = (("point", "multiplier"), self.multipliers)
         return dataset(columns, {self.parameter: ("point", self.values)}, ending=self.ending)
