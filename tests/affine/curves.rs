@@ -322,6 +322,27 @@ fn a_rigid_stop_is_touched_along_the_response() {
     assert!(places.into_iter().all(|[one, next]| one != next), "{:?}", graze.points);
 }
 
+/// A neuron whose spike becomes a touch, with no orbit beyond, and orbits on the way to it whose
+/// multiplier grows without bound. Everything is in proportion to the threshold, so that the curve
+/// is a straight line through the value that another program has for a threshold of 1.
+#[test]
+fn a_touch_that_orbits_do_not_reach_is_followed() {
+    let text = "schema = 1\nname = \"neuron\"\nstates = [\"u\"]\n\
+                forcing = { omega = 2.2, phi = 0 }\n[parameters]\nI = 1\nth = 1\n\
+                [[mode]]\nname = \"rest\"\nequations = [\"u' = -u/2 + I + th*cos/2\"]\n\
+                until = [{ name = \"spike\", guard = \"u > th\", reset = [\"u = 0\"] }]\n\
+                [start]\nmode = \"rest\"\nu = 0.2\n";
+    let neuron = Varied::new(text, Section::strobe(0.0), ["I", "th"], &[]);
+    let branch = neuron.branch(&neuron.settled_return([1.0, 1.0], None, 300), 1, [1.0, 0.9], 1.0);
+    for window in [[[0.96, 1.0], [0.5, 1.5]], [[0.9, 1.1], [0.98, 1.02]]] {
+        let curves = neuron.curves(&branch, window, 1.0);
+        let graze = curves.iter().find(|it| it.kind == BifurcationKind::Grazing).unwrap();
+        assert_on(graze, 2e-9, |[_, threshold]| 0.975_507_101_985_535 * threshold);
+        assert_eq!(graze.endings, [CurveEnding::Left; 2]);
+        assert!(graze.points.len() > 20);
+    }
+}
+
 /// On this curve of flips the orbit leaves the stop at the strobe where w is 0.79426: the curve
 /// goes on, as that of a strobe far from it has it.
 #[test]

@@ -3,6 +3,7 @@
 //! An event that passes the strobe makes another piece of the map, on which a bifurcation that was
 //! known on the piece before is not found again. No bifurcation hangs on the strobe's angle.
 
+use super::point::CurvePoint;
 use super::strobe::angle_beside;
 use super::traced::{Traced, Tracer};
 
@@ -19,9 +20,15 @@ impl Tracer<'_> {
 
     /// A place of another tracer's curve as one of this one's, where the strobes differ.
     pub(super) fn seen(&self, by: &Self, place: &Traced) -> Option<Traced> {
-        let point = by.plane.on_line(place.axis, place.at, |curve| {
-            self.plane.on_line(place.axis, place.at, |own| curve.seen_on(own, &place.point))
-        })?;
-        Some(Traced { point, ..place.clone() })
+        let seen = |point: &CurvePoint| {
+            by.plane.on_line(place.axis, place.at, |curve| {
+                self.plane.on_line(place.axis, place.at, |own| curve.seen_on(own, point))
+            })
+        };
+        let clear = match &place.clear {
+            Some(it) => Some(seen(it)?),
+            None => None,
+        };
+        Some(Traced { point: seen(&place.point)?, clear, ..place.clone() })
     }
 }

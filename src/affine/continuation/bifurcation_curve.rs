@@ -49,7 +49,7 @@ impl BifurcationCurve {
         for (n, found) in branch.bifurcations.iter().enumerate() {
             let mut share = |share: f64| progress((n as f64 + share) / count);
             let tracer = Tracer { plane: plane.clone(), sought: Sought::new(found) };
-            let start = traced_point(found, second);
+            let start = traced_point(plane, found, second);
             let is_known = curves.iter().any(|(points, curve)| {
                 (curve.kind, curve.event) == (found.kind, found.event)
                     && points.windows(2).any(|it| tracer.passes([&it[0], &it[1]], &start))
@@ -81,9 +81,12 @@ impl BifurcationCurve {
     }
 }
 
-fn traced_point(found: &ReturnBifurcation, second: f64) -> Traced {
-    let ReturnBifurcation { value, error, point, .. } = found;
-    Traced { at: [*value, second], axis: 0, error: *error, point: point.clone() }
+fn traced_point(plane: &ReturnPlane<'_>, found: &ReturnBifurcation, second: f64) -> Traced {
+    let ReturnBifurcation { value, error, point, is_lost, .. } = found;
+    let (at, axis) = ([*value, second], 0);
+    let clear = || plane.on_line(axis, at, |curve| curve.clear_orbit(point, point, *value));
+    let clear = if *is_lost { clear() } else { None };
+    Traced { at, axis, error: *error, point: point.clone(), clear }
 }
 
 /// Places after which half of a way along a curve is said to be done: its length is not known.

@@ -202,9 +202,20 @@ impl Curve<'_> {
 
     /// Follows the curve from a point as far as its piece goes, or for a length.
     pub(super) fn approach_within(&self, base: &CurvePoint, distance: f64, most: f64) -> Approach {
+        self.approach_until(base, distance, &|_, length| length > most)
+    }
+
+    /// Follows the curve from a point as far as its piece goes, or until the last orbit and the
+    /// length of the way to it are such that it is over.
+    pub(super) fn approach_until(
+        &self,
+        base: &CurvePoint,
+        distance: f64,
+        is_over: &dyn Fn(&CurvePoint, f64) -> bool,
+    ) -> Approach {
         let (is_lost, length, first_step) = (Cell::new(false), Cell::new(0.0), Cell::new(0.0));
         let (last, rest) = last_along(base, distance, CORNER_TOLERANCE, &|from, step| {
-            if length.get() > most {
+            if is_over(from, length.get()) {
                 return None;
             }
             let there = self.corrected_freely(from, step).or_else(|| self.at_value(from, step));

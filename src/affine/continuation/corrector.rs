@@ -31,6 +31,11 @@ impl Curve<'_> {
         self.corrected(base, distance, false)
     }
 
+    /// The orbit at the value of `base`, which need not close.
+    pub fn corrected_at_value(&self, base: &CurvePoint) -> Option<CurvePoint> {
+        self.corrected(base, 0.0, true)
+    }
+
     /// Whether a step leads along the curve, rather than to another sheet of it or another curve.
     fn is_step(&self, base: &CurvePoint, moved: &Direction, distance: f64) -> bool {
         let along = self.product(&base.tangent, moved, &base.shots) / distance;

@@ -14,9 +14,11 @@
 //! [`corner`] the ends of pieces, [`halving`] those of a doubled branch, and [`mod@follow`] what
 //! step control asks for. Read them in this order. In two parameters, [`plane`] has the lines on
 //! which one varies, [`again`] a bifurcation on one of them, [`traced`] the steps from line to
-//! line, [`beside`] those past an event at the strobe, and [`bifurcation_curve`] whole curves.
+//! line, [`beside`] those past an event at the strobe, [`before_touch`] those along touches that
+//! orbits do not reach, and [`bifurcation_curve`] whole curves.
 
 mod again;
+mod before_touch;
 mod beside;
 mod bifurcation_curve;
 mod corner;

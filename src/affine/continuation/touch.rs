@@ -124,7 +124,7 @@ impl Curve<'_> {
         if !is_near_touch(&last.shots) {
             return None;
         }
-        let clear = self.clear_of_touch(last);
+        let clear = self.clear_of_touch(last, &leaves_digits);
         let (base, last) = clear.as_ref().map_or((base, last), |it| (it, it));
         let (far, expected) = self.near_touch(base, last)?;
         let apart = expected.share * self.distance_along(last, far.value, &far.shots)?.abs();
@@ -146,12 +146,16 @@ impl Curve<'_> {
         })
     }
 
-    /// An orbit before the last one that was found, if the touch leaves that too few digits.
-    fn clear_of_touch(&self, last: &CurvePoint) -> Option<CurvePoint> {
+    /// An orbit before the last one that was found that is clear of the touch, if that one is not.
+    pub(super) fn clear_of_touch(
+        &self,
+        last: &CurvePoint,
+        is_clear: &dyn Fn(&CurvePoint) -> bool,
+    ) -> Option<CurvePoint> {
         let (mut point, mut length) = (None::<CurvePoint>, FIRST_LENGTH_BACK);
         loop {
             let here = point.as_ref().unwrap_or(last);
-            if here.shots.largest_derivative() <= MAX_DERIVATIVE_OF_EXTRAPOLATED {
+            if is_clear(here) {
                 return point;
             }
             let back = self.approach_within(&here.turned(), length, length);
@@ -267,6 +271,11 @@ impl Curve<'_> {
             further.is_some_and(|it| count(&it) > count(&orbit.shots))
         })
     }
+}
+
+/// Whether a touch leaves an orbit enough digits to be extrapolated through it.
+pub(super) fn leaves_digits(orbit: &CurvePoint) -> bool {
+    orbit.shots.largest_derivative() <= MAX_DERIVATIVE_OF_EXTRAPOLATED
 }
 
 /// The value at zero of the polynomial that has these values at these arguments.

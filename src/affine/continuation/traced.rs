@@ -1,6 +1,6 @@
 //! Step control in the plane of two parameters: a curve of bifurcations, line by line.
 
-use super::again::{OnLine, Sought};
+use super::again::{Expected, OnLine, Sought};
 use super::curve::Curve;
 use super::plane::{Axis, ReturnPlane, Way, cosine, length};
 use super::point::{CurvePoint, Direction};
@@ -17,6 +17,8 @@ pub(super) struct Traced {
     pub error: f64,
     /// The orbit on the line on which that parameter varies.
     pub point: CurvePoint,
+    /// An orbit before that on this line, where that one is too near to a touch to be followed.
+    pub clear: Option<CurvePoint>,
 }
 
 /// One way along a curve.
@@ -72,6 +74,8 @@ const MIN_TURN_COSINE: f64 = 0.95;
 const REACHES: [f64; 3] = [1.0, 0.2, 0.04];
 /// The reaches of a first step, whose direction is not known, in steps.
 const FIRST_REACHES: [f64; 4] = [1.0, 4.0, 0.2, 16.0];
+/// A touch that orbits do not reach lies within so many reaches of the place where it is expected.
+const MAX_REACHES: f64 = 4.0;
 /// A curve passes a place that is within this share of a step.
 const PASSING_TOLERANCE: f64 = 0.3;
 
@@ -206,30 +210,49 @@ impl Tracer<'_> {
         axis: Axis,
         reaches: &[f64],
     ) -> Option<Traced> {
-        let from = self.turned(step.from, step.way, axis)?;
+        let Step { from, way, .. } = *step;
+        let touch = match &from.clear {
+            Some(clear) => Some(self.before_touch(from, clear, way, target, axis)?),
+            None => None,
+        };
+        let own = match (&touch, from.axis == axis) {
+            (None, false) => self.turned(&from.point, from.at, way, axis)?,
+            _ => from.point.clone(),
+        };
         self.plane.on_line(axis, target, |curve| {
-            let expected = self.expected(curve, step, from, target, axis);
+            let expected = touch.unwrap_or_else(|| Expected {
+                point: self.expected(curve, step, own, target, axis),
+                ahead: 0.0,
+            });
             reaches.iter().find_map(|reach| {
                 let reach = reach * step.length;
                 let found = curve.find_again(&self.sought, &expected, reach)?;
-                let OnLine { point, value, error } = found;
+                let OnLine { point, value, error, clear } = found;
+                // A long way may have led to another one of the same kind.
+                let apart = (value - target[axis]).abs() / self.plane.width(axis);
+                if expected.ahead > 0.0 && apart > MAX_REACHES * reach {
+                    return None;
+                }
                 let mut at = target;
                 at[axis] = value;
                 let chord = self.plane.way(step.from.at, at);
                 let is_ahead = step.before.is_none() || cosine(chord, step.way) >= MIN_TURN_COSINE;
-                is_ahead.then_some(Traced { at, axis, error, point })
+                is_ahead.then_some(Traced { at, axis, error, point, clear })
             })
         })
     }
 
-    /// The orbit at a place as a point of the line on which one parameter varies. Towards a corner
-    /// the point's direction leads on this line, too.
-    fn turned(&self, from: &Traced, way: Way, axis: Axis) -> Option<CurvePoint> {
-        if from.axis == axis {
-            return Some(from.point.clone());
-        }
-        let CurvePoint { shots, tangent, .. } = &from.point;
-        self.plane.on_line(axis, from.at, |curve| {
+    /// An orbit of the line on which one parameter varies as a point of that on which the other one
+    /// does. Towards a corner the point's direction leads on this line, too.
+    pub(super) fn turned(
+        &self,
+        point: &CurvePoint,
+        at: [f64; 2],
+        way: Way,
+        axis: Axis,
+    ) -> Option<CurvePoint> {
+        let CurvePoint { shots, tangent, .. } = point;
+        self.plane.on_line(axis, at, |curve| {
             let along = match self.sought.kind {
                 BifurcationKind::Fold => Direction { points: tangent.points.clone(), rate: 0.0 },
                 _ => {
@@ -239,7 +262,7 @@ impl Tracer<'_> {
                     Direction { points, rate: side * self.plane.width(axis) }
                 }
             };
-            curve.point(from.at[axis], shots.clone(), &along)
+            curve.point(at[axis], shots.clone(), &along)
         })
     }
 
