@@ -317,7 +317,7 @@ impl<C: OrbitCurve> Follower<'_, C> {
             return Err(BranchEnding::Lost { value: corner.before.value() });
         };
         *step = MIN_STEP * 2.0;
-        let ending = (!self.is_inside(beyond.value())).then_some(self.left(beyond.value()));
+        let (beyond, _, ending) = self.cut(&corner.before, beyond, 0.0);
         Ok((beyond, ending))
     }
 
