@@ -29,7 +29,8 @@ pub struct BifurcationPoint {
     pub values: [f64; 2],
     /// Bound on the error of the first parameter's value where the second has its value.
     pub error: f64,
-    /// The orbit there; at a corner as it is on the side from which the branch came.
+    /// The orbit there; at a corner as it is on the side from which the branch came. Of a touch
+    /// that no orbit reaches it is the last one through which the touch was extrapolated.
     pub orbit: Orbit,
 }
 

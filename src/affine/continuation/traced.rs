@@ -211,19 +211,16 @@ impl Tracer<'_> {
         reaches: &[f64],
     ) -> Option<Traced> {
         let Step { from, way, .. } = *step;
-        let touch = match &from.clear {
-            Some(clear) => Some(self.before_touch(from, clear, way, target, axis)?),
-            None => None,
-        };
-        let own = match (&touch, from.axis == axis) {
-            (None, false) => self.turned(&from.point, from.at, way, axis)?,
-            _ => from.point.clone(),
-        };
         self.plane.on_line(axis, target, |curve| {
-            let expected = touch.unwrap_or_else(|| Expected {
-                point: self.expected(curve, step, own, target, axis),
-                ahead: 0.0,
-            });
+            let expected = match &from.clear {
+                Some(clear) => self.before_touch(from, clear, way, target, axis)?,
+                None => {
+                    let is_same = from.axis == axis;
+                    let turned = || self.turned(&from.point, from.at, way, axis);
+                    let own = if is_same { from.point.clone() } else { turned()? };
+                    Expected { point: self.expected(curve, step, own, target, axis), ahead: 0.0 }
+                }
+            };
             reaches.iter().find_map(|reach| {
                 let reach = reach * step.length;
                 let found = curve.find_again(&self.sought, &expected, reach)?;
